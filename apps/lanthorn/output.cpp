@@ -24,6 +24,7 @@ nlohmann::json metadata_of(const StateSummary& state, bool reproducible, const n
   const nlohmann::json settings = nlohmann::json::parse(state.settings);
   nlohmann::json metadata = settings.value("identity", nlohmann::json::object());
   if (settings.contains("scene")) metadata["scene"] = settings["scene"];
+  if (state.display_emission) metadata["display_emission"] = true;
   metadata["version"] = version;
   metadata["passes"] = state.pass_count;
   if (reproducible) return metadata;
@@ -121,10 +122,18 @@ Option outputs_option(std::vector<std::string>& outputs, const std::string& what
 
 namespace {
 
+// Metadata of EXR files come back as text.
+bool displays_emission(const std::string& metadata) {
+  const nlohmann::json members = metadata.empty() ? nlohmann::json::object() : nlohmann::json::parse(metadata);
+  const auto found = members.find("display_emission");
+  return found != members.end() && (*found == true || *found == "true");
+}
+
 // Returns how the picture is shown if it is a .png.
 DisplaySettings write(const fs::path& path, const Image& image, const OutputSettings& settings, bool measures_exposure,
                       const std::string& metadata) {
   DisplaySettings display = settings.display;
+  display.display_emission = displays_emission(metadata);
   if (measures_exposure) display.exposure = measured_exposure(image);
   write_image(path, image, display, metadata);
   return display;

@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <vector>
 
 #include "checkpoint.h"
 #include "commands.h"
@@ -85,6 +87,15 @@ Observer make_observer(const RenderCommand& a, Onlookers& onlookers) {
   return observer;
 }
 
+// A picture in which nothing is seen says nothing of what is wrong.
+void explain_black(const RenderCommand& a, const Scene& scene, const std::vector<fs::path>& outputs,
+                   const Session& session) {
+  const auto color = select_layer(session.picture(), "color");
+  if (a.quiet || !color || std::any_of(color->pixels.begin(), color->pixels.end(), [](float x) { return x != 0; }))
+    return;
+  warn("{}: the picture is black: {}", outputs.front().string(), reason_for_black(scene, view_of(scene, a.changes)));
+}
+
 void run_render(const RenderCommand& a) {
   handle_signals();
   const std::optional<HostPort> viewer = a.tev.empty() ? std::nullopt : std::optional(parse_host_port(a.tev, "--tev"));
@@ -120,6 +131,7 @@ void run_render(const RenderCommand& a) {
   }
   if (onlookers.tev) onlookers.tev->show(session.picture());
   save_render(a, outputs, *scene, session.state(), statistics);
+  explain_black(a, *scene, outputs, session);
   if (statistics.out_of_memory)
     throw Error(
         fmt::format("not enough memory for a pass: the pictures have the {} passes before it; fewer --photons "

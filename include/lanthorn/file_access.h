@@ -29,8 +29,9 @@ struct FileAccess {
   /// True if `checked` would throw.
   bool is_missing(const std::filesystem::path& path) const;
   /// The file that a scene in `folder` calls `name`. If it is missing, one whose name differs in the case of letters
-  /// alone, as where case does not matter; for an absolute name, which is of another machine, also the file of its last
-  /// part in `folder`. `folder / name` if these are missing, too.
+  /// or the kind of slashes alone; for a name that leads out of the folder, as names of other machines do, also the
+  /// file of its last parts in `folder`, of as many as possible; then the file of its last part in the folders
+  /// "textures" beside the scene or beside `folder`. `folder / name` if these are missing, too.
   std::filesystem::path find(const std::filesystem::path& folder, const std::filesystem::path& name) const;
   /// Reads the whole file. Throws Error as `checked` does.
   std::string read(const std::filesystem::path& path) const;

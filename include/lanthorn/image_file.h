@@ -23,6 +23,7 @@ struct DisplaySettings {
   static constexpr float largest_exposure = 64;
   float exposure = 0;  ///< stops: colours are scaled by 2^exposure
   ToneCurve curve = ToneCurve::none;
+  bool display_emission = false;  ///< the layer `emission` is shown as it is, without exposure and curve
 };
 
 /// The exposure in stops, a multiple of 0.1, at which the picture is neither dark nor bleached: white surfaces are

@@ -24,8 +24,9 @@ struct ReadOptions {
   /// Reads only files in the tree of the scene file's folder; error messages show no content of files.
   bool sandbox = false;
   std::uint64_t max_pixels = FileAccess::default_max_pixels;  ///< of each image that the scene names
-  /// Goes on without missing files: meshes and media are left out, images and measured materials grey, spectra 1,
-  /// included files empty, lenses of 50 mm; a warning names each.
+  /// Goes on without missing files: meshes and media are left out, textures have the neutral value of their use
+  /// (colours are grey, emission and transmission 0, metalness and roughness as their factors say), measured materials
+  /// are grey, spectra 1, included files empty, lenses of 50 mm; a warning names each.
   bool skip_missing = false;
   bool window_glass = false;   ///< calls `replace_window_glass`
   std::optional<double> at{};  ///< seconds into the first animation of a glTF file; none: everything is at rest
@@ -136,6 +137,10 @@ SceneModel model_of(const Scene& scene);
 /// What a scene, seen like this, asks for and does not get: warnings of reading and of building, and media that
 /// contradict each other along rays from the camera and to the lights.
 std::vector<description::Warning> warnings_of(const Scene& scene, const ViewDescription& view);
+
+/// Why a picture of this view shows nothing but black, as the end of a message: the scene has no light, its lights have
+/// no power, the camera sees no surface, what it sees is closed off from all lights ...
+std::string reason_for_black(const Scene& scene, const ViewDescription& view);
 
 /// What is in a scene.
 struct SceneSummary {

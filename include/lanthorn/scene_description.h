@@ -600,6 +600,8 @@ struct Film {
   std::array<float, 4> crop{0, 1, 0, 1};  ///< x0, x1, y0, y1 as fractions
   std::string filename;                   ///< output file name in the scene file, may be empty
   bool measures_exposure = false;         ///< the scene file cannot say an exposure: pictures for a screen need one
+  bool display_emission =
+      false;                ///< surfaces seen to emit have colours for a screen, whatever the exposure (unlit ones)
   float imaging_ratio = 1;  ///< factor of radiance to pixel value (pbrt's iso * exposure / 100 ... = 1 by default)
   std::optional<float> white_balance;         ///< colour temperature in kelvin that becomes white
   std::optional<float> largest_component;     ///< limit to which samples are scaled down, in CIE XYZ

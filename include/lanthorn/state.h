@@ -49,9 +49,9 @@ struct StateSummary {
   /// A JSON object. Its member "identity" decides the picture (hashes of the scene and its files, seed, method and
   /// parameters, colour mode, resolution, crop ...) and must be equal to resume or to merge.
   std::string settings;
-  bool measures_exposure = false;  ///< see description::Film
-  int width = 0, height = 0;       ///< pixels
-  ImageWindow window;              ///< of these pixels in the whole picture
+  bool measures_exposure = false, display_emission = false;  ///< see description::Film
+  int width = 0, height = 0;                                 ///< pixels
+  ImageWindow window;                                        ///< of these pixels in the whole picture
   FilmReport report;
 };
 StateSummary summarize(const RenderState& state);

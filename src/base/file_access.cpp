@@ -9,6 +9,7 @@
 #include <string_view>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include "lanthorn/error.h"
 #include "lanthorn/file.h"
@@ -93,21 +94,54 @@ std::optional<fs::path> entry_but_case(const fs::path& folder, const fs::path& n
   return first;
 }
 
-bool is_absolute(const std::string& name) { return name.starts_with('/') || (name.size() > 1 && name[1] == ':'); }
+// With the separators of this machine.
+fs::path with_slashes(const fs::path& name) {
+  std::string text = name.string();
+  std::replace(text.begin(), text.end(), '\\', '/');
+  return text;
+}
+
+// True for names that lead out of the scene's folder: they tell of folders of the machine on which the scene was made.
+bool leads_outside(const fs::path& name) {
+  const std::string text = name.string();
+  return text.starts_with('/') || text.starts_with("../") || (text.size() > 1 && text[1] == ':');
+}
+
+// Where a scene's file may be, by names relative to its folder, the likeliest first.
+std::vector<fs::path> likely_names(const fs::path& name) {
+  const fs::path named = with_slashes(name);
+  std::vector<fs::path> names;
+  if (!named.is_absolute()) names.push_back(named);
+  const std::vector<fs::path> parts(named.begin(), named.end());
+  for (std::size_t first = 1; leads_outside(named) && first < parts.size(); ++first) {
+    fs::path end;
+    for (std::size_t i = first; i < parts.size(); ++i) end /= parts[i];
+    names.push_back(end);
+  }
+  for (const char* usual : {"textures", "../textures"}) names.push_back(usual / named.filename());
+  return names;
+}
+
+// `name` in `folder`, of which parts may differ in case. It may be missing.
+fs::path but_case(const fs::path& folder, const fs::path& name, const FileAccess& access) {
+  fs::path found = folder;
+  for (const fs::path& part : name) {
+    std::error_code code;
+    if (access.is_sandboxed() && !lies_in(fs::canonical(found, code), access.sandbox)) return folder / name;
+    const bool is_there = fs::exists(found / part, code);
+    found /= is_there ? part : entry_but_case(found, part).value_or(part);
+  }
+  return found;
+}
 
 }  // namespace
 
 fs::path FileAccess::find(const fs::path& folder, const fs::path& name) const {
   const fs::path path = folder / name;
-  if (!is_missing(path)) return path;
-  fs::path found = folder;
-  for (const fs::path& part : is_absolute(name.string()) ? name.filename() : name) {
-    std::error_code code;
-    if (is_sandboxed() && !lies_in(fs::canonical(found, code), sandbox)) return path;
-    const bool is_there = fs::exists(found / part, code);
-    found /= is_there ? part : entry_but_case(found, part).value_or(part);
-  }
-  return is_missing(found) ? path : found;
+  if (!is_missing(path) || name.empty()) return path;
+  for (const fs::path& likely : likely_names(name))
+    if (const fs::path found = but_case(folder, likely, *this); !is_missing(found)) return found;
+  return path;
 }
 
 std::string FileAccess::read(const fs::path& path) const {

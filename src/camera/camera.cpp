@@ -32,13 +32,13 @@ AnimatedTransform framing(const description::Camera& camera, int width, int heig
   const auto* perspective = std::get_if<description::PerspectiveCamera>(&camera.node);
   if (!camera.subject || perspective == nullptr) return camera.camera_to_world;
   const float aspect = static_cast<float>(width) / static_cast<float>(std::max(height, 1));
-  constexpr float margin = 1.05f, least_distance = 1e-3f;
+  constexpr float margin = 1.05f;
   const Point centre = camera.subject->centre();
   const Vec3 half = 0.5f * camera.subject->extent();
   const float tangent = std::tan(to_radians(perspective->fov / 2)) / margin;
-  const float distance = std::max({least_distance, half.z + half.x / (tangent * std::max(aspect, 1.0f)),
-                                   half.z + half.y / (tangent * std::max(1 / aspect, 1.0f))});
-  const Transform move = translate({centre.x, centre.y, centre.z - distance});
+  const float distance =
+      half.z + std::max(half.x / (tangent * std::max(aspect, 1.0f)), half.y / (tangent * std::max(1 / aspect, 1.0f)));
+  const Transform move = translate({centre.x, centre.y, centre.z - (distance > 0 ? distance : 1)});  // of a point: 1
   const AnimatedTransform& to_world = camera.camera_to_world;
   return {to_world.start * move, to_world.end * move, to_world.start_time, to_world.end_time};
 }

@@ -20,19 +20,27 @@ inline float linear_from_srgb(float x) { return x <= 0.04045f ? x / 12.92f : std
 /// Narkowicz (2015), "ACES filmic tone mapping curve": [0, inf) to [0, 1.03]; not clamped. x >= 0 and finite.
 inline float filmic_curve(float x) { return x * (2.51f * x + 0.03f) / (x * (2.43f * x + 0.59f) + 0.14f); }
 
-/// Linear colour to sRGB-encoded display values in [0,1]: exposure, curve, clamp, transfer. NaN becomes black, infinity
-/// white.
+/// A linear component to a linear display value in [0,1]: exposure, curve, clamp. NaN becomes black, infinity white.
+inline float exposed(float x, const DisplaySettings& display) {
+  x *= std::exp2(display.exposure);
+  if (!(x > 0)) return 0.0f;
+  // Both curves have reached 1 long before this limit; larger numbers would overflow in the filmic curve.
+  x = std::fmin(x, 1e4f);
+  if (display.curve == ToneCurve::filmic) x = filmic_curve(x);
+  return std::fmin(x, 1.0f);
+}
+
+/// Linear colour to sRGB-encoded display values in [0,1].
 inline Rgb to_display(const Rgb& linear, const DisplaySettings& display) {
-  const float gain = std::exp2(display.exposure);
-  const auto encode = [&](float x) {
-    x *= gain;
-    if (!(x > 0)) return 0.0f;
-    // Both curves have reached 1 long before this limit; larger numbers would overflow in the filmic curve.
-    x = std::fmin(x, 1e4f);
-    if (display.curve == ToneCurve::filmic) x = filmic_curve(x);
-    return srgb_from_linear(std::fmin(x, 1.0f));
-  };
+  const auto encode = [&](float x) { return srgb_from_linear(exposed(x, display)); };
   return {encode(linear.r), encode(linear.g), encode(linear.b)};
+}
+/// The same where `emission`, a part of the colour, is meant for the display: neither exposure nor curve applies to it.
+inline Rgb to_display(const Rgb& linear, const Rgb& emission, const DisplaySettings& display) {
+  const auto encode = [&](float all, float shown) {
+    return srgb_from_linear(std::fmin(exposed(all - shown, display) + std::fmax(shown, 0.0f), 1.0f));
+  };
+  return {encode(linear.r, emission.r), encode(linear.g, emission.g), encode(linear.b, emission.b)};
 }
 
 }  // namespace lanthorn

@@ -77,8 +77,13 @@ std::vector<unsigned char> encode_png(const Image& image, const DisplaySettings&
   if (!color) throw Error("cannot write: the picture has no channels R, G, B");
   if (color->pixels.empty()) throw Error("cannot write: the picture is empty");
   std::vector<std::uint8_t> pixels(color->pixels.size());
+  const auto emission = display.display_emission ? select_layer(image, "emission") : std::nullopt;
+  const auto rgb_at = [](const Image& layer, std::size_t i) {
+    return Rgb{layer.pixels[i], layer.pixels[i + 1], layer.pixels[i + 2]};
+  };
   for (std::size_t i = 0; i + 2 < pixels.size(); i += 3) {
-    const Rgb encoded = to_display({color->pixels[i], color->pixels[i + 1], color->pixels[i + 2]}, display);
+    const Rgb encoded = emission ? to_display(rgb_at(*color, i), rgb_at(*emission, i), display)
+                                 : to_display(rgb_at(*color, i), display);
     const auto to_byte = [](float x) { return static_cast<std::uint8_t>(std::lround(x * 255)); };
     pixels[i] = to_byte(encoded.r);
     pixels[i + 1] = to_byte(encoded.g);

@@ -56,8 +56,10 @@ void report_missing_files(SceneDescription& scene, const FileAccess& access, con
       scene.warnings.push_back(
           {file.location,
            "the file " + file_in_quotes(file.name) +
-               " is missing: a mesh or medium is left out, an image or measured material is grey, a spectrum 1, an "
-               "included file empty, a lens one of 50 mm"});
+               " is missing: a mesh or medium is left out, a texture has the neutral value of its use (a grey colour, "
+               "no "
+               "emission, no relief), a measured material is grey, a spectrum 1, an included file empty, a lens one of "
+               "50 mm"});
     return;
   }
   if (missing.empty()) return;

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -40,18 +42,114 @@ constexpr std::array<Viewpoint, 16> viewpoints{{{0, 15, "from the front"},
                                                 {135, 40, "from behind, right and above"},
                                                 {-135, 40, "from behind, left and above"}}};
 
+// Into rooms that are open there. From below: the front of a model with z up, seen from a little above.
+constexpr Viewpoint from_above{0, 75, "from above"}, from_below{0, -75, "from below, with z up"};
+
 ViewFrame frame_of(const Viewpoint& from) { return view_from(from.azimuth, from.elevation); }
 
-const Viewpoint& best_viewpoint(const std::vector<OutsideView>& views) {
+/// A viewpoint, and what is seen from there.
+struct Candidate {
+  Viewpoint from;
+  OutsideView view;
+};
+
+const Viewpoint& best_viewpoint(const std::vector<const Candidate*>& candidates) {
   constexpr double much_more = 1.6, more = 1.15;
-  double most = much_more * views[0].amount();
-  std::size_t best = 0;
-  for (std::size_t i = 0; i < views.size(); ++i)
-    if (const double amount = views[i].amount(); amount > most) {
+  double most = much_more * candidates[0]->view.amount();
+  const Candidate* best = candidates[0];
+  for (const Candidate* candidate : candidates)
+    if (const double amount = candidate->view.amount(); amount > most) {
       most = more * amount;
-      best = i;
+      best = candidate;
     }
-  return viewpoints[best];
+  return best->from;
+}
+
+/// Which faces of the model's bounding box have walls.
+class Walls {
+ public:
+  explicit Walls(const ModelSamples& model) {
+    constexpr std::size_t cells = 16;
+    constexpr float wall = 0.1f;  // depth, as a share of the box
+    const Vec3 extent = model.bounds.extent();
+    if (!(std::min({extent.x, extent.y, extent.z}) > 0)) return;
+    std::array<std::array<std::vector<char>, 2>, 3> has_wall;
+    for (auto& faces : has_wall) faces.fill(std::vector<char>(cells * cells));
+    for (const Surfaces::Sample& s : model.samples) {
+      const Vec3 at = (s.position - model.bounds.min) / extent;
+      const auto cell = [&](int axis) {
+        return std::min(static_cast<std::size_t>(std::max(at[axis], 0.0f) * cells), cells - 1);
+      };
+      for (int k = 0; k < 3; ++k) {
+        const std::size_t i = cell((k + 1) % 3) * cells + cell((k + 2) % 3);
+        if (at[k] < wall) has_wall[static_cast<std::size_t>(k)][0][i] = 1;
+        if (at[k] > 1 - wall) has_wall[static_cast<std::size_t>(k)][1][i] = 1;
+      }
+    }
+    for (std::size_t k = 0; k < 3; ++k)
+      for (std::size_t side = 0; side < 2; ++side)
+        share_[k][side] = static_cast<float>(std::count(has_wall[k][side].begin(), has_wall[k][side].end(), 1)) /
+                          static_cast<float>(cells * cells);
+  }
+
+  /// Walls of rooms that stand at its edges cover a quarter.
+  bool is_open(int axis, int side) const {
+    constexpr float most = 0.5f;
+    return share_[static_cast<std::size_t>(axis)][static_cast<std::size_t>(side)] < most;
+  }
+  /// True of a box of which one to three faces are open, and the others closed.
+  bool make_an_open_room() const {
+    constexpr float least = 0.8f;
+    int closed = 0, open = 0;
+    for (int axis = 0; axis < 3; ++axis)
+      for (int side = 0; side < 2; ++side) {
+        closed += share_[static_cast<std::size_t>(axis)][static_cast<std::size_t>(side)] >= least ? 1 : 0;
+        open += is_open(axis, side) ? 1 : 0;
+      }
+    return closed >= 3 && open >= 1;
+  }
+
+ private:
+  std::array<std::array<float, 2>, 3> share_{};
+};
+
+// The number of separate meshes that are seen from each candidate; of a mesh that is seen by less than half as from the
+// best one, a part. A side without light counts a tenth.
+std::vector<double> meshes_seen(const SceneDescription& scene, const ModelSamples& model,
+                                const std::vector<Candidate>& candidates) {
+  constexpr double dark_weight = 0.1, enough = 0.5;
+  const std::vector<std::uint32_t> mesh_of = Surfaces(scene).meshes_of(model.samples);
+  const std::size_t count = *std::max_element(mesh_of.begin(), mesh_of.end()) + std::size_t{1};
+  std::vector<std::vector<double>> seen;
+  std::vector<double> most(count);
+  for (const Candidate& candidate : candidates) {
+    std::vector<double>& of_meshes = seen.emplace_back(count);
+    for (const std::size_t i : candidate.view.in_front())
+      of_meshes[mesh_of[i]] += candidate.view.is_lit(i) ? 1 : dark_weight;
+    for (std::size_t m = 0; m < count; ++m) most[m] = std::max(most[m], of_meshes[m]);
+  }
+  std::vector<double> numbers;
+  for (const std::vector<double>& of_meshes : seen) {
+    double& number = numbers.emplace_back();
+    for (std::size_t m = 0; m < count; ++m)
+      if (most[m] > 0) number += std::min(1.0, of_meshes[m] / (enough * most[m]));
+  }
+  return numbers;
+}
+
+// Of an open room from whose front few of its meshes are seen, the candidates that show nearly all that can be seen;
+// else all but those from above and below.
+std::vector<const Candidate*> with_most_meshes(const SceneDescription& scene, const ModelSamples& model,
+                                               const std::vector<Candidate>& candidates, bool is_open_room) {
+  constexpr double many_more = 1.6, nearly_all = 0.9;
+  const std::vector<double> numbers =
+      is_open_room ? meshes_seen(scene, model, candidates) : std::vector<double>(candidates.size(), 1);
+  const double most = *std::max_element(numbers.begin(), numbers.end());
+  const bool decide = most >= many_more * numbers[0];
+  std::vector<const Candidate*> result;
+  for (std::size_t i = 0; i < candidates.size(); ++i)
+    if (decide ? numbers[i] >= nearly_all * most : i < viewpoints.size()) result.push_back(&candidates[i]);
+  return result;
 }
 
 // Places in the bounding box.
@@ -79,10 +177,10 @@ struct Outside {
   std::vector<char> is_seen;   ///< of each sample
   double backs = 0, dull = 0;  ///< shares: backs of one-sided surfaces; these, or faces of a box
 
-  Outside(const ModelSamples& model, const std::vector<OutsideView>& views) : is_seen(model.samples.size()) {
+  Outside(const ModelSamples& model, std::span<const Candidate> candidates) : is_seen(model.samples.size()) {
     constexpr float tolerance = 0.05f;
     double all = 0;
-    for (const OutsideView& view : views)
+    for (const auto& [from, view] : candidates)
       for (const std::size_t i : view.in_front()) {
         is_seen[i] = 1;
         ++all;
@@ -130,11 +228,12 @@ bool shows_fronts_inside(const ModelSamples& model, const std::vector<Panorama>&
 }
 
 // Whether the scene's own lights reach hardly anything that is seen from outside.
-bool is_lit_inside_alone(const ModelSamples& model, const std::vector<OutsideView>& views) {
+bool is_lit_inside_alone(const ModelSamples& model, const std::vector<Candidate>& candidates) {
   constexpr double most_lit_outside = 0.05;
   const auto lit =
       std::count_if(model.lit.begin(), model.lit.end(), [](const LitSides& s) { return s.front || s.back; });
-  return lit > 0 && std::all_of(views.begin(), views.end(), [&](const OutsideView& view) {
+  return lit > 0 && std::all_of(candidates.begin(), candidates.end(), [&](const Candidate& candidate) {
+           const OutsideView& view = candidate.view;
            const auto seen = std::count_if(view.in_front().begin(), view.in_front().end(),
                                            [&](std::size_t i) { return view.is_lit(i); });
            return static_cast<double>(seen) < most_lit_outside * static_cast<double>(lit);
@@ -172,18 +271,30 @@ StandInView::Inside with_lamp(const ModelSamples& model, const std::vector<Panor
   return {eye.eye(), best->eye(), std::min(best->clearance() / 3, largest * model.radius), model.radius / 2};
 }
 
-std::optional<StandInView> best_view_inside(const ModelSamples& model, const std::vector<OutsideView>& views) {
+// Whether the walls around these places are those of the whole model, not of a figure or a lamp in it.
+bool enclose_the_model(const ModelSamples& model, const std::vector<Panorama>& places) {
+  constexpr float least = 0.8f;
+  Bounds walls;
+  for (const Panorama& place : places)
+    for (const std::size_t i : place.seen()) walls.extend(model.samples[i].position);
+  if (walls.empty()) return false;
+  const Vec3 extent = walls.extent(), whole = model.bounds.extent();
+  return extent.x >= least * whole.x && extent.y >= least * whole.y && extent.z >= least * whole.z;
+}
+
+std::optional<StandInView> best_view_inside(const ModelSamples& model, std::span<const Candidate> from_outside,
+                                            bool is_dark_outside) {
   constexpr float most_height = 0.6f;
   constexpr double dull_share = 0.9, backs_share = 0.9;
-  const Outside outside(model, views);
+  const Outside outside(model, from_outside);
   // Rooms are wider than they are high, chests often are not.
   const Vec3 extent = model.bounds.extent();
   const bool may_be_room = extent.y <= most_height * std::max(extent.x, extent.z) && outside.dull >= dull_share;
   // Walls that viewers do not draw from outside, or the sphere of a sky.
   const bool may_face_inwards = model.one_sided.is_certain && outside.backs >= backs_share;
-  const bool is_dark_outside = is_lit_inside_alone(model, views);
   if (!may_be_room && !may_face_inwards && !is_dark_outside) return {};
   const std::vector<Panorama> rooms = surrounded_places(model);
+  if (!enclose_the_model(model, rooms)) return {};
   if (!(may_be_room && has_things_inside(model, outside, rooms)) &&
       !(may_face_inwards && shows_fronts_inside(model, rooms)) && !is_dark_outside)
     return {};
@@ -208,12 +319,20 @@ StandInView stand_in_view(const SceneDescription& scene, const OneSided& one_sid
   if (model.samples.empty() || !(model.radius > 0) || !(model.radius < largest))
     return {frame_of(viewpoints[0]), view_outside, viewpoints[0].name, {}};
   if (has_own_light) model.lit = lit_sides(scene, model);
-  std::vector<OutsideView> outside;
-  outside.reserve(viewpoints.size());
-  for (const Viewpoint& viewpoint : viewpoints) outside.emplace_back(model, frame_of(viewpoint));
-  if (auto inside = best_view_inside(model, outside)) return *inside;
-  const Viewpoint& best = best_viewpoint(outside);
-  return {frame_of(best), view_outside, best.name, {}};
+  const Walls walls(model);
+  const bool is_open_room = walls.make_an_open_room();
+  std::vector<Viewpoint> from(viewpoints.begin(), viewpoints.end());
+  if (is_open_room && walls.is_open(1, 1)) from.push_back(from_above);
+  if (is_open_room && walls.is_open(1, 0)) from.push_back(from_below);
+  std::vector<Candidate> candidates;
+  candidates.reserve(from.size());
+  for (const Viewpoint& viewpoint : from) candidates.push_back({viewpoint, OutsideView(model, frame_of(viewpoint))});
+  const bool is_dark_outside = is_lit_inside_alone(model, candidates);
+  if (auto inside = best_view_inside(model, std::span(candidates).first(viewpoints.size()), is_dark_outside))
+    return *inside;
+  if (is_dark_outside) model.lit.clear();
+  const Viewpoint& best = best_viewpoint(with_most_meshes(scene, model, candidates, is_open_room));
+  return {frame_of(best), view_outside, best.name, {}, is_dark_outside};
 }
 
 }  // namespace lanthorn

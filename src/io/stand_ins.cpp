@@ -130,11 +130,11 @@ void add_stand_ins(SceneDescription& scene, const StandIns& lacking) {
     view = stand_in_view(scene, lacking.one_sided, !lacking.light);
     add_camera(scene, *view);
   }
-  const bool is_inside = view && view->inside;
+  const bool is_inside = view && view->inside, hides_lights = view && view->hides_lights;
   if (lacking.light && is_inside) {
     add_lamp(scene, *view->inside);
     scene.view.film.measures_exposure = true;  // walls may be close to the lamp
-  } else if (lacking.light) {
+  } else if (lacking.light || hides_lights) {
     add_studio(scene);
   }
   Warning& warning = scene.warnings.emplace_back();
@@ -143,7 +143,11 @@ void add_stand_ins(SceneDescription& scene, const StandIns& lacking) {
       lacking.has_blind_camera ? "the file has no camera that sees anything" : "the file has no camera";
   const std::string shown = view ? std::string(is_inside ? "a view " : "a view of all of it ") + view->name : "";
   const std::string lit = is_inside ? "lit by a lamp in the room" : "in a studio of three soft lamps";
-  if (!lacking.light)
+  if (hides_lights)
+    warning.message = no_camera +
+                      ", and its lights are enclosed in closed meshes, whose outside they do not light: " + shown +
+                      ", " + lit + ", stands in";
+  else if (!lacking.light)
     warning.message = no_camera + ": " + shown + " stands in";
   else if (!lacking.camera)
     warning.message = "the file has no light: a studio of three soft lamps stands in";

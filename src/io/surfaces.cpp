@@ -5,8 +5,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
+#include <unordered_map>
 #include <variant>
 
+#include "math/hash.h"
 #include "math/vec.h"
 
 namespace lanthorn {
@@ -29,6 +32,10 @@ std::size_t find(const std::vector<double>& cumulative, double x) {
   const auto found = std::upper_bound(cumulative.begin(), cumulative.end(), x);
   return std::min(static_cast<std::size_t>(found - cumulative.begin()), cumulative.size() - 1);
 }
+
+struct PlaceHash {
+  std::size_t operator()(const Point& p) const { return hash_vec(p); }
+};
 
 double before(const std::vector<double>& cumulative, std::size_t i) { return i == 0 ? 0 : cumulative[i - 1]; }
 
@@ -102,7 +109,8 @@ Surfaces::Surfaces(const SceneDescription& scene, const std::set<Index>* area_li
   for (const Instance& instance : scene.instances) place(instance.object + 1, instance.object_to_world.start);
 }
 
-Surfaces::Sample Surfaces::sample(const Placed& placed, double area, const Vec2& u) const {
+Surfaces::Sample Surfaces::sample(std::size_t placed_index, double area, const Vec2& u) const {
+  const Placed& placed = placed_[placed_index];
   const Group& group = groups_[placed.group];
   const std::size_t p = find(group.cumulative, area);
   const Piece& piece = group.pieces[p];
@@ -114,8 +122,10 @@ Surfaces::Sample Surfaces::sample(const Placed& placed, double area, const Vec2&
   const glm::dvec3 normal = corners.twice_area_normal();
   const double length = glm::length(normal);
   const double outside = to_world.swaps_handedness() ? -1 : 1;
-  return {Point(position), length > 0 ? Normal(outside / length * normal) : Normal(0), piece.material,
-          piece.area_light};
+  return {Point(position), length > 0 ? Normal(outside / length * normal) : Normal(0),
+          piece.material,  piece.area_light,
+          placed_index,    p,
+          triangle};
 }
 
 std::vector<Surfaces::Sample> Surfaces::samples(std::size_t count) const {
@@ -131,10 +141,56 @@ std::vector<Surfaces::Sample> Surfaces::samples(std::size_t count) const {
       const double x = static_cast<double>(i) * a;
       return static_cast<float>(x - std::floor(x));
     };
-    const Placed& placed = placed_[p];
-    const Sample s = sample(placed, (at - before(cumulative_, p)) / placed.stretch,
+    const Sample s = sample(p, (at - before(cumulative_, p)) / placed_[p].stretch,
                             {fraction(0.7548776662466927), fraction(0.5698402909980532)});
     if (std::isfinite(s.position.x + s.position.y + s.position.z)) result.push_back(s);
+  }
+  return result;
+}
+
+std::vector<std::vector<std::uint32_t>> Surfaces::meshes_in(const Group& group) {
+  constexpr std::size_t most_vertices = std::size_t{1} << 22;
+  std::size_t count = 0;
+  for (const Piece& piece : group.pieces) count += piece.mesh->positions.size();
+  // Disjoint sets of vertices: a set of each mesh.
+  std::vector<std::uint32_t> joined;
+  const auto root = [&](std::size_t i) {
+    while (joined[i] != i) i = joined[i] = joined[joined[i]];
+    return static_cast<std::uint32_t>(i);
+  };
+  std::unordered_map<Point, std::uint32_t, PlaceHash> first_at;
+  std::vector<std::vector<std::uint32_t>> meshes;
+  for (const Piece& piece : group.pieces) {
+    const std::vector<std::array<std::uint32_t, 3>>& triangles = piece.mesh->triangles;
+    std::vector<std::uint32_t>& of_triangles = meshes.emplace_back();
+    if (count > most_vertices) {
+      of_triangles.assign(triangles.size(), static_cast<std::uint32_t>(meshes.size()));
+      continue;
+    }
+    const std::size_t base = joined.size();
+    for (const Point& p : piece.mesh->positions)
+      joined.push_back(first_at.try_emplace(piece.place.point(p) + 0.0f, joined.size()).first->second);
+    for (const auto& [a, b, c] : triangles)
+      for (const std::size_t other : {b, c}) joined[root(base + other)] = root(base + a);
+    for (const auto& triangle : triangles) of_triangles.push_back(static_cast<std::uint32_t>(base) + triangle[0]);
+  }
+  if (!joined.empty())
+    for (std::vector<std::uint32_t>& of_triangles : meshes)
+      for (std::uint32_t& mesh : of_triangles) mesh = root(mesh);
+  return meshes;
+}
+
+std::vector<std::uint32_t> Surfaces::meshes_of(const std::vector<Sample>& samples) const {
+  std::map<std::size_t, std::vector<std::vector<std::uint32_t>>> groups;
+  std::map<std::pair<std::size_t, std::uint32_t>, std::uint32_t> numbers;
+  std::vector<std::uint32_t> result;
+  result.reserve(samples.size());
+  for (const Sample& s : samples) {
+    const std::size_t group = placed_[s.placed].group;
+    auto found = groups.find(group);
+    if (found == groups.end()) found = groups.emplace(group, meshes_in(groups_[group])).first;
+    const std::pair key(s.placed, found->second[s.piece][s.triangle]);
+    result.push_back(numbers.try_emplace(key, numbers.size()).first->second);
   }
   return result;
 }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <set>
 #include <span>
@@ -38,9 +39,13 @@ class Surfaces {
     Normal normal{0};  ///< geometric, outside
     description::Index material = 0;
     std::optional<description::Index> area_light;
+    std::size_t placed = 0, piece = 0, triangle = 0;  ///< where it lies, for `meshes_of`
   };
   /// `count` points, evenly distributed over the area; none if there is no area.
   std::vector<Sample> samples(std::size_t count) const;
+  /// For each of these samples the number of the separate mesh that it lies on, from 0 on: triangles are of one mesh if
+  /// they have corners at the same place. In groups of more than four million vertices, shapes count as meshes.
+  std::vector<std::uint32_t> meshes_of(const std::vector<Sample>& samples) const;
 
  private:
   struct Piece {
@@ -65,7 +70,9 @@ class Surfaces {
   Surfaces(const SceneDescription& scene, const std::set<description::Index>* area_lights);
   static Group make_group(const std::vector<description::Shape>& shapes, const std::set<description::Index>* lights);
   void place(std::size_t group, const Transform& to_world);
-  Sample sample(const Placed& placed, double area, const Vec2& u) const;
+  // Of each triangle of each piece a number that only triangles of the same mesh share.
+  static std::vector<std::vector<std::uint32_t>> meshes_in(const Group& group);
+  Sample sample(std::size_t placed_index, double area, const Vec2& u) const;
 
   std::vector<Group> groups_;
   std::vector<Placed> placed_;

@@ -144,9 +144,10 @@ nlohmann::json identity(const Scene& scene, const ViewDescription& view, const R
 }  // namespace
 
 std::string describe_render(const Scene& scene, const ViewDescription& view, const RenderPlan& plan) {
-  const nlohmann::json settings{{"identity", identity(scene, view, plan)},
-                                {"measures_exposure", view.film.measures_exposure},
-                                {"scene", fs::path(scene.description().filename).filename().string()}};
+  nlohmann::json settings{{"identity", identity(scene, view, plan)},
+                          {"measures_exposure", view.film.measures_exposure},
+                          {"scene", fs::path(scene.description().filename).filename().string()}};
+  if (view.film.display_emission) settings["display_emission"] = true;
   // File names need not be UTF-8.
   return settings.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }

@@ -37,9 +37,9 @@ ImageWindow window_of(const RenderState& state) {
   return {(*crop)[0], (*crop)[1], (*resolution)[0], (*resolution)[1]};
 }
 
-bool measures_exposure(const RenderState& state) {
+bool is_set(const RenderState& state, const char* setting) {
   const json settings = json::parse(state.settings);
-  const auto found = settings.find("measures_exposure");
+  const auto found = settings.find(setting);
   return found != settings.end() && found->is_boolean() && found->get<bool>();
 }
 
@@ -52,7 +52,8 @@ StateSummary summarize(const RenderState& state) {
           .seconds = state.seconds,
           .mergeable = state.shardable,
           .settings = state.settings,
-          .measures_exposure = measures_exposure(state),
+          .measures_exposure = is_set(state, "measures_exposure"),
+          .display_emission = is_set(state, "display_emission"),
           .width = state.film.width(),
           .height = state.film.height(),
           .window = window_of(state),

@@ -139,7 +139,7 @@ std::unique_ptr<ShapeStore> SceneBuilder::store(description::Shape& shape, const
   data_.has_dispersion = data_.has_dispersion || traits.is_dispersive;
   data_.has_interfaces = data_.has_interfaces || traits.is_interface;
   stored->textures = &data_.textures;
-  stored->alpha = data_.textures.compile(shape.alpha);
+  stored->alpha = data_.textures.without_opaque_image(data_.textures.compile(shape.alpha));
   stored->pane = shape.pane;
   stored->record.emits = shape.area_light.has_value();
   stored->record.wants_uv = traits.varies || traits.has_relief || stored->is_cut_out() || stored->record.emits;

@@ -235,7 +235,7 @@ Rgb TextureImage::rgb(const Vec2& st, const WrapModes& wrap, ImageFilter filter)
 }
 
 float TextureImage::scalar(std::size_t texel, std::optional<int> channel) const {
-  if (channel == 3) return channels_ == 4 ? value(texel, 3) : 1.0f;
+  if (channel == alpha_channel) return has_alpha() ? value(texel, 3) : 1.0f;
   if (channel) return value(texel, channels_ == 1 ? 0 : *channel);
   switch (channels_) {
     case 1:

@@ -42,6 +42,8 @@ struct WrapModes {
   WrapModes(description::Wrap along_s, description::Wrap along_t) : s(along_s), t(along_t) {}
 };
 
+inline constexpr int alpha_channel = 3;
+
 /// Texels of an image file, decoded once: 8-bit files stay bytes with a look-up table; all others become linear floats.
 class TextureImage {
  public:
@@ -69,6 +71,7 @@ class TextureImage {
   int width() const { return width_; }
   int height() const { return height_; }
   bool has_colour() const { return channels_ >= 3; }
+  bool has_alpha() const { return channels_ == 4; }  ///< other than 1 somewhere
   /// True for colours as normal maps have them: red and green about .5 in the mean, blue above them.
   bool has_colours_of_normals() const;
   std::size_t bytes() const { return bytes_.size() + floats_.size() * sizeof(float); }

@@ -298,6 +298,14 @@ ImageInput TextureGraph::compile_image(const ImageTexture& texture, const Source
           texture.threshold};
 }
 
+FloatInput TextureGraph::without_opaque_image(const FloatInput& alpha) const {
+  const auto* image = alpha.node ? std::get_if<ImageInput>(&float_nodes_[*alpha.node]) : nullptr;
+  const bool is_alpha = image != nullptr && image->channel == alpha_channel && !image->image->has_alpha();
+  const auto shows_nothing = [](Wrap wrap) { return wrap == Wrap::black; };
+  if (!is_alpha || shows_nothing(image->wrap.s) || shows_nothing(image->wrap.t)) return alpha;
+  return evaluate(alpha, {}) >= 1 ? FloatInput{1, {}} : alpha;
+}
+
 void TextureGraph::load_images() {
   const std::size_t first = loaded_, count = images_.size() - first;
   loaded_ = images_.size();

@@ -85,6 +85,8 @@ class TextureGraph {
   }
   /// The mapped normal in the frame of dp/du, dp/dv and the smooth normal; unit.
   static Normal evaluate(const NormalMapInput& map, const TexturePoint& at);
+  /// 1 if `alpha` is the alpha of an image that has none: then rays need not ask for it. Else `alpha`.
+  FloatInput without_opaque_image(const FloatInput& alpha) const;
   /// The finest detail of all textures behind an input.
   TextureDetail detail(const FloatInput& input) const;
 

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <string>
 #include <thread>
 
@@ -103,6 +104,72 @@ TEST_F(FirstSight, ModelsWithoutAnExposureGetOne) {
   expect_equal_files("merged.png", "same.png");
   EXPECT_FALSE(contains(succeed(words + Words{"--exposure", "0"}).out, "--exposure"));
   EXPECT_LT(brightest(path("a.png")), 0.2f);
+}
+
+// The colour of the pixel, as a linear value of the screen.
+std::vector<float> shown_at(const fs::path& path, int x, int y) {
+  const Image image = read_image(path, ColorEncoding::srgb);
+  return {image.at(x, y, 0), image.at(x, y, 1), image.at(x, y, 2)};
+}
+
+// An unlit cube beside a lamp of 54351 cd, for which the exposure is -8: its colour is meant for the screen.
+TEST_F(FirstSight, UnlitColoursAreShownAsTheyAre) {
+  const std::string model = LANTHORN_SOURCE_DIR "/tests/scenes/models/unlit-and-lamp.gltf";
+  succeed({"render", model, "-i", "path", "-r", "64x48", "-p", "4", "-o", "a.png", "-o", "a.exr", "-o", "a.state"});
+  const Image linear = read_image(path("a.exr"));
+  const Image emission = *select_layer(linear, "emission");
+  int cube = 0;
+  for (int y = 0; y < 48; ++y)
+    for (int x = 0; x < 64; ++x) {
+      if (std::fabs(emission.at(x, y, 0) - 0.8f) > 1e-3f) continue;  // not the cube alone
+      ++cube;
+      const std::vector<float> shown = shown_at(path("a.png"), x, y);
+      EXPECT_NEAR(shown[0], 0.8f, 0.005f) << x << " " << y;
+      EXPECT_NEAR(shown[1], 0.05f, 0.005f) << x << " " << y;
+      EXPECT_NEAR(shown[2], 0.05f, 0.005f) << x << " " << y;
+    }
+  EXPECT_GT(cube, 50);
+  // So it is by every way to a PNG, and at any exposure.
+  succeed({"develop", "a.exr", "developed.png", "--exposure", "auto"});
+  succeed({"merge", "a.state", "-o", "merged.png"});
+  succeed({"merge", "a.state", "-o", "bright.png", "--exposure", "3", "--filmic"});
+  const Image first = read_image(path("a.png")), bright = read_image(path("bright.png"));
+  EXPECT_EQ(read_image(path("developed.png")).pixels, first.pixels);
+  EXPECT_EQ(read_image(path("merged.png")).pixels, first.pixels);
+  for (int x = 0; x < 64; ++x)
+    if (std::fabs(emission.at(x, 24, 0) - 0.8f) <= 1e-3f) {
+      EXPECT_EQ(bright.at(x, 24, 0), first.at(x, 24, 0));
+    }
+}
+
+// A picture in which nothing is seen says why.
+TEST_F(FirstSight, BlackPicturesSayWhy) {
+  const auto reason = [&](const std::string& scene, const Words& more = {}) {
+    dir_.write("black.pbrt", scene);
+    const std::string said =
+        run(Words{"render", "black.pbrt", "-i", "path", "-r", "16x16", "-p", "2", "-o", "b.png"} + more).err;
+    const std::string before = "b.png: the picture is black: ";
+    const std::size_t at = said.find(before);
+    return at == said.npos ? "" : said.substr(at + before.size(), said.find('\n', at) - at - before.size());
+  };
+  const std::string look = "LookAt 0 0 -5  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" 40\nWorldBegin\n";
+  const std::string lamp = "LightSource \"point\" \"point3 from\" [0 5 -5]\n", ball = "Shape \"sphere\"\n";
+  EXPECT_EQ(reason(test::file_bytes(LANTHORN_SOURCE_DIR "/tests/scenes/models/nolight.pbrt")),
+            "the scene has no light");
+  EXPECT_EQ(reason(look + lamp + ball), "");
+  EXPECT_EQ(reason(look + ball), "the scene has no light");
+  EXPECT_EQ(reason(look + "LightSource \"point\" \"float scale\" 0\n" + ball), "the scene's light has no power");
+  EXPECT_EQ(reason(look + lamp + "Translate 0 9 0\n" + ball),
+            "no surface is in the camera's view; --look-at places the camera");
+  EXPECT_EQ(
+      reason(look + lamp + ball + "Translate 0 0 -5\n" + ball),
+      "the camera is inside of closed surfaces that keep the light out (black.pbrt:7:1: the one in the middle of the "
+      "picture); --look-at places the camera");
+  EXPECT_EQ(reason(look + lamp + ball, {"--look-at", "0,0,0.5,0,0,1"}).substr(0, 40),
+            "the camera is inside of closed surfaces ");
+  EXPECT_EQ(reason(look + "LightSource \"point\" \"point3 from\" [0 0 5]\nShape \"sphere\" \"float radius\" 3\n"),
+            "no light reaches what the camera sees");
+  EXPECT_EQ(reason(look + lamp + ball, {"--quiet"}), "");
 }
 
 TEST_F(FirstSight, AnimationsAreShownAtATime) {

@@ -245,13 +245,27 @@ std::optional<std::string> Document::data_uri(const Value& uri) {
   return bytes;
 }
 
+namespace {
+
+// Of a name with slashes of any kind.
+std::string last_part(const std::string& name) {
+  const std::size_t slash = name.find_last_of("/\\");
+  return slash == name.npos ? name : name.substr(slash + 1);
+}
+
+}  // namespace
+
 std::filesystem::path Document::add_file(const Value& uri) {
   const std::string& text = uri.text();
   const std::size_t colon = text.find(':');
-  const std::filesystem::path decoded = std::filesystem::path(percent_decoded(text)).lexically_normal();
+  std::filesystem::path decoded = std::filesystem::path(percent_decoded(text)).lexically_normal();
   const bool leaves = decoded.is_absolute() || (!decoded.empty() && *decoded.begin() == "..");
-  if (leaves || (colon != text.npos && text.find('/') > colon))
-    throw uri.error("only data URIs and relative URIs that stay in the file's folder are read, not " + in_quotes(text));
+  if (leaves || (colon != text.npos && text.find('/') > colon)) {
+    decoded = last_part(decoded.string());
+    if (access_ == nullptr || access_->is_missing(access_->find(folder_, decoded)))
+      throw uri.error("only data URIs and relative URIs that stay in the file's folder are read, not " +
+                      in_quotes(text));
+  }
   const auto warn_of = [&](const std::string& message) { warn("elsewhere", uri, message); };
   std::filesystem::path path = find_file(folder_, decoded.string(), access_, warn_of);
   // Sites that host models may escape the names of the files themselves.

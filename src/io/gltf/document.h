@@ -49,8 +49,14 @@ class Document {
   View buffer_view(const Value& reference);
   /// Bytes of a data URI (RFC 2397, base64). Empty for other kinds of URI.
   static std::optional<std::string> data_uri(const Value& uri);
-  /// Adds the file with this relative URI to the scene's files and returns its path. Throws Error for other URIs.
+  /// Adds the file with this relative URI to the scene's files and returns its path. Of a URI that leads out of the
+  /// folder, as names of other machines do, it is the file of its last part in the folder; throws Error if there is
+  /// none.
   std::filesystem::path add_file(const Value& uri);
+  /// True if this file of the scene is missing and shall be left out.
+  bool leaves_out(const std::filesystem::path& file) const {
+    return access_ != nullptr && access_->skip_missing && access_->is_missing(file);
+  }
 
   /// The scene's embedded image for an element of "images" without a file. Each is copied into the scene once.
   description::Index embedded_image(const Value& image);

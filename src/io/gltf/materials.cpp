@@ -7,6 +7,7 @@
 #include <cmath>
 #include <string>
 #include <utility>
+#include <variant>
 
 #include "io/gltf/textures.h"
 #include "lanthorn/text.h"
@@ -66,7 +67,7 @@ class MaterialReader {
     if (mode == "MASK") cutoff = material_.number("alphaCutoff", 0.5f);
     const auto pbr = material_.find("pbrMetallicRoughness");
     const float factor = pbr ? base_factor(*pbr)[3] : 1.0f;
-    auto use = pbr ? texture(*pbr, "baseColorTexture") : std::nullopt;
+    auto use = pbr ? texture(*pbr, "baseColorTexture").image : std::nullopt;
     if (!use) {
       const FloatParameter alpha{cutoff ? static_cast<float>(factor >= *cutoff) : factor, {}};
       return has_colors_ && !cutoff ? times_vertex_alpha(alpha) : alpha;
@@ -106,7 +107,9 @@ class MaterialReader {
     if (!(max_component(factor) * scale > 0)) return {};
     if (min_component(factor) < 0) throw material_.at("emissiveFactor").error("must not be negative");
     AreaLight light;
-    light.radiance = colour(material_, factor, "emissiveTexture");
+    light.radiance = colour(material_, factor, "emissiveTexture", neutral_effect);
+    const auto* constant = std::get_if<RgbSpectrum>(&light.radiance.value);
+    if (!light.radiance.texture && constant != nullptr && constant->rgb == Rgb{}) return {};
     light.scale = scale;
     light.two_sided = material_.boolean("doubleSided", false);
     light.location = material_.location();
@@ -121,6 +124,7 @@ class MaterialReader {
     light.radiance = pbr ? base_color(*pbr) : times_vertex_color({RgbSpectrum{{1, 1, 1}}, {}});
     light.two_sided = true;
     light.location = material_.location();
+    document_.scene.view.film.display_emission = true;
     document_.warn("KHR_materials_unlit", material_,
                    "KHR_materials_unlit: surfaces that are not lit emit their colour, which lights others a little");
     return light;
@@ -128,14 +132,20 @@ class MaterialReader {
 
   static float min_component(const Vec3& v) { return std::min({v.x, v.y, v.z}); }
 
-  std::optional<ImageTexture> texture(const Value& owner, std::string_view key) {
+  /// What there is of a texture.
+  struct Found {
+    std::optional<ImageTexture> image;
+    bool is_lost = false;  ///< there is one, which is missing or cannot be read
+  };
+  Found texture(const Value& owner, std::string_view key) {
     const auto use = find_texture(document_, owner, key);
     if (!use) return {};
+    if (!use->image) return {{}, true};
     if (uv_set_.value_or(use->uv_set) != use->uv_set)
       document_.warn("texCoord", owner,
                      "textures of one material use different texture coordinates: all get those of the first");
     uv_set_ = uv_set_.value_or(use->uv_set);
-    return use->image;
+    return {use->image};
   }
 
   FloatParameter add(decltype(FloatTexture::node) node) {
@@ -157,12 +167,17 @@ class MaterialReader {
     return add_spectrum(ScaleTexture<SpectrumParameter, SpectrumParameter>{colour, vertices});
   }
 
+  // What stands in for a texture that is missing or cannot be read is the neutral value of its role. Properties that
+  // every surface has are as their factors say, and colours of surfaces grey. Effects that only some surfaces have, or
+  // only in some places, are absent: emission, transmission, coats, sheen and films.
+  static constexpr float neutral_property = 1, neutral_grey = 0.5f, neutral_effect = 0;
+
   // The number `key` times a channel of a texture.
   FloatParameter factor(const Value& owner, std::string_view key, float otherwise, std::string_view texture_key,
-                        Channel channel) {
+                        Channel channel, float neutral = neutral_property) {
     const float value = owner.number(key, otherwise);
-    auto image = texture(owner, texture_key);
-    if (!image) return {value, {}};
+    auto [image, is_lost] = texture(owner, texture_key);
+    if (!image) return {is_lost ? neutral * value : value, {}};
     image->channel = channel;
     image->scale = value;
     image->encoding = Encoding::linear;
@@ -170,9 +185,9 @@ class MaterialReader {
   }
 
   // A colour times a texture in sRGB.
-  SpectrumParameter colour(const Value& owner, const Vec3& value, std::string_view texture_key) {
-    auto image = texture(owner, texture_key);
-    if (!image) return {RgbSpectrum{rgb_of(value)}, {}};
+  SpectrumParameter colour(const Value& owner, const Vec3& value, std::string_view texture_key, float neutral) {
+    auto [image, is_lost] = texture(owner, texture_key);
+    if (!image) return {RgbSpectrum{rgb_of(is_lost ? neutral * value : value)}, {}};
     image->tint = rgb_of(value);
     image->encoding = Encoding::srgb;
     return add_spectrum(*image);
@@ -186,7 +201,7 @@ class MaterialReader {
   // Factor, texture and vertex colours.
   SpectrumParameter base_color(const Value& pbr) {
     const std::vector<float> base = base_factor(pbr);
-    return times_vertex_color(colour(pbr, {base[0], base[1], base[2]}, "baseColorTexture"));
+    return times_vertex_color(colour(pbr, {base[0], base[1], base[2]}, "baseColorTexture", neutral_grey));
   }
 
   void read_metallic_roughness() {
@@ -205,12 +220,13 @@ class MaterialReader {
   void read_specular_glossiness(const Value& old) {
     const auto diffuse = old.find("diffuseFactor");
     const std::vector<float> base = diffuse ? diffuse->numbers(4) : std::vector<float>{1, 1, 1, 1};
-    result_.base_color = times_vertex_color(colour(old, {base[0], base[1], base[2]}, "diffuseTexture"));
-    result_.specular_color = colour(old, old.vec3("specularFactor", Vec3(1)), "specularGlossinessTexture");
+    result_.base_color = times_vertex_color(colour(old, {base[0], base[1], base[2]}, "diffuseTexture", neutral_grey));
+    constexpr float dielectric = 0.04f;  // reflectance at normal incidence
+    result_.specular_color = colour(old, old.vec3("specularFactor", Vec3(1)), "specularGlossinessTexture", dielectric);
     result_.eta = total_reflection;
     const float glossiness = old.number("glossinessFactor", 1);
     result_.roughness = {1 - glossiness, {}};
-    if (auto image = texture(old, "specularGlossinessTexture")) {
+    if (auto image = texture(old, "specularGlossinessTexture").image) {
       image->channel = alpha_channel;
       image->scale = glossiness;
       image->encoding = Encoding::srgb;
@@ -225,7 +241,8 @@ class MaterialReader {
     const auto specular = material_.extension("KHR_materials_specular");
     if (!specular) return;
     result_.specular = factor(*specular, "specularFactor", 1, "specularTexture", alpha_channel);
-    result_.specular_color = colour(*specular, specular->vec3("specularColorFactor", Vec3(1)), "specularColorTexture");
+    result_.specular_color =
+        colour(*specular, specular->vec3("specularColorFactor", Vec3(1)), "specularColorTexture", neutral_property);
   }
 
   void read_dielectric() {
@@ -245,7 +262,7 @@ class MaterialReader {
     }
     const auto transmission = material_.extension("KHR_materials_transmission");
     if (!transmission) return;
-    result_.transmission = factor(*transmission, "transmissionFactor", 0, "transmissionTexture", red);
+    result_.transmission = factor(*transmission, "transmissionFactor", 0, "transmissionTexture", red, neutral_effect);
     const auto volume = material_.extension("KHR_materials_volume");
     result_.thin = !volume || !(volume->number("thicknessFactor", 0) > 0);
   }
@@ -254,9 +271,9 @@ class MaterialReader {
     const auto diffuse = material_.extension("KHR_materials_diffuse_transmission");
     if (!diffuse) return;
     result_.diffuse_transmission =
-        factor(*diffuse, "diffuseTransmissionFactor", 0, "diffuseTransmissionTexture", alpha_channel);
-    result_.diffuse_transmission_color =
-        colour(*diffuse, diffuse->vec3("diffuseTransmissionColorFactor", Vec3(1)), "diffuseTransmissionColorTexture");
+        factor(*diffuse, "diffuseTransmissionFactor", 0, "diffuseTransmissionTexture", alpha_channel, neutral_effect);
+    result_.diffuse_transmission_color = colour(*diffuse, diffuse->vec3("diffuseTransmissionColorFactor", Vec3(1)),
+                                                "diffuseTransmissionColorTexture", neutral_grey);
     if (result_.diffuse_transmission.texture || result_.diffuse_transmission.value != 0)
       document_.warn("KHR_materials_diffuse_transmission", *diffuse,
                      "KHR_materials_diffuse_transmission is approximated: what transmits does not reflect");
@@ -265,7 +282,7 @@ class MaterialReader {
   void read_anisotropy() {
     const auto anisotropy = material_.extension("KHR_materials_anisotropy");
     if (!anisotropy) return;
-    result_.anisotropy = factor(*anisotropy, "anisotropyStrength", 0, "anisotropyTexture", blue);
+    result_.anisotropy = factor(*anisotropy, "anisotropyStrength", 0, "anisotropyTexture", blue, neutral_effect);
     tangent_turn_ = anisotropy->number("anisotropyRotation", 0);
     if (anisotropy->find("anisotropyTexture"))
       document_.warn("anisotropyTexture", *anisotropy,
@@ -294,7 +311,7 @@ class MaterialReader {
     if (!sheen) return;
     const Vec3 factor_of_color = sheen->vec3("sheenColorFactor", Vec3(0));
     if (!(max_component(factor_of_color) > 0)) return;
-    result_.sheen_color = colour(*sheen, factor_of_color, "sheenColorTexture");
+    result_.sheen_color = colour(*sheen, factor_of_color, "sheenColorTexture", neutral_effect);
     result_.sheen_roughness = factor(*sheen, "sheenRoughnessFactor", 0, "sheenRoughnessTexture", alpha_channel);
     if (result_.metallic.texture || result_.metallic.value > 0)
       document_.warn("KHR_materials_sheen", *sheen, "KHR_materials_sheen is ignored on metal");
@@ -303,12 +320,12 @@ class MaterialReader {
   void read_iridescence() {
     const auto iridescence = material_.extension("KHR_materials_iridescence");
     if (!iridescence) return;
-    result_.iridescence = factor(*iridescence, "iridescenceFactor", 0, "iridescenceTexture", red);
+    result_.iridescence = factor(*iridescence, "iridescenceFactor", 0, "iridescenceTexture", red, neutral_effect);
     result_.film.eta = iridescence->number("iridescenceIor", 1.3f);
     if (!(result_.film.eta >= 1)) throw iridescence->at("iridescenceIor").error("must be at least 1");
     result_.film.thickness = {thickness(*iridescence, "iridescenceThicknessMaximum", 400), {}};
     const float least = thickness(*iridescence, "iridescenceThicknessMinimum", 100);
-    if (auto image = texture(*iridescence, "iridescenceThicknessTexture")) {
+    if (auto image = texture(*iridescence, "iridescenceThicknessTexture").image) {
       image->channel = green;
       image->encoding = Encoding::linear;
       result_.film.thickness = add(MixTexture<FloatParameter>{{least, {}}, result_.film.thickness, add(*image)});
@@ -325,7 +342,7 @@ class MaterialReader {
   void read_clearcoat() {
     const auto coat = material_.extension("KHR_materials_clearcoat");
     if (!coat) return;
-    result_.clearcoat = factor(*coat, "clearcoatFactor", 0, "clearcoatTexture", red);
+    result_.clearcoat = factor(*coat, "clearcoatFactor", 0, "clearcoatTexture", red, neutral_effect);
     result_.clearcoat_roughness = factor(*coat, "clearcoatRoughnessFactor", 0, "clearcoatRoughnessTexture", green);
     if (material_.extension("KHR_materials_sheen"))
       document_.warn("sheen", *coat, "KHR_materials_sheen is ignored under a clear coat");
@@ -334,7 +351,7 @@ class MaterialReader {
   }
 
   void read_normal_map() {
-    auto image = texture(material_, "normalTexture");
+    auto image = texture(material_, "normalTexture").image;
     if (!image) return;
     image->encoding = Encoding::linear;
     result_.normal_map = NormalMap{*image, material_.at("normalTexture").number("scale", 1)};

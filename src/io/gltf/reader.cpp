@@ -329,6 +329,7 @@ class SceneReader {
     const float intensity = source.number("intensity", 1);
     if (!(intensity >= 0) || std::min({colour.x, colour.y, colour.z}) < 0)
       throw source.error("intensity and color must not be negative");
+    if (!(intensity * max_component(colour) > 0)) return;                             // it is off
     const Emission emission{RgbSpectrum{{colour.x, colour.y, colour.z}}, intensity};  // lm/sr or lx
     Light light;
     light.location = source.location();

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "io/missing_files.h"
 #include "lanthorn/text.h"
@@ -56,7 +57,8 @@ std::optional<Value> find_image(Document& document, const Value& texture) {
   if (plain && !is_ktx2(*plain)) return plain;
   const std::optional<Value> basis = plain ? plain : image_of(texture.extension("KHR_texture_basisu"));
   if (!basis) {
-    document.warn("texture source", texture, "the texture has no image in PNG, JPEG or WebP format: it is left out");
+    document.warn("texture source", texture,
+                  "the texture has no image in PNG, JPEG or WebP format: a neutral value stands in");
     return {};
   }
   const auto uri = basis->find("uri");
@@ -64,7 +66,9 @@ std::optional<Value> find_image(Document& document, const Value& texture) {
   document.warn("KHR_texture_basisu", texture,
                 "KHR_texture_basisu: KTX2 images such as " +
                     (is_file ? file_in_quotes(uri->text()) : basis->location().file) +
-                    " cannot be read: textures without another image are left out; convert them to PNG or WebP");
+                    " cannot be read: neutral values stand in for textures without another image. Convert the file "
+                    "with \"gltf-transform ktxdecompress IN OUT\" (of npm's @gltf-transform/cli and Khronos' "
+                    "KTX-Software)");
   return {};
 }
 
@@ -74,7 +78,7 @@ bool read_image(Document& document, const Value& image, ImageTexture& texture) {
   if (!uri || uri->text().starts_with("data:"))
     return document.reads([&] { texture.embedded = document.embedded_image(image); });
   texture.filename = document.add_file(*uri).string();
-  return true;
+  return !document.leaves_out(texture.filename);
 }
 
 // (u', v') = T R S (u, v) in glTF's coordinates, whose v runs down the image, with the conversions between v and t
@@ -101,14 +105,14 @@ std::optional<TextureUse> find_texture(Document& document, const Value& owner, s
   const auto info = owner.find(key);
   if (!info) return {};
   const Value texture = document.follow("textures", info->at("index"));
-  const auto image = find_image(document, texture);
-  if (!image) return {};
-  TextureUse use;
-  read_sampler(document, texture, use.image);
-  if (!read_image(document, *image, use.image)) return {};
+  const auto source = find_image(document, texture);
+  ImageTexture image;
+  if (!source || !read_image(document, *source, image)) return TextureUse{};
+  read_sampler(document, texture, image);
   const auto transform = info->extension("KHR_texture_transform");
-  use.image.mapping = mapping(transform ? &*transform : nullptr);
+  image.mapping = mapping(transform ? &*transform : nullptr);
   constexpr std::uint64_t most_sets = 1024;
+  TextureUse use{std::move(image)};
   use.uv_set = static_cast<std::size_t>(info->find("texCoord") ? info->at("texCoord").integer(most_sets) : 0);
   if (transform && transform->find("texCoord"))
     use.uv_set = static_cast<std::size_t>(transform->at("texCoord").integer(most_sets));

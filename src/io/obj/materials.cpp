@@ -27,6 +27,7 @@ struct Source {
   int illumination = 2;
   std::optional<ImageTexture> map_kd, map_ks, map_ke, map_d, map_pr, map_pm, norm, bump;
   float bump_multiplier = 1;
+  bool lost_colours = false, lost_emission = false;  ///< their images are missing and left out
   std::map<std::string, File> files;
 };
 
@@ -151,6 +152,7 @@ class MaterialFile {
   bool read_map(std::string_view name, Source& m) {
     if (name == "map_bump" || name == "bump") {
       m.bump = read_image(m, &m.bump_multiplier);
+      if (is_left_out(*m.bump)) m.bump.reset();
       return true;
     }
     const std::array<std::pair<std::string_view, std::optional<ImageTexture>*>, 9> maps = {{{"map_kd", &m.map_kd},
@@ -165,9 +167,21 @@ class MaterialFile {
     for (const auto& [known, target] : maps) {
       if (known != name || ((name == "map_ns" || name == "map_refl") && !by_blender_)) continue;
       *target = read_image(m, nullptr);
+      if (is_left_out(**target)) lose(*target, m);
       return true;
     }
     return false;
+  }
+
+  bool is_left_out(const ImageTexture& image) const {
+    return access_ != nullptr && access_->skip_missing && access_->is_missing(image.filename);
+  }
+  // What stands in is the neutral value of the image's role: grey colours and no emission, else what there is without
+  // it.
+  static void lose(std::optional<ImageTexture>& image, Source& m) {
+    image.reset();
+    m.lost_colours = m.lost_colours || &image == &m.map_kd;
+    m.lost_emission = m.lost_emission || &image == &m.map_ke;
   }
 
   // Options, then a file name that may contain blanks. `multiplier`: of a bump map, else null.
@@ -274,11 +288,12 @@ class MaterialFile {
                           ((m.illumination == 4 || m.illumination == 9) && !fades && m.index.value_or(1) > 1);
     const bool mirrors = m.illumination == 3 || m.illumination == 5 || m.illumination == 8;
     MetallicRoughness material;
-    material.base_color = add_colour(m, m.kd, m.map_kd);
+    const Rgb grey = 0.5f * (is_black(m.kd) ? Rgb{1, 1, 1} : m.kd);
+    material.base_color = add_colour(m, m.lost_colours ? grey : m.kd, m.map_kd);
     add_relief(m, material);
     if (m.index && *m.index > 1) material.eta = *m.index;
     if (refracts && !physical) return add_node(m, material, glass(m, material.eta));
-    if (mirrors && !physical && is_black(m.kd) && !m.map_kd)
+    if (mirrors && !physical && is_black(m.kd) && !m.map_kd && !m.lost_colours)
       return add_node(m, material,
                       ConductorMaterial{.reflectance = SpectrumParameter{RgbSpectrum{m.ks}, {}},
                                         .roughness = {{0, {}}, {0, {}}, false}});
@@ -307,6 +322,15 @@ class MaterialFile {
     return static_cast<Index>(scene_.materials.size() - 1);
   }
 
+  // Without map_d, the alpha of map_Kd, by which most programs cut out leaves and fences.
+  FloatParameter alpha_of(const Source& m, float opacity) {
+    if (!m.map_kd) return {opacity, {}};
+    ImageTexture image = *m.map_kd;
+    image.channel = 3;
+    image.scale = opacity;
+    return add_float(m, image, image.encoding);  // as the colours: the image is decoded once; alpha is linear anyway
+  }
+
   void add(const Source& m) {
     Surface surface;
     surface.files = m.files;
@@ -319,8 +343,8 @@ class MaterialFile {
     if (m.map_d)
       surface.alpha = add_float(m, *m.map_d, Encoding::linear);
     else if (!is_glass)
-      surface.alpha = {opacity == 0 ? 1 : opacity, {}};
-    if (!is_black(m.ke) || m.map_ke) {
+      surface.alpha = alpha_of(m, opacity == 0 ? 1 : opacity);
+    if ((!is_black(m.ke) || m.map_ke) && !m.lost_emission) {
       AreaLight light;
       light.radiance = add_colour(m, m.ke, m.map_ke);
       light.location = m.location;

@@ -15,14 +15,6 @@ using Triangle = std::array<std::uint32_t, 3>;
 // Ear clipping takes time proportional to the cube of the number of corners.
 constexpr std::size_t most_corners = 1000;
 
-// Newell's area vector: its length is twice the area.
-glm::dvec3 area_vector(const std::vector<Point>& corners) {
-  glm::dvec3 sum(0);
-  for (std::size_t i = 0; i < corners.size(); ++i)
-    sum += glm::cross(glm::dvec3(corners[i] - corners[0]), glm::dvec3(corners[(i + 1) % corners.size()] - corners[0]));
-  return sum;
-}
-
 // The polygon in its plane, counter-clockwise.
 std::vector<glm::dvec2> flattened(const std::vector<Point>& corners, const glm::dvec3& normal) {
   const glm::dvec3 n = glm::abs(normal);
@@ -62,6 +54,13 @@ std::vector<Triangle> fan(std::size_t corners) {
 }
 
 }  // namespace
+
+glm::dvec3 area_vector(const std::vector<Point>& corners) {
+  glm::dvec3 sum(0);
+  for (std::size_t i = 0; i < corners.size(); ++i)
+    sum += glm::cross(glm::dvec3(corners[i] - corners[0]), glm::dvec3(corners[(i + 1) % corners.size()] - corners[0]));
+  return 0.5 * sum;
+}
 
 std::vector<Triangle> triangulate(const std::vector<Point>& corners, std::uint64_t& tests_left) {
   const std::size_t n = corners.size();

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <utility>
 
@@ -14,6 +13,8 @@
 #include "io/missing_files.h"
 #include "io/obj/materials.h"
 #include "io/obj/polygon.h"
+#include "io/obj/smoothing.h"
+#include "io/obj/texture_beside.h"
 #include "io/obj/words.h"
 #include "lanthorn/text.h"
 #include "math/hash.h"
@@ -24,13 +25,6 @@ namespace {
 
 using namespace description;
 
-constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
-
-/// A face's corner: indices of position, texture coordinates and normal, the latter two `none` where the file has none.
-struct Corner {
-  std::uint32_t v = none, vt = none, vn = none;
-  friend bool operator==(const Corner&, const Corner&) = default;
-};
 struct CornerHash {
   std::size_t operator()(const Corner& c) const {
     return mix_bits((std::uint64_t{c.v} << 32 | c.vt) ^ mix_bits(std::uint64_t{c.vn} + 1));
@@ -54,7 +48,9 @@ class Reader {
 
   ModelFile read() {
     while (words_.next_line()) read_line(words_.word("a keyword"));
+    add_bare_faces();
     for (auto& [key, part] : parts_) add_shape(key.material, part);
+    suggest_texture();
     std::vector<Index> lamps;
     for (Index i = 0; i < scene_.area_lights.size(); ++i)
       if (!scene_.area_lights[i].radiance.texture) lamps.push_back(i);
@@ -71,6 +67,13 @@ class Reader {
     bool has_uvs = false, has_normals = false;
     // clang-tidy 14 takes the comparison's 0 for a pointer.
     friend auto operator<=>(const PartKey&, const PartKey&) = default;  // NOLINT(modernize-use-nullptr)
+  };
+
+  /// Faces without normals of one material that follow each other.
+  struct BareRun {
+    std::string material;
+    std::size_t first_face = 0;
+    Word key;  // of the first face
   };
 
   void warn(const std::string& key, const SourceLocation& place, const std::string& message) {
@@ -92,12 +95,11 @@ class Reader {
     } else if (word == "f" || word == "fo") {
       read_face(key);
     } else if (word == "usemtl") {
-      material_ = words_.rest().text;
-      part_ = {nullptr, nullptr, nullptr, nullptr};
+      use_material(std::string(words_.rest().text));
     } else if (word == "mtllib") {
       read_libraries();
     } else if (word == "s") {
-      read_smoothing(key);
+      read_smoothing();
     } else if (word != "g" && word != "o") {
       warn("obj " + std::string(word), words_.location(key), in_quotes(word) + " is not supported: ignored");
     }
@@ -108,9 +110,19 @@ class Reader {
     return {x, y, words_.number("z")};
   }
 
-  void read_smoothing(const Word& key) {
-    const auto group = words_.find_word();
-    if (group && group->text != "off" && group->text != "0") smoothing_ = words_.location(key);
+  void use_material(const std::string& name) {
+    material_ = name;
+    part_ = {nullptr, nullptr, nullptr, nullptr};
+  }
+
+  void read_smoothing() {
+    names_smoothing_groups_ = true;
+    const auto word = words_.find_word();
+    if (!word || word->text == "off" || word->text == "0" || word->text == "null")
+      smoothing_group_ = flat_group;
+    else
+      smoothing_group_ =
+          smoothing_groups_.try_emplace(std::string(word->text), smoothing_groups_.size() + 1).first->second;
   }
 
   // One file, whose name may have blanks in it, or several between blanks.
@@ -215,13 +227,40 @@ class Reader {
       warn("small faces", words_.location(key), "faces of fewer than three corners are left out");
       return;
     }
-    const auto all_have = [&](std::uint32_t Corner::*member) {
-      return std::all_of(corners_.begin(), corners_.end(), [&](const Corner& c) { return c.*member != none; });
-    };
+    if (all_have(&Corner::vn)) return add_face(key);
+    const BareFace face{bare_corners_.size(), static_cast<std::uint32_t>(corners_.size()), smoothing_group_};
+    bare_corners_.insert(bare_corners_.end(), corners_.begin(), corners_.end());
+    bare_faces_.push_back(face);
+    if (bare_runs_.empty() || bare_runs_.back().material != material_)
+      bare_runs_.push_back({material_, bare_faces_.size() - 1, key});
+  }
+
+  // Faces without normals follow when all smoothing groups are known. Files without groups are mostly scans and models
+  // of textbooks, of many small triangles, or boxes and rooms: by angle, the former are smooth and the latter sharp.
+  void add_bare_faces() {
+    for (Corner& c : bare_corners_) c.vn = none;
+    if (!names_smoothing_groups_)
+      for (BareFace& face : bare_faces_) face.group = group_by_angle;
+    add_smooth_normals(positions_, bare_faces_, bare_corners_, normals_);
+    for (std::size_t r = 0; r < bare_runs_.size(); ++r) {
+      use_material(bare_runs_[r].material);
+      const std::size_t end = r + 1 < bare_runs_.size() ? bare_runs_[r + 1].first_face : bare_faces_.size();
+      for (std::size_t i = bare_runs_[r].first_face; i < end; ++i) {
+        const auto first = bare_corners_.begin() + static_cast<std::ptrdiff_t>(bare_faces_[i].first);
+        corners_.assign(first, first + bare_faces_[i].count);
+        add_face(bare_runs_[r].key);
+      }
+    }
+  }
+
+  bool all_have(std::uint32_t Corner::*member) const {
+    return std::all_of(corners_.begin(), corners_.end(), [&](const Corner& c) { return c.*member != none; });
+  }
+
+  // The face of the current corners, of the current material.
+  void add_face(const Word& key) {
     const bool has_uvs = all_have(&Corner::vt), has_normals = all_have(&Corner::vn);
     Part& part = part_for(has_uvs, has_normals, key);
-    if (!has_normals && smoothing_)
-      warn("smoothing", *smoothing_, "smoothing groups are not supported: faces without normals are flat");
     vertices_.clear();
     for (Corner c : corners_) {
       if (!has_uvs) c.vt = none;
@@ -238,7 +277,7 @@ class Reader {
       part.mesh.triangles.push_back({vertices_[a], vertices_[b], vertices_[c]});
     if (tests_left_ < polygon_.size())
       warn("polygons", words_.location(key),
-           "the polygons up to here have so many corners that later ones become triangle fans");
+           "the file's polygons have so many corners that from about here on they become triangle fans");
   }
 
   Part& part_for(bool has_uvs, bool has_normals, const Word& key) {
@@ -276,6 +315,7 @@ class Reader {
   void add_shape(const std::string& material, Part& part) {
     const Surface& s = surface(material, part.location);
     scene_.files.insert(s.files.begin(), s.files.end());
+    has_images_ = has_images_ || !s.files.empty();
     Shape shape;
     shape.geometry = std::move(part.mesh);
     shape.material = s.material;
@@ -283,6 +323,23 @@ class Reader {
     shape.alpha = s.alpha;
     shape.location = part.location;
     scene_.shapes.push_back(std::move(shape));
+  }
+
+  void suggest_texture() {
+    if (access_ == nullptr || has_images_ || uvs_.empty() || parts_.empty()) return;
+    const std::filesystem::path model = scene_.filename;
+    const auto picture = texture_beside(model);
+    if (!picture) return;
+    const std::string map = "\"map_Kd " + *picture + "\"", library = model.stem().string() + ".mtl";
+    const std::string& used = parts_.begin()->first.material;
+    const std::string material = used.empty() ? "skin" : used;
+    const std::string how = libraries_.empty()
+                                ? "begin the file with \"mtllib " + library + "\"" +
+                                      (used.empty() ? " and \"usemtl " + material + "\"" : "") + ", and write " +
+                                      library + " of the lines \"newmtl " + material + "\" and " + map
+                                : "add the line " + map + " to its material";
+    warn("texture beside", {scene_.filename, 1, 1},
+         "no material has a picture, but " + file_in_quotes(*picture) + " lies beside the file: to show it, " + how);
   }
 
   Words words_;
@@ -296,8 +353,14 @@ class Reader {
   std::vector<Point> positions_;
   std::vector<Normal> normals_;
   std::vector<Vec2> uvs_;
-  std::string material_;                     // current
-  std::optional<SourceLocation> smoothing_;  // of the last group that asks for it
+  std::string material_;  // current
+  std::map<std::string, std::uint32_t> smoothing_groups_;
+  std::uint32_t smoothing_group_ = flat_group;  // current
+  bool names_smoothing_groups_ = false, has_images_ = false;
+  // Faces without normals, in the order of the file.
+  std::vector<BareFace> bare_faces_;
+  std::vector<Corner> bare_corners_;
+  std::vector<BareRun> bare_runs_;
   std::map<PartKey, Part> parts_;
   std::array<Part*, 4> part_{};  // of the current material, by attributes
   // Of the current face.

@@ -482,8 +482,13 @@ void Assembler::resolve_references(description::Shape& shape) {
       throw Error(reference.place.location(), "float texture " + in_quotes(reference.name) + " is not defined");
     texture = it->second;
   };
+  const auto is_lost = [&](const std::optional<Index>& texture) {
+    return texture && context_.lost_float_textures.count(*texture) > 0;
+  };
   resolve(shape.alpha.texture);
+  if (is_lost(shape.alpha.texture)) shape.alpha = {1, {}};
   if (shape.displacement) resolve(shape.displacement->height.texture);
+  if (shape.displacement && is_lost(shape.displacement->height.texture)) shape.displacement.reset();
   const auto& material = context_.scene.materials[shape.material].node;
   if (shape.area_light && std::holds_alternative<description::InterfaceMaterial>(material)) {
     context_.warn("interface emitter", shape.location,

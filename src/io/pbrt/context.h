@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -28,6 +29,8 @@ struct Context {
   ColorSpace color_space = ColorSpace::srgb;  ///< current
   std::unordered_map<std::string, description::Index> float_textures;
   std::unordered_map<std::string, description::Index> spectrum_textures;
+  /// Images that are missing and left out, and multiples ("scale") of them. Whoever uses one has its neutral value.
+  std::set<description::Index> lost_float_textures, lost_spectrum_textures;
   std::unordered_map<std::string, description::Index> named_materials;  ///< built so far
   std::unordered_map<std::string, description::Index> measured_brdfs;   ///< by file name
   std::size_t spectrum_bytes_left = std::size_t{1} << 28;               ///< of files that are read, each time anew
@@ -42,6 +45,10 @@ struct Context {
   /// `find_file` finds it.
   std::filesystem::path add_file(const std::string& name, const SourceLocation& location);
   std::filesystem::path add_file(const std::string& name, Place place) { return add_file(name, place.location()); }
+  /// True if this file of the scene is missing and shall be left out.
+  bool leaves_out(const std::filesystem::path& path) const {
+    return access != nullptr && access->skip_missing && access->is_missing(path);
+  }
   /// True if the file is missing and may be reported later, together with others; until then the reader goes on without
   /// it. `problem`: the error to report if it is the only one.
   bool defer_missing(const std::filesystem::path& path, const Error& problem);

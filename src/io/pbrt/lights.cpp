@@ -147,13 +147,14 @@ Light make_light(const std::string& kind, const ParameterList& list, const Trans
 
 namespace {
 
-// The image of an emitter is a bilinear texture, its top at v = 1.
-Index emission_image(const std::string& name, const SourceLocation& location, Context& context) {
+// The image of an emitter is a bilinear texture, its top at v = 1. Black if it is missing and left out.
+SpectrumParameter emission_image(const std::string& name, const SourceLocation& location, Context& context) {
   ImageTexture image;
   image.filename = context.add_file(name, location).string();
+  if (context.leaves_out(image.filename)) return {0.0f, {}};
   image.wrap = Wrap::clamp;
   context.scene.spectrum_textures.push_back({image, location});
-  return static_cast<Index>(context.scene.spectrum_textures.size() - 1);
+  return {white(context.color_space), static_cast<Index>(context.scene.spectrum_textures.size() - 1)};
 }
 
 }  // namespace
@@ -169,7 +170,7 @@ AreaLight make_area_light(const std::string& kind, const ParameterList& list, Co
   light.power = find_positive(list, "power");
   if (const auto name = list.find_string("filename"); name && !name->empty()) {
     if (list.has("L")) throw list.error("filename", "cannot be given together with \"L\"");
-    light.radiance.texture = emission_image(*name, light.location, context);
+    light.radiance = emission_image(*name, light.location, context);
   }
   report_unused(list, context);
   return light;

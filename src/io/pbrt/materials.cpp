@@ -90,8 +90,11 @@ MaterialNode diffuse(const ParameterList& list, Context& context) {
 }
 
 MaterialNode diffuse_transmission(const ParameterList& list, Context& context) {
-  return DiffuseTransmissionMaterial{reflectance(list, "reflectance", 0.25f, context),
-                                     reflectance(list, "transmittance", 0.25f, context), list.get("scale", 1.0f)};
+  const SpectrumParameter transmittance = names_lost_spectrum_texture(list, "transmittance", context)
+                                              ? SpectrumParameter{0.0f, {}}
+                                              : reflectance(list, "transmittance", 0.25f, context);
+  return DiffuseTransmissionMaterial{reflectance(list, "reflectance", 0.25f, context), transmittance,
+                                     list.get("scale", 1.0f)};
 }
 
 MaterialNode conductor(const ParameterList& list, Context& context) {

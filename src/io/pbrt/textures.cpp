@@ -19,11 +19,16 @@ namespace {
 using namespace description;
 
 // The differences between float and spectrum textures.
+constexpr float grey_input = 0.5f;  // in place of an input that is lost
+
 struct FloatKind {
   using Parameter = FloatParameter;
   using Texture = FloatTexture;
   static Parameter get(const ParameterList& list, std::string_view name, float otherwise, Context& context) {
-    return float_or_texture(list, name, otherwise, context);
+    return float_or_texture(list, name, names_lost(list, name, context) ? grey_input : otherwise, context);
+  }
+  static bool names_lost(const ParameterList& list, std::string_view name, const Context& context) {
+    return names_lost_float_texture(list, name, context);
   }
 };
 struct SpectrumKind {
@@ -31,7 +36,11 @@ struct SpectrumKind {
   using Texture = SpectrumTexture;
   // The use of the texture determines whether its values are reflectances or light.
   static Parameter get(const ParameterList& list, std::string_view name, float otherwise, Context& context) {
-    return find_spectrum_or_texture(list, name, SpectrumRole::unbounded, context).value_or(Parameter{otherwise, {}});
+    return find_spectrum_or_texture(list, name, SpectrumRole::unbounded, context)
+        .value_or(Parameter{names_lost(list, name, context) ? grey_input : otherwise, {}});
+  }
+  static bool names_lost(const ParameterList& list, std::string_view name, const Context& context) {
+    return names_lost_spectrum_texture(list, name, context);
   }
 };
 
@@ -227,10 +236,19 @@ typename Kind::Texture make_texture(const std::string& kind, const Source& from,
   return texture;
 }
 
-void define(std::unordered_map<std::string, Index>& names, const std::string& name, std::size_t index,
+void define(std::unordered_map<std::string, Index>& names, const std::string& name, Index index,
             const ParameterList& list) {
-  if (!names.emplace(name, static_cast<Index>(index)).second)
+  if (!names.emplace(name, index).second)
     throw Error(list.place().location(), "texture " + in_quotes(name) + " is defined twice");
+}
+
+// Whether the texture is an image that is missing and left out, or a multiple of one.
+template <class Kind>
+bool is_lost(const typename Kind::Texture& texture, const std::string& kind, const ParameterList& list,
+             const Context& context) {
+  const auto* image = std::get_if<ImageTexture>(&texture.node);
+  return (image != nullptr && context.leaves_out(image->filename)) ||
+         (kind == "scale" && Kind::names_lost(list, "tex", context));
 }
 
 }  // namespace
@@ -239,7 +257,9 @@ void add_float_texture(const std::string& name, const std::string& kind, const P
                        const Transform& texture_to_world, Context& context) {
   auto texture =
       make_texture<FloatKind>(kind, {list, texture_to_world, context}, float_only, spectrum_only, "spectrum");
-  define(context.float_textures, name, context.scene.float_textures.size(), list);
+  const auto index = static_cast<Index>(context.scene.float_textures.size());
+  if (is_lost<FloatKind>(texture, kind, list, context)) context.lost_float_textures.insert(index);
+  define(context.float_textures, name, index, list);
   context.scene.float_textures.push_back(std::move(texture));
 }
 
@@ -247,7 +267,9 @@ void add_spectrum_texture(const std::string& name, const std::string& kind, cons
                           const Transform& texture_to_world, Context& context) {
   auto texture =
       make_texture<SpectrumKind>(kind, {list, texture_to_world, context}, spectrum_only, float_only, "float");
-  define(context.spectrum_textures, name, context.scene.spectrum_textures.size(), list);
+  const auto index = static_cast<Index>(context.scene.spectrum_textures.size());
+  if (is_lost<SpectrumKind>(texture, kind, list, context)) context.lost_spectrum_textures.insert(index);
+  define(context.spectrum_textures, name, index, list);
   context.scene.spectrum_textures.push_back(std::move(texture));
 }
 

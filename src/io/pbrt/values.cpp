@@ -113,8 +113,34 @@ std::optional<std::string> texture_name(const ParameterList& list, std::string_v
   return names[0];
 }
 
+namespace {
+
+bool names_one_of(const std::set<Index>& lost, const std::unordered_map<std::string, Index>& textures,
+                  const ParameterList& list, std::string_view name) {
+  const auto texture = texture_name(list, name);
+  const auto found = texture ? textures.find(*texture) : textures.end();
+  return found != textures.end() && lost.count(found->second) > 0;
+}
+
+// In place of a texture that is lost: grey surfaces, no emission, else the parameter's default.
+std::optional<description::SpectrumParameter> neutral_spectrum(SpectrumRole role) {
+  if (role == SpectrumRole::unbounded) return {};
+  return description::SpectrumParameter{role == SpectrumRole::albedo ? 0.5f : 0.0f, {}};
+}
+
+}  // namespace
+
+bool names_lost_float_texture(const ParameterList& list, std::string_view name, const Context& context) {
+  return names_one_of(context.lost_float_textures, context.float_textures, list, name);
+}
+
+bool names_lost_spectrum_texture(const ParameterList& list, std::string_view name, const Context& context) {
+  return names_one_of(context.lost_spectrum_textures, context.spectrum_textures, list, name);
+}
+
 std::optional<description::SpectrumParameter> find_spectrum_or_texture(const ParameterList& list, std::string_view name,
                                                                        SpectrumRole role, Context& context) {
+  if (names_lost_spectrum_texture(list, name, context)) return neutral_spectrum(role);
   if (const auto texture = texture_name(list, name))
     return description::SpectrumParameter{1.0f, lookup(context.spectrum_textures, "spectrum", list, name, *texture)};
   auto value = find_spectrum(list, name, role, context);
@@ -124,6 +150,7 @@ std::optional<description::SpectrumParameter> find_spectrum_or_texture(const Par
 
 std::optional<description::FloatParameter> find_float_or_texture(const ParameterList& list, std::string_view name,
                                                                  Context& context) {
+  if (names_lost_float_texture(list, name, context)) return {};
   if (const auto texture = texture_name(list, name))
     return description::FloatParameter{1.0f, lookup(context.float_textures, "float", list, name, *texture)};
   const auto value = list.find_float(name);

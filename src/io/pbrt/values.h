@@ -16,12 +16,13 @@ namespace lanthorn::pbrt {
 std::optional<description::SpectrumValue> find_spectrum(const ParameterList& list, std::string_view name,
                                                         description::SpectrumRole role, Context& context);
 
-/// As `find_spectrum`, or a "texture". An Error if no spectrum texture of that name is defined.
+/// As `find_spectrum`, or a "texture". One that is lost (see Context) is grey as a reflectance, 0 as light, else empty.
+/// An Error if no spectrum texture of that name is defined.
 std::optional<description::SpectrumParameter> find_spectrum_or_texture(const ParameterList& list, std::string_view name,
                                                                        description::SpectrumRole role,
                                                                        Context& context);
 
-/// A "float" or a float "texture".
+/// A "float" or a float "texture"; empty if that is lost.
 std::optional<description::FloatParameter> find_float_or_texture(const ParameterList& list, std::string_view name,
                                                                  Context& context);
 description::FloatParameter float_or_texture(const ParameterList& list, std::string_view name, float otherwise,
@@ -29,6 +30,10 @@ description::FloatParameter float_or_texture(const ParameterList& list, std::str
 
 /// A "float". An Error unless it is above 0.
 float positive(const ParameterList& list, std::string_view name, float otherwise);
+
+/// True if the parameter names a texture that is lost (see Context).
+bool names_lost_float_texture(const ParameterList& list, std::string_view name, const Context& context);
+bool names_lost_spectrum_texture(const ParameterList& list, std::string_view name, const Context& context);
 
 /// The name in a "texture" parameter. Empty if the parameter is missing or of another type.
 std::optional<std::string> texture_name(const ParameterList& list, std::string_view name);

@@ -164,6 +164,93 @@ TEST_F(MissingFiles, OfGltfScenes) {
       << error_of("a.gltf");
 }
 
+// What stands in for a texture depends on what it is for.
+TEST_F(MissingFiles, TexturesOfGltfHaveTheNeutralValueOfTheirRole) {
+  const std::string models = LANTHORN_SOURCE_DIR "/tests/scenes/models/";
+  ReadOptions skip;
+  skip.skip_missing = true;
+  const SceneDescription dark = read_scene(models + "emissive-missing.gltf", skip);
+  EXPECT_TRUE(dark.area_lights.empty()) << "does not glow";
+  EXPECT_EQ(std::get<description::RgbSpectrum>(
+                std::get<description::PlasticMaterial>(dark.materials.at(0).node).reflectance.value)
+                .rgb,
+            (Rgb{0.4f, 0.05f, 0.05f}));
+
+  const auto material_of = [&](const std::string& material) {
+    dir_.write("m.gltf", R"({"asset": {"version": "2.0"}, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+      "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "material": 0}]}],
+      "textures": [{"source": 0}], "images": [{"uri": "lost.png"}], "materials": [)" +
+                             material + R"(],
+      "buffers": [{"byteLength": 36, "uri": "triangle.bin"}], "bufferViews": [{"buffer": 0, "byteLength": 36}],
+      "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}]})");
+    const std::vector<float> points{0, 0, 0, 1, 0, 0, 0, 1, 0};
+    dir_.write("triangle.bin", {reinterpret_cast<const char*>(points.data()), points.size() * sizeof(float)});
+    return read_without("m.gltf");
+  };
+  const std::string lost = R"({"index": 0})";
+  const SceneDescription plain = material_of(
+      R"({"alphaMode": "MASK", "normalTexture": )" + lost + R"(, "pbrMetallicRoughness": {"baseColorTexture": )" +
+      lost +
+      R"(, "baseColorFactor": [1, 0.5, 0, 1], "metallicFactor": 0, "roughnessFactor": 0.5, "metallicRoughnessTexture": )" +
+      lost + R"(}, "extensions": {"KHR_materials_transmission": {"transmissionFactor": 1, "transmissionTexture": )" +
+      lost + R"(}, "KHR_materials_clearcoat": {"clearcoatFactor": 1, "clearcoatTexture": )" + lost + "}}}");
+  const description::Material& m = plain.materials.at(plain.shapes.at(0).material);
+  const auto& plastic = std::get<description::PlasticMaterial>(m.node);
+  EXPECT_FALSE(m.normal_map);
+  EXPECT_EQ(std::get<description::RgbSpectrum>(plastic.reflectance.value).rgb, (Rgb{0.5f, 0.25f, 0}));
+  EXPECT_EQ(plastic.roughness.u.value, 0.25f) << "the square of what the factor says";
+  EXPECT_EQ(plain.shapes.at(0).alpha.value, 1);
+  EXPECT_FALSE(plain.shapes.at(0).alpha.texture);
+  const SceneDescription metal = material_of(R"({"pbrMetallicRoughness": {"metallicRoughnessTexture": )" + lost + "}}");
+  EXPECT_TRUE(
+      std::holds_alternative<description::ConductorMaterial>(metal.materials.at(metal.shapes.at(0).material).node));
+  EXPECT_NO_THROW(build_scene(plain));
+}
+
+TEST_F(MissingFiles, TexturesOfPbrtAndObjHaveTheNeutralValueOfTheirRole) {
+  const std::string lost =
+      "Texture \"f\" \"float\" \"imagemap\" \"string filename\" \"no.png\"\n"
+      "Texture \"s\" \"spectrum\" \"imagemap\" \"string filename\" \"no.png\"\n"
+      "Texture \"f2\" \"float\" \"scale\" \"texture tex\" \"f\" \"float scale\" 3\n"
+      "Texture \"s2\" \"spectrum\" \"scale\" \"texture tex\" \"s\" \"float scale\" 3\n";
+  dir_.write("a.pbrt",
+             "WorldBegin\n" + lost +
+                 "AreaLightSource \"diffuse\" \"string filename\" \"no.png\"\n"
+                 "Material \"diffusetransmission\" \"texture reflectance\" \"s2\" \"texture transmittance\" \"s\""
+                 " \"texture displacement\" \"f\"\n"
+                 "Shape \"sphere\" \"texture alpha\" \"f2\"\n"
+                 "Material \"conductor\" \"texture reflectance\" \"s\" \"texture roughness\" \"f2\"\n"
+                 "Shape \"sphere\"\n");
+  const SceneDescription scene = read_without("a.pbrt");
+  const auto number = [](const description::SpectrumParameter& p) {
+    EXPECT_FALSE(p.texture);
+    return std::get<float>(p.value);
+  };
+  EXPECT_EQ(number(scene.area_lights.at(0).radiance), 0);
+  const description::Material& leaf = scene.materials.at(scene.shapes.at(0).material);
+  EXPECT_FALSE(leaf.displacement);
+  const auto& sheet = std::get<description::DiffuseTransmissionMaterial>(leaf.node);
+  EXPECT_EQ(number(sheet.reflectance), 0.5f);
+  EXPECT_EQ(number(sheet.transmittance), 0);
+  EXPECT_EQ(scene.shapes.at(0).alpha.value, 1);
+  EXPECT_FALSE(scene.shapes.at(0).alpha.texture);
+  const auto& metal = std::get<description::ConductorMaterial>(scene.materials.at(scene.shapes.at(1).material).node);
+  EXPECT_EQ(number(*metal.reflectance), 0.5f);
+  EXPECT_EQ(metal.roughness.u.value, 0);
+  EXPECT_NO_THROW(build_scene(scene));
+
+  dir_.write("a.obj", "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl m\nf 1 2 3\n");
+  dir_.write("a.mtl", "newmtl m\nmap_Kd no.png\nKd 1 .5 0\nKe 1 1 1\nmap_Ke no.png\nmap_d no.png\nbump no.png\n");
+  const SceneDescription model = read_without("a.obj");
+  EXPECT_TRUE(model.area_lights.empty());
+  EXPECT_EQ(model.shapes.at(0).alpha.value, 1);
+  EXPECT_FALSE(model.shapes.at(0).alpha.texture);
+  const description::Material& m = model.materials.at(model.shapes.at(0).material);
+  EXPECT_FALSE(m.normal_map || m.displacement);
+  EXPECT_EQ(std::get<description::RgbSpectrum>(std::get<description::DiffuseMaterial>(m.node).reflectance.value).rgb,
+            (Rgb{0.5f, 0.25f, 0}));
+}
+
 TEST_F(MissingFiles, OfObjScenes) {
   dir_.write("a.obj", "mtllib a.mtl\nmtllib no.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl m\nf 1 2 3\n");
   dir_.write("a.mtl", "newmtl m\nmap_Kd no.png\nmap_d holes.png\n");
@@ -194,6 +281,9 @@ TEST_F(MissingFiles, AreLookedForByCaseAndByTheirLastPart) {
   };
   for (const auto& [name, found] :
        {std::pair("textures\\Wood.PNG", "Textures/wood.png"), std::pair("C:\\Users\\me\\bark.png", "Bark.png"),
+        std::pair("E:/models/ring/textures/wood.png", "Textures/wood.png"),
+        std::pair("E:/wood.png", "Textures/wood.png"), std::pair("\\\\server\\share\\Bark.png", "Bark.png"),
+        std::pair("..\\..\\maps\\Bark.png", "Bark.png"), std::pair("wood.png", "Textures/wood.png"),
         std::pair("/home/me/Bark.png", "Bark.png")}) {
     const SceneDescription scene = image_of(name);
     ASSERT_EQ(scene.files.size(), 2u) << "the library and the image";
@@ -207,6 +297,12 @@ TEST_F(MissingFiles, AreLookedForByCaseAndByTheirLastPart) {
   dir_.write("b.pbrt",
              "WorldBegin\nTexture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"TEXTURES/wood.png\"\n");
   EXPECT_TRUE(contains(all_messages(read_without("b.pbrt")), "there is no file \"TEXTURES/wood.png\": "));
+  dir_.write("b.pbrt",
+             "WorldBegin\nTexture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"E:\\\\x\\\\bark.png\"\n");
+  EXPECT_TRUE(contains(all_messages(read_without("b.pbrt")), "Bark.png\" is read"));
+  // As downloads of Sketchfab have them.
+  dir_.write("source/a.pbrt", "WorldBegin\nTexture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"wood.png\"\n");
+  EXPECT_TRUE(contains(all_messages(read_without("source/a.pbrt")), "wood.png\" is read"));
 }
 
 // Nothing outside the sandbox is listed or found.

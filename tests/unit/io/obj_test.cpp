@@ -9,7 +9,12 @@
 
 #include "io/obj/polygon.h"
 #include "io/obj/reader.h"
+#include "lanthorn/image_file.h"
+#include "lanthorn/scene.h"
+#include "math/vec.h"
+#include "scene/scene.h"
 #include "support/error_text.h"
+#include "support/temporary_dir.h"
 
 namespace lanthorn::obj_test {
 namespace {
@@ -165,8 +170,136 @@ TEST(Obj, WhatIsNotReadIsSaidOnce) {
                                       "t.obj:2:1: vertex colours are not supported: ignored",
                                       "t.obj:7:1: \"l\" is not supported: ignored (and 1 more like it)",
                                       "t.obj:9:1: faces of fewer than three corners are left out",
-                                      "t.obj:6:1: smoothing groups are not supported: faces without normals are flat",
                                       "t.obj:11:1: there is no material \"gold\": grey is used"}));
+}
+
+const std::string models = LANTHORN_SOURCE_DIR "/tests/scenes/models/";
+
+std::vector<std::string> messages(const std::filesystem::path& file) { return warnings(read_scene(file)); }
+
+// The largest difference of a corner's normal from that of its triangle, degrees.
+float bend(const SceneDescription& scene) {
+  float largest = 0;
+  for (const Shape& shape : scene.shapes) {
+    const auto& m = std::get<TriangleMesh>(shape.geometry);
+    if (m.normals.empty()) continue;
+    for (const auto& t : m.triangles) {
+      const Vec3 n = normalize(cross(m.positions[t[1]] - m.positions[t[0]], m.positions[t[2]] - m.positions[t[0]]));
+      for (const std::uint32_t i : t) largest = std::fmax(largest, std::acos(std::fmin(dot(n, m.normals[i]), 1.0f)));
+    }
+  }
+  return largest * 180 / pi;
+}
+
+// An octagonal tube: sides of one group, which are round, and caps of none.
+TEST(ObjSmoothing, GroupsAreSmoothAndOtherFacesFlat) {
+  const SceneDescription scene = read_scene(models + "smooth-tube.obj");
+  EXPECT_TRUE(warnings(scene).empty());
+  std::size_t round = 0, flat = 0;
+  for (const Shape& shape : scene.shapes) {
+    const auto& m = std::get<TriangleMesh>(shape.geometry);
+    for (const auto& t : m.triangles) {
+      const bool is_cap = m.positions[t[0]].y == m.positions[t[1]].y && m.positions[t[0]].y == m.positions[t[2]].y;
+      ++(is_cap ? flat : round);
+      ASSERT_EQ(m.normals.empty(), is_cap);
+      for (const std::uint32_t i : t) {
+        if (is_cap) continue;
+        const Vec3 radial = Vec3(m.positions[i].x, 0, m.positions[i].z);
+        EXPECT_LT(length(m.normals[i] - radial), 2e-4f);  // the file has four digits
+      }
+    }
+  }
+  EXPECT_EQ(round, 16u);
+  EXPECT_EQ(flat, 12u);
+}
+
+// Two squares that meet at the y axis, the second turned about it by this angle out of the first's plane.
+std::string hinge(float degrees) {
+  const float a = degrees * pi / 180;
+  return "v -1 0 0\nv 0 0 0\nv 0 1 0\nv -1 1 0\nv " + std::to_string(std::cos(a)) + " 0 " +
+         std::to_string(-std::sin(a)) + "\nv " + std::to_string(std::cos(a)) + " 1 " + std::to_string(-std::sin(a)) +
+         "\n";
+}
+const std::string left = "f 1 2 3 4\n", right = "f 2 5 6 3\n";
+
+TEST(ObjSmoothing, GroupsDecideWhereTheFileHasAny) {
+  const std::string sharp = hinge(60);
+  EXPECT_NEAR(bend(read(sharp + "s 1\n" + left + right)), 30, 0.01f);
+  EXPECT_NEAR(bend(read(sharp + "usemtl a\ns 7\n" + left + "usemtl b\n" + right)), 30, 0.01f) << "across materials";
+  EXPECT_NEAR(bend(read(sharp + "s on\n" + left + right)), 30, 0.01f);
+  EXPECT_NEAR(bend(read(sharp + "s 1\n" + left + "s off\ns 1\n" + right)), 30, 0.01f);
+  EXPECT_EQ(bend(read(sharp + "s 1\n" + left + "s 2\n" + right)), 0);
+  EXPECT_EQ(bend(read(sharp + "s 1\n" + left + "f 2 3 6 5\n")), 0) << "wound the other way";
+  for (const char* none : {"s off\n", "s 0\n", "s null\n", "s\n"})
+    EXPECT_EQ(bend(read(hinge(9) + none + left + right)), 0);
+  EXPECT_EQ(bend(read(hinge(9) + left + "s 1\n" + right)), 0) << "the first face has no group";
+  // Normals of the file count, whatever its groups.
+  EXPECT_EQ(mesh(read(sharp + "vn 0 1 0\ns 1\nf 1//1 2//1 3//1 4//1\n")).normals[0], Vec3(0, 1, 0));
+}
+
+TEST(ObjSmoothing, WithoutGroupsEdgesOfLessThan30DegreesAreSmooth) {
+  EXPECT_NEAR(bend(read(hinge(28) + left + right)), 14, 0.01f);
+  EXPECT_EQ(bend(read(hinge(32) + left + right)), 0);
+  const SceneDescription plane = read(hinge(0) + left + right);
+  ASSERT_EQ(plane.shapes.size(), 1u);
+  EXPECT_TRUE(mesh(plane).normals.empty()) << "flat faces need none";
+  // The widest angle counts most: of the three corners at the vertex, 90, 45 and 45 degrees, the latter two agree.
+  const SceneDescription fan = read("v 0 0 0\nv 1 0 0\nv 0 1 0\nv -1 .2 0\nv -1 .2 1\nf 1 2 3\nf 1 3 4\nf 1 4 5\n");
+  EXPECT_EQ(bend(fan), 0) << "a right angle stays";
+  // Faces without area, and edges of three faces.
+  EXPECT_EQ(read("v 0 0 0\nv 1 0 0\nf 1 1 1\nf 1 2 1\ns 1\nf 1 2 1\n").shapes.size(), 1u);
+  EXPECT_EQ(read("s 1\n" + triangle + "v 0 0 1\nf 1 2 3\nf 2 1 4\nf 2 1 3\n").shapes.size(), 1u);
+}
+
+// As in the collections of students' renderers, whose models come with a picture and without an MTL file.
+TEST(Obj, APictureCalledAfterTheModelIsSuggested) {
+  test::TemporaryDir dir;
+  const std::string faces = triangle + "vt 0 0\nf 1/1 2/1 3/1\n";
+  const auto said = [&](const std::string& text) {
+    const std::vector<std::string> all = messages(dir.write("Head.obj", text));
+    return all.empty() ? "" : all.back().substr(dir.path().string().size() + 1);
+  };
+  EXPECT_EQ(said(faces), "");
+  dir.write("head_nm.png", "");
+  dir.write("headless_diffuse.png", "");
+  EXPECT_EQ(said(faces), "");
+  dir.write("head_d.png", "");
+  dir.write("head_Diffuse.TGA", "");
+  EXPECT_EQ(
+      said(faces),
+      "Head.obj:1:1: no material has a picture, but \"head_Diffuse.TGA\" lies beside the file: to show it, begin "
+      "the file with \"mtllib Head.mtl\" and \"usemtl skin\", and write Head.mtl of the lines \"newmtl skin\" and "
+      "\"map_Kd head_Diffuse.TGA\"");
+  EXPECT_TRUE(said(triangle + "f 1 2 3\n").empty()) << "no texture coordinates";
+  dir.write("a.mtl", "newmtl m\n");
+  EXPECT_TRUE(said("mtllib a.mtl\nusemtl m\n" + faces)
+                  .ends_with("to show it, add the line \"map_Kd head_Diffuse.TGA\" "
+                             "to its material"));
+  dir.write("a.mtl", "newmtl m\nmap_Kd head_d.png\n");
+  EXPECT_EQ(said("mtllib a.mtl\nusemtl m\n" + faces), "");
+}
+
+// A card whose picture has holes.
+TEST(Obj, TransparentTexelsOfColoursAreHoles) {
+  const Scene scene(read_scene(models + "leaf.obj"));
+  const auto is_hit = [&](float u, float v) {
+    return scene.intersect(Ray({2 * u - 1, 2 * v, 1}, {0, 0, -1})).has_value();
+  };
+  const Image leaf = read_image(models + "leaf.png");
+  ASSERT_EQ(leaf.channel_count(), 4u);
+  int holes = 0, solid = 0;
+  for (int y = 0; y < leaf.height; ++y)
+    for (int x = 0; x < leaf.width; ++x) {
+      const float alpha = leaf.at(x, y, 3);
+      if (alpha > 0 && alpha < 1) continue;
+      ++(alpha > 0 ? solid : holes);
+      EXPECT_EQ(is_hit((static_cast<float>(x) + 0.5f) / static_cast<float>(leaf.width),
+                       1 - (static_cast<float>(y) + 0.5f) / static_cast<float>(leaf.height)),
+                alpha > 0)
+          << x << " " << y;
+    }
+  EXPECT_GT(holes, 9);
+  EXPECT_GT(solid, 9);
 }
 
 // The parts of an MTL file with this material.
@@ -227,6 +360,19 @@ TEST(Mtl, InvisibleAndNamelessMaterialsAreShown) {
             (Rgb{1, 0, 0}));
   EXPECT_EQ(warnings(nameless),
             std::vector<std::string>{"dir/m.mtl:1:7: the material has no name: usemtl without a name means it"});
+}
+
+TEST(Mtl, TheAlphaOfColoursCountsWhereNoMapOfAlphaIsGiven) {
+  const auto alpha_of = [](const SceneDescription& scene) {
+    return std::get<ImageTexture>(scene.float_textures.at(scene.shapes.at(0).alpha.texture.value()).node);
+  };
+  const ImageTexture colours = alpha_of(with_mtl("d 0.5\nmap_Kd leaf.png\n"));
+  EXPECT_EQ(colours.filename, "dir/leaf.png");
+  EXPECT_EQ(colours.channel, 3);
+  EXPECT_EQ(colours.scale, 0.5f);
+  EXPECT_EQ(alpha_of(with_mtl("map_Kd leaf.png\nd 0\n")).scale, 1) << "by mistake";
+  EXPECT_EQ(alpha_of(with_mtl("map_Kd leaf.png\nmap_d holes.png\n")).filename, "dir/holes.png");
+  EXPECT_FALSE(with_mtl("illum 7\nmap_Kd leaf.png\n").shapes.at(0).alpha.texture);
 }
 
 TEST(Mtl, AlphaAndEmission) {

@@ -4,11 +4,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
 
 #include "camera/view.h"
+#include "lanthorn/scene.h"
 #include "scene/scene.h"
 #include "support/gltf_writer.h"
 
@@ -319,6 +321,103 @@ TEST(StandIns, ClosedBoxesWithALampInsideAreSeenFromInside) {
   add_lamp(sunny, {0, 1.99f, 0});
   add_light(sunny, distant_light({0, 1, 3}, 10));
   EXPECT_FALSE(is_inside(seen_in_own_light(sunny), half));
+}
+
+const std::string models = LANTHORN_SOURCE_DIR "/tests/scenes/models/";
+
+// As large again as this factor says.
+SceneDescription scaled(SceneDescription scene, float factor) {
+  for (Shape& shape : scene.shapes)
+    for (Point& p : std::get<TriangleMesh>(shape.geometry).positions) p *= factor;
+  return scene;
+}
+// The number of these places that the stand-in camera sees.
+int count_seen(const SceneDescription& description, const std::vector<Point>& places) {
+  const View view = make_view(description.view);
+  const Point eye = eye_of(description);
+  const Scene scene(description);
+  return static_cast<int>(std::count_if(places.begin(), places.end(), [&](const Point& p) {
+    Ray ray(eye, normalize(p - eye));
+    ray.t_max = 0.999f * std::sqrt(distance_squared(p, eye));
+    return view.camera.connect(p, {0.5f, 0.5f}, 0.5f) && scene.visible(ray);
+  }));
+}
+
+// Of a room with three cards, open towards -x, all cards are seen; of a box with z up, open towards -y, the block and
+// the lamp, and the picture is upright.
+TEST(StandInRooms, AreSeenThroughTheirOpenSide) {
+  const SceneDescription room = read_scene(models + "room-open-x.obj");
+  EXPECT_LT(eye_of(room).x, -3);
+  EXPECT_EQ(count_seen(room, {{-1, 0.7f, -1.5f}, {0.5f, 1.2f, 0}, {-0.5f, 0.5f, 1.6f}}), 3);
+  const SceneDescription box = read_scene(models + "zup-cornell.obj");
+  EXPECT_LT(eye_of(box).y, -2);
+  EXPECT_EQ(count_seen(box, {{0.1f, -0.2f, 0.4f}, {0, 0, 1.98f}, {0.9f, 1, 1}}), 3);
+  const Camera camera = make_view(box.view).camera;
+  const auto low = camera.connect({0, 1, 0.1f}, {0.5f, 0.5f}, 0.5f),
+             high = camera.connect({0, 1, 1.9f}, {0.5f, 0.5f}, 0.5f);
+  ASSERT_TRUE(low && high);
+  EXPECT_LT(high->raster.y, low->raster.y - 100);
+}
+
+// Boxes with three things in them, open on any side, of any size, wound either way, lit by a lamp or not.
+TEST(StandInRooms, AreSeenThroughAnyOpenSideAtAnySize) {
+  const Vec3 x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
+  const std::vector<Vec3> outwards{x, -x, y, -y, z, -z};
+  for (std::size_t open = 0; open < 6; ++open)
+    for (const float side : {1.0f, -1.0f})
+      for (const float size : {1e-4f, 1.0f, 1e4f}) {
+        const std::vector<Shape> walls = {square(x, side * z, y),   square(-x, -side * z, y), square(y, side * x, z),
+                                          square(-y, -side * x, z), square(z, -side * x, y),  square(-z, side * x, y)};
+        std::vector<Shape> shapes{sphere({0.5f, -0.4f, 0.3f}, 0.2f), sphere({-0.5f, 0.4f, 0.1f}, 0.2f),
+                                  sphere({0, 0, -0.5f}, 0.2f)};
+        for (std::size_t i = 0; i < 6; ++i)
+          if (i != open) shapes.push_back(walls[i]);
+        const SceneDescription scene = scaled(scene_of(shapes), size);
+        for (const bool is_lit : {false, true}) {
+          SceneDescription seen_scene = scene;
+          if (is_lit) {
+            seen_scene.lights.emplace_back().node = description::PointLight{.from = Point(0, 0.7f, 0) * size};
+          }
+          add_stand_ins(seen_scene, {true, !is_lit, {{0}, false}});
+          EXPECT_GT(dot(eye_of(seen_scene) / size, outwards[open]), 1.5f)
+              << open << " side " << side << " size " << size << " lit " << is_lit << ": "
+              << seen_scene.warnings.back().message;
+        }
+      }
+}
+
+TEST(StandInRooms, AreFramedAlikeAtAnySize) {
+  const SceneDescription tiny = read_scene(models + "tiny-cornell.obj");
+  SceneDescription model = tiny;
+  model.view = {};
+  for (const float factor : {1.0f, 100.0f, 1e4f, 1e6f, 1e8f}) {
+    SceneDescription larger = scaled(model, factor);
+    add_stand_ins(larger, {true, false, {{0, 1, 2}, false}});
+    EXPECT_LT(length(eye_of(larger) / factor - eye_of(tiny)), 1e-3f * length(eye_of(tiny))) << factor;
+  }
+  // It is seen through its open side, as large as the picture allows.
+  EXPECT_GT(eye_of(tiny).z, 6e-5f);
+  EXPECT_LT(eye_of(tiny).z, 3e-4f);
+}
+
+// A house without a floor, as many models are, is seen from outside: from below nothing more is seen.
+TEST(StandInRooms, HousesWithoutAFloorAreNotSeenFromBelow) {
+  std::vector<Shape> house = room({2, 1, 1.5f}, {});
+  house.erase(house.begin() + 3);
+  EXPECT_GT(eye_of(seen(house, {{0}, false})).y, 0);
+}
+
+// A spot light in a closed figure on a stage: the file is lit as if it had no light, from outside.
+TEST(StandInLight, LightsThatMeshesEncloseGetTheHelpOfTheStudio) {
+  const SceneDescription scene = read_scene(models + "lamp-in-figure-spot.gltf");
+  const Point eye = eye_of(scene);
+  EXPECT_GT(std::sqrt(length_squared(eye)), 4);
+  ASSERT_EQ(scene.lights.size(), 2u);
+  EXPECT_TRUE(std::holds_alternative<description::InfiniteLight>(scene.lights[1].node));
+  EXPECT_TRUE(scene.view.film.measures_exposure) << "if the lamp does shine through";
+  const std::string& said = scene.warnings.back().message;
+  EXPECT_TRUE(said.starts_with("the file has no camera, and its lights are enclosed in closed meshes")) << said;
+  EXPECT_TRUE(said.ends_with("in a studio of three soft lamps, stands in")) << said;
 }
 
 TEST(StandIns, TheStudioIsTurnedToTheCamera) {

@@ -1,0 +1,162 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "io/obj/smoothing.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <tuple>
+
+#include "io/obj/polygon.h"
+#include "math/vec.h"
+
+namespace lanthorn::obj {
+
+namespace {
+
+class Smoother {
+ public:
+  Smoother(const std::vector<Point>& positions, std::span<const BareFace> faces, std::vector<Corner>& corners,
+           std::vector<Normal>& normals)
+      : positions_(positions), faces_(faces), corners_(corners), normals_(normals) {
+    face_normals_.reserve(faces.size());
+    face_of_.resize(corners.size());
+    for (std::size_t i = 0; i < faces.size(); ++i) {
+      face_normals_.push_back(normal_of(faces[i]));
+      for (std::size_t c = faces[i].first; c < faces[i].first + faces[i].count; ++c) face_of_[c] = i;
+    }
+    sort_corners_by_vertex();
+  }
+
+  void run() {
+    for (std::size_t v = 0; v + 1 < starts_.size(); ++v)
+      smooth_vertex(std::span(at_vertex_).subspan(starts_[v], starts_[v + 1] - starts_[v]));
+    for (std::size_t i = 0; i < faces_.size(); ++i)
+      if (is_flat(i))
+        for (Corner& c : corners_of(faces_[i])) c.vn = none;
+  }
+
+ private:
+  /// The edge from the vertex at hand to a neighbour, as one of the faces there has it.
+  struct Spoke {
+    std::uint32_t neighbour = none;
+    std::size_t corner = 0;  // among those of the vertex
+    bool is_outgoing = false;
+  };
+
+  std::span<Corner> corners_of(const BareFace& face) const { return std::span(corners_).subspan(face.first, face.count); }
+
+  // Unit, or 0 for a face without area.
+  glm::dvec3 normal_of(const BareFace& face) {
+    polygon_.clear();
+    for (const Corner& c : corners_of(face)) polygon_.push_back(positions_[c.v]);
+    const glm::dvec3 area = area_vector(polygon_);
+    const double length = glm::length(area);
+    return length > 0 && std::isfinite(length) ? area / length : glm::dvec3(0);
+  }
+
+  void sort_corners_by_vertex() {
+    starts_.assign(positions_.size() + 1, 0);
+    for (const Corner& c : corners_) ++starts_[c.v + std::size_t{1}];
+    std::partial_sum(starts_.begin(), starts_.end(), starts_.begin());
+    at_vertex_.resize(corners_.size());
+    std::vector<std::size_t> next = starts_;
+    for (std::size_t i = 0; i < corners_.size(); ++i) at_vertex_[next[corners_[i].v]++] = i;
+  }
+
+  std::uint32_t neighbour(std::size_t corner, bool is_outgoing) const {
+    const BareFace& face = faces_[face_of_[corner]];
+    const std::size_t i = corner - face.first;
+    return corners_[face.first + (i + (is_outgoing ? 1 : face.count - 1)) % face.count].v;
+  }
+
+  bool is_smooth(const Spoke& a, const Spoke& b, std::span<const std::size_t> corners) const {
+    constexpr double cosine = 0.8660254037844387;  // of 30 degrees
+    // Faces that run along the edge in the same direction show different sides.
+    if (a.neighbour != b.neighbour || a.is_outgoing == b.is_outgoing) return false;
+    const std::size_t first = face_of_[corners[a.corner]], second = face_of_[corners[b.corner]];
+    const std::uint32_t group = faces_[first].group;
+    return group == faces_[second].group && group != flat_group &&
+           (group != group_by_angle || glm::dot(face_normals_[first], face_normals_[second]) > cosine);
+  }
+
+  // Disjoint sets of corners.
+  std::size_t root(std::size_t i) {
+    while (joined_[i] != i) i = joined_[i] = joined_[joined_[i]];
+    return i;
+  }
+
+  void join_corners(std::span<const std::size_t> corners) {
+    spokes_.clear();
+    joined_.resize(corners.size());
+    std::iota(joined_.begin(), joined_.end(), std::size_t{0});
+    for (std::size_t i = 0; i < corners.size(); ++i)
+      for (const bool is_outgoing : {false, true})
+        spokes_.push_back({neighbour(corners[i], is_outgoing), i, is_outgoing});
+    std::sort(spokes_.begin(), spokes_.end(), [](const Spoke& a, const Spoke& b) {
+      return std::tie(a.neighbour, a.corner, a.is_outgoing) < std::tie(b.neighbour, b.corner, b.is_outgoing);
+    });
+    for (std::size_t i = 0; i + 1 < spokes_.size(); ++i)
+      if (is_smooth(spokes_[i], spokes_[i + 1], corners))
+        joined_[root(spokes_[i + 1].corner)] = root(spokes_[i].corner);
+  }
+
+  double angle_at(std::size_t corner) const {
+    const auto edge = [&](bool is_outgoing) {
+      return glm::dvec3(positions_[neighbour(corner, is_outgoing)]) - glm::dvec3(positions_[corners_[corner].v]);
+    };
+    const glm::dvec3 before = edge(false), after = edge(true);
+    return std::atan2(glm::length(glm::cross(before, after)), glm::dot(before, after));
+  }
+
+  void smooth_vertex(std::span<const std::size_t> corners) {
+    join_corners(corners);
+    sums_.assign(corners.size(), glm::dvec3(0));
+    for (std::size_t i = 0; i < corners.size(); ++i)
+      sums_[root(i)] += angle_at(corners[i]) * face_normals_[face_of_[corners[i]]];
+    indices_.assign(corners.size(), none);
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      const std::size_t r = root(i);
+      const double length = glm::length(sums_[r]);
+      if (faces_[face_of_[corners[i]]].group == flat_group || !(length > 0) || !std::isfinite(length)) continue;
+      if (indices_[r] == none) {
+        indices_[r] = static_cast<std::uint32_t>(normals_.size());
+        normals_.emplace_back(sums_[r] / length);
+      }
+      corners_[corners[i]].vn = indices_[r];
+    }
+  }
+
+  bool is_flat(std::size_t face) const {
+    constexpr float tolerance = 1e-4f;  // of unit vectors
+    const Normal n(face_normals_[face]);
+    const std::span<const Corner> own = corners_of(faces_[face]);
+    return std::all_of(own.begin(), own.end(), [&](const Corner& c) {
+      return c.vn == none || distance_squared(normals_[c.vn], n) < sqr(tolerance);
+    });
+  }
+
+  const std::vector<Point>& positions_;
+  std::span<const BareFace> faces_;
+  std::vector<Corner>& corners_;
+  std::vector<Normal>& normals_;
+  std::vector<glm::dvec3> face_normals_;
+  std::vector<std::size_t> face_of_;             // of each corner
+  std::vector<std::size_t> starts_, at_vertex_;  // corners by vertex
+  // Of the face or vertex at hand.
+  std::vector<Point> polygon_;
+  std::vector<Spoke> spokes_;
+  std::vector<std::size_t> joined_;
+  std::vector<glm::dvec3> sums_;
+  std::vector<std::uint32_t> indices_;
+};
+
+}  // namespace
+
+void add_smooth_normals(const std::vector<Point>& positions, std::span<const BareFace> faces,
+                        std::vector<Corner>& corners, std::vector<Normal>& normals) {
+  if (std::any_of(faces.begin(), faces.end(), [](const BareFace& f) { return f.group != flat_group; }))
+    Smoother(positions, faces, corners, normals).run();
+}
+
+}  // namespace lanthorn::obj
