@@ -11,15 +11,49 @@
 
 namespace lanthorn {
 
+namespace {
+
+// A direction as a face sees it: `major` along the face's axis.
+struct FaceCoordinates {
+  float s, t, major;
+};
 // The OpenGL specification, table of the selection of cube map faces.
-CubePoint cube_point(const Vec3& d) {
+FaceCoordinates on_face(int face, const Vec3& d) {
+  switch (face) {
+    case 0:
+      return {-d.z, -d.y, d.x};
+    case 1:
+      return {d.z, -d.y, -d.x};
+    case 2:
+      return {d.x, d.z, d.y};
+    case 3:
+      return {d.x, -d.z, -d.y};
+    case 4:
+      return {d.x, -d.y, d.z};
+    default:
+      return {-d.x, -d.y, -d.z};
+  }
+}
+Vec2 place_of(const FaceCoordinates& c) { return {0.5f * (c.s / c.major + 1), 0.5f * (c.t / c.major + 1)}; }
+
+int face_of(const Vec3& d) {
   const float ax = std::fabs(d.x), ay = std::fabs(d.y), az = std::fabs(d.z);
-  const auto on = [](int face, float s, float t, float major) {
-    return CubePoint{face, {0.5f * (s / major + 1), 0.5f * (t / major + 1)}};
-  };
-  if (ax >= ay && ax >= az) return d.x >= 0 ? on(0, -d.z, -d.y, ax) : on(1, d.z, -d.y, ax);
-  if (ay >= az) return d.y >= 0 ? on(2, d.x, d.z, ay) : on(3, d.x, -d.z, ay);
-  return d.z >= 0 ? on(4, d.x, -d.y, az) : on(5, -d.x, -d.y, az);
+  if (ax >= ay && ax >= az) return d.x >= 0 ? 0 : 1;
+  if (ay >= az) return d.y >= 0 ? 2 : 3;
+  return d.z >= 0 ? 4 : 5;
+}
+
+}  // namespace
+
+CubePoint cube_point(const Vec3& d) {
+  const int face = face_of(d);
+  return {face, place_of(on_face(face, d))};
+}
+
+std::optional<Vec2> place_on_face(int face, const Direction& d) {
+  constexpr float most_oblique = 0.25f;  // the corners of a face are at 1 / sqrt(3)
+  const FaceCoordinates c = on_face(face, d);
+  return c.major > most_oblique ? std::optional(place_of(c)) : std::nullopt;
 }
 
 CubeTexel cube_texel(const CubePoint& place, int size) {

@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "lanthorn/image.h"
@@ -22,6 +23,9 @@ struct CubePoint {
   Vec2 at{0};
 };
 CubePoint cube_point(const Vec3& direction);
+/// Where a direction meets the plane of this face, also beside the face; nullopt if it is more than 75 degrees off the
+/// face's axis.
+std::optional<Vec2> place_on_face(int face, const Direction& direction);
 /// The texel at a place of a map of `size`.
 struct CubeTexel {
   int face = 0, x = 0, y = 0;

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "ibl/point_sums.h"
+#include "ibl/sun_coverage.h"
 #include "math/frame.h"
 
 namespace lanthorn {
@@ -123,14 +124,7 @@ GgxKernel::GgxKernel(float alpha, LobeWeight weight) : weight_(weight), alpha2_(
 CubeMap mirror_level(const CubePyramid& source, const Environment& environment, int size) {
   const auto level = std::find_if(source.begin(), source.end(), [&](const CubeMap& map) { return map.size() == size; });
   CubeMap map = *level;
-  const std::vector<float> solid_angles = cube_solid_angles(size);
-  constexpr int points_across_texel = 4;
-  for (const PointFlux& sun : environment.sun_points(0.5f * pi / static_cast<float>(points_across_texel * size))) {
-    const CubeTexel t = cube_texel(cube_point(sun.direction), size);
-    map.texel(t) +=
-        sun.flux /
-        solid_angles[static_cast<std::size_t>(t.y) * static_cast<std::size_t>(size) + static_cast<std::size_t>(t.x)];
-  }
+  add_suns(environment, map);
   map.close_seams();
   return map;
 }

@@ -17,6 +17,7 @@ namespace {
 // What decides the wavelengths of a render's passes.
 struct WavelengthSets {
   std::uint64_t seed = 0, per_pass = 1;
+  bool disperses = false;
 };
 
 // None if every path draws its own. Settings may come from a file: nothing is taken for granted.
@@ -26,7 +27,8 @@ std::optional<WavelengthSets> wavelength_sets(const nlohmann::json& settings) {
   const auto seed = identity->find("seed"), sets = identity->find("plateau_wavelength_sets");
   if (seed == identity->end() || !seed->is_number_unsigned()) return {};
   if (sets == identity->end() || !sets->is_number_unsigned()) return {};
-  const WavelengthSets found{seed->get<std::uint64_t>(), sets->get<std::uint64_t>()};
+  const WavelengthSets found{seed->get<std::uint64_t>(), sets->get<std::uint64_t>(),
+                             identity->contains("heroes_in_blocks")};
   constexpr std::uint64_t most_sets = 16;
   return found.per_pass > 0 && found.per_pass <= most_sets ? std::optional(found) : std::nullopt;
 }
@@ -51,7 +53,8 @@ Rgb colour_balance(const RenderState& state, std::span<const PassRange> passes) 
   std::array<double, 3> sum{};
   for (const PassRange& range : passes)
     for (std::uint64_t set = range.begin * sets->per_pass; set < range.end * sets->per_pass; ++set) {
-      const Rgb white = white_of(wavelengths_of_pass(sets->seed, ColorMode::spectral, static_cast<std::uint32_t>(set)));
+      const Rgb white = white_of(wavelengths_of_pass(sets->seed, ColorMode::spectral, static_cast<std::uint32_t>(set),
+                                                     sets->disperses));
       sum[0] += static_cast<double>(white.r);
       sum[1] += static_cast<double>(white.g);
       sum[2] += static_cast<double>(white.b);

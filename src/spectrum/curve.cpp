@@ -182,6 +182,8 @@ SpectrumCurve SpectrumCurve::illuminant(const Rgb& rgb, ColorSpace space) {
 }
 
 SpectrumCurve SpectrumCurve::tabulated(const DenseSpectrum* table) {
+  const auto& values = table->values;
+  if (std::all_of(values.begin(), values.end(), [&](float v) { return v == values[0]; })) return constant(values[0]);
   SpectrumCurve curve;
   curve.shape = Shape::table;
   curve.scale = 1;

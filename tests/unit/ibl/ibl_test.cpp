@@ -322,6 +322,36 @@ INSTANTIATE_TEST_SUITE_P(Places, Sun,
                          testing::Values(std::pair{300, 150}, std::pair{320, 128}, std::pair{77, 6},
                                          std::pair{511, 90}));
 
+class SmallSun : public testing::TestWithParam<std::pair<int, int>> {};
+
+// A sun is as bright in a mirror as in the image, wherever its texels fall on those of the map, and never brighter.
+TEST_P(SmallSun, IsAsBrightAsInTheImage) {
+  constexpr int width = 512;
+  constexpr float sky = 0.2f, sun = 5000;
+  Image image = equirectangular(width, [](const Direction&) { return Rgb{sky, sky, sky}; });
+  const auto [x, y] = GetParam();
+  set(image, x, y, {sun, sun, sun});
+  const double omega = 2 * pi_d / width * (std::cos(2 * pi_d * y / width) - std::cos(2 * pi_d * (y + 1) / width));
+  const double mean = static_cast<double>(sky) + static_cast<double>(sun - sky) * omega / (4 * pi_d);
+  for (const int size : {64, 128, 512}) {
+    IblSettings settings = small();
+    settings.specular_size = size;
+    settings.smallest_size = size;
+    const Ibl ibl = bake_ibl(image, settings);
+    ASSERT_EQ(ibl.specular.size(), 1u);
+    const Image& faces = ibl.specular[0].faces;
+    const float brightest = *std::max_element(faces.pixels.begin(), faces.pixels.end());
+    EXPECT_LE(brightest, sun * 1.0001f) << size;
+    EXPECT_NEAR(means_of(faces).mean / mean, 1, 2e-3) << size;
+    if (size == width) EXPECT_GE(brightest, sun * 0.999f);  // it fills texels of the map
+  }
+}
+
+// Somewhere, at an edge of faces, at a corner of the cube, near a pole, at the image's seam.
+INSTANTIATE_TEST_SUITE_P(Places, SmallSun,
+                         testing::Values(std::pair{300, 100}, std::pair{320, 128}, std::pair{320, 77},
+                                         std::pair{77, 50}, std::pair{511, 90}));
+
 TEST(Ibl, SunsOfWideTexelsAreNotPoints) {
   constexpr int width = 64;
   Image image = equirectangular(width, [](const Direction&) { return Rgb{1, 1, 1}; });

@@ -373,6 +373,21 @@ TEST(SceneMaterials, IndicesAreThoseOfTheHeroWavelength) {
   EXPECT_FALSE(world(unit_quad).has_measured_spectra());
 }
 
+// An index is dispersive if it varies, not if it is written as a spectrum.
+TEST(SceneMaterials, ConstantSpectraDisperseNothing) {
+  for (const char* material : {"dielectric", "coateddiffuse", "coatedconductor", "thindielectric"}) {
+    const char* const name = std::string(material) == "coatedconductor" ? "interface.eta" : "eta";
+    const Scene scene = world(fmt::format("Material \"{}\" \"spectrum {}\" [360 1.5 500 1.5 830 1.5]\n{}", material,
+                                          name, unit_quad));
+    EXPECT_FALSE(scene.has_dispersion()) << material;
+    EXPECT_FALSE(scene.has_measured_spectra()) << material;
+  }
+  const Scene metal = world(std::string("Material \"conductor\" \"spectrum eta\" [360 .2 830 .2] "
+                                        "\"spectrum k\" [360 3 830 3]\n") +
+                            unit_quad);
+  EXPECT_FALSE(metal.has_measured_spectra());
+}
+
 TEST(SceneMaterials, MixesChooseByAmountAndAlwaysTheSame) {
   const auto scene_of = [](const char* amount) {
     return world(
