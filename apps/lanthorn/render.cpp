@@ -119,7 +119,7 @@ void run_render(const RenderCommand& a) {
     end_by_signal();
   }
   if (onlookers.tev) onlookers.tev->show(session.picture());
-  save_render(a, outputs, *scene, session.state(), statistics);
+  save_render(a, a.options, outputs, *scene, session.state(), statistics);
   if (statistics.out_of_memory)
     throw Error(
         fmt::format("not enough memory for a pass: the pictures have the {} passes before it; fewer --photons "

@@ -98,7 +98,7 @@ void save(const ServeCommand& a, const std::vector<fs::path>& outputs, const Vie
     say("lanthorn: no whole pass was rendered of this view: nothing to save\n");
     end_by_signal();
   }
-  save_render(a, outputs, viewer.scene(), session->state(), {});
+  save_render(a, a.options, outputs, viewer.scene(), session->state(), {});
 }
 
 void run_serve(const ServeCommand& a) {

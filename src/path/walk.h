@@ -324,6 +324,17 @@ inline Ray spawn_from_light(const EmissionSample& emission, float time) {
 
 /// The initial throughput of a walk. In RGB mode the fourth channel carries no light and is 0, so that media do not
 /// sample distances by it.
+/// Notes the end of a path whose throughput at its start was `start`. Roulette keeps throughputs about as large as at
+/// the start; `most` only keeps whole numbers from overflowing.
+inline void note_end(const PathContext& path, const WalkState& end, const Spectrum& start, PathEnds& ends) {
+  ++ends.paths;
+  if (end.depth <= path.limits.max_depth) return;
+  constexpr float most = 1 << 10;
+  const float share = walk_detail::magnitude(end.beta, end.dispersed, path.w.mode) /
+                      walk_detail::magnitude(start, false, path.w.mode);
+  if (share > 0) ends.cut += static_cast<std::uint64_t>(PathEnds::unit * static_cast<double>(std::min(share, most)));
+}
+
 inline const Spectrum& unit_beta(const Wavelengths& w) {
   static constexpr Spectrum rgb(1, 1, 1, 0), spectral(1);
   return w.mode == ColorMode::rgb ? rgb : spectral;
@@ -340,6 +351,7 @@ void walk_from_camera(const PathContext& path, const CameraRay& start, MediumId 
   walk<Transport::radiance>(path, start.ray, state, visit);
 }
 
+  note_end(path, state, unit_beta(path.w) * start.weight, path.counts.eye);
 /// A light path before its emission.
 struct LightPath {
   const Light& light;
@@ -391,5 +403,7 @@ void walk_from_light(const PathContext& path, const LightPath& start, float time
   }
   walk<Transport::importance>(path, spawn_from_light(*emission, time), state, visit);
 }
+  const Spectrum beta = state.beta;
 
+  note_end(path, state, beta, path.counts.light);
 }  // namespace lanthorn

@@ -80,6 +80,11 @@ bool Scene::has_scattering_media() const {
          std::any_of(data_->media->begin(), data_->media->end(), [](const Medium& m) { return scatters(m); });
 }
 bool Scene::has_emissive_media() const { return data_->has_emissive; }
+float Scene::largest_medium_albedo() const {
+  float largest = 0;
+  for (const Medium& medium : *data_->media) largest = std::max(largest, largest_albedo(medium));
+  return largest;
+}
 std::optional<std::vector<Bounds>> Scene::scattering_boxes() const {
   std::vector<Bounds> boxes;
   for (std::size_t i = 0; i < data_->media->size(); ++i) {

@@ -78,6 +78,8 @@ class Scene {
   /// True if any medium has volumetric emission.
   bool has_emissive_media() const;
   /// Boxes that contain all media that scatter; empty if one of them has no end.
+  /// The largest albedo of a medium (`largest_albedo`); 0 if none scatters.
+  float largest_medium_albedo() const;
   std::optional<std::vector<Bounds>> scattering_boxes() const;
   /// The light that a medium with volumetric emission is; none if it has no end.
   std::optional<std::uint32_t> volume_light(MediumId medium) const;
