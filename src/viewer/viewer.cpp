@@ -268,6 +268,7 @@ void Viewer::draw_frame() {
   FrameSettings settings = frame_settings(panel_.settings, view_, frame);
   settings.eye_path_spacing = spacing;
   settings.has_stand_ins = !is_exact;
+  settings.disperses = settings.disperses && is_exact;
   shown_is_exact_ = is_exact || (spacing == 1 && !renderer_.gpu_scene().has_stand_ins());
   renderer_.draw(view_, settings);
   picture_.add(renderer_, view_.imaging_ratio);
