@@ -99,6 +99,49 @@ TEST(Media, CutPathsAreCounted) {
   EXPECT_EQ(decode_state(encode_state(all), "a.state").eye.cut, state.eye.cut);
 }
 
+// The light that is seen in thin fog of a narrow beam, by the integral of single scattering over the beam. Next-event
+// estimation where paths scatter finds it in one path of fifty.
+TEST(Media, NarrowBeamInThinFog) {
+  const std::string scene_text =
+      "Film \"rgb\" \"integer xresolution\" 24 \"integer yresolution\" 2\nPixelFilter \"box\"\n"
+      "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_s\" [.05 .05 .05] \"rgb sigma_a\" [0 0 0]\n"
+      "MediumInterface \"\" \"fog\"\nLookAt 0 0 -8  0 0 0  0 1 0\n"
+      "Camera \"orthographic\" \"float screenwindow\" [-2.8 -.4 -.1 .1]\nWorldBegin\n"
+      "AttributeBegin\nMediumInterface \"\" \"fog\"\n"
+      "LightSource \"spot\" \"point3 from\" [-3 0 0] \"point3 to\" [0 0 0] \"float coneangle\" 3 "
+      "\"float conedeltaangle\" .01 \"float scale\" 1000\nAttributeEnd\n"
+      "AttributeBegin\nMediumInterface \"fog\" \"\"\nMaterial \"interface\"\nShape \"sphere\" \"float radius\" 10\n"
+      "AttributeEnd\n";
+  // Of a pixel: sigma_s / (4 pi) I / d² exp(-sigma (d + z)) over the chord of the cone, averaged over the pixel.
+  constexpr double sigma = 0.05, intensity = 1000, cone = 3 * 3.14159265358979 / 180;
+  double expected = 0;
+  constexpr int steps = 400;
+  for (int i = 0; i < steps; ++i)
+    for (int j = 0; j < steps; ++j) {
+      const double x = 0.2 + 2.4 * (i + 0.5) / steps, y = -0.1 + 0.2 * (j + 0.5) / steps;
+      const double half2 = x * x * std::pow(std::tan(cone), 2) - y * y;
+      if (half2 <= 0) continue;
+      constexpr int depths = 8;
+      const double half = std::sqrt(half2);
+      for (int k = 0; k < depths; ++k) {
+        const double z = half * (2 * (k + 0.5) / depths - 1), d = std::sqrt(x * x + y * y + z * z);
+        expected += 2 * half / depths * sigma / (4 * 3.14159265358979) * intensity / (d * d) *
+                    std::exp(-sigma * (d + 8 + z)) / (steps * steps);
+      }
+    }
+  const Scene scene = test::scene_from_text(scene_text);
+  for (const char* integrator : {"path", "probppm", "sppm", "ppm", "photonmap", "reversephotonmap", "vcm", "bdpt"}) {
+    RenderOptions o = test::options_for(integrator, 16, 1);
+    o.color = ColorMode::rgb;
+    o.max_depth = 1;
+    o.photons = 1'000;
+    if (test::has_radius(integrator)) o.set["radius"] = "0.1";
+    const auto images = test::select_layers(test::independent_renders(scene, o, 16, 1), "color");
+    EXPECT_TRUE(test::runs_agree(test::mean_of_means(images), expected, 0.002, 0.12, test::false_alarm_rate / 8))
+        << integrator;
+  }
+}
+
 // The camera sees an emitter of radiance 1 through a metre of absorber, at normal incidence in the middle of the film.
 Scene lamp_behind(const std::string& medium) {
   return test::scene_from_text(
