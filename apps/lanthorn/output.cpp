@@ -27,6 +27,7 @@ nlohmann::json metadata_of(const StateSummary& state, bool reproducible, const n
   if (state.display_emission) metadata["display_emission"] = true;
   metadata["version"] = version;
   metadata["passes"] = state.pass_count;
+  if (state.cut_share > 0) metadata["cut_share"] = state.cut_share;
   if (reproducible) return metadata;
   metadata["seconds"] = state.seconds;
   if (!statistics.is_null()) metadata["statistics"] = statistics;

@@ -130,7 +130,7 @@ void run_render(const RenderCommand& a) {
     end_by_signal();
   }
   if (onlookers.tev) onlookers.tev->show(session.picture());
-  save_render(a, outputs, *scene, session.state(), statistics);
+  save_render(a, a.options, outputs, *scene, session.state(), statistics);
   explain_black(a, *scene, outputs, session);
   if (statistics.out_of_memory)
     throw Error(

@@ -96,7 +96,9 @@ OptionTable render_options(RenderArguments& a) {
       {.names = "-d,--max-depth",
        .value = into(o.max_depth, count_type({1, largest_int})),
        .brief = "Scattering events per path, at most",
-       .otherwise = "the scene file's, else 64"},
+       .details = "In media of high albedo the default is higher: until a thousandth of the light is left. The program "
+                  "says how much the limit may have cut off.",
+       .otherwise = "the scene file's, else 64, in media up to 4096"},
       {.names = "--memory",
        .value = into(o.memory, bytes_type()),
        .brief = "Limit for the picture and the photons or light vertices of a pass, such as 512M or 2G",

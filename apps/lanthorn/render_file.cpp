@@ -32,6 +32,13 @@ std::string text_of(const json& value) {
   return text.substr(0, longest) + (text.size() > longest ? " ..." : "");
 }
 
+// Empty if so little that nobody sees it.
+std::string limit_text(double cut_share) {
+  constexpr double least = 1e-4;
+  if (cut_share < least) return {};
+  return fmt::format("ended paths that still had {:.2g} % of the throughput: light may be missing", 100 * cut_share);
+}
+
 void print_line(const char* name, const std::string& text) { print("{:<10} {}\n", name, text); }
 
 std::string parameters_text(const json& parameters) {
@@ -92,6 +99,7 @@ json state_json(const StateSummary& state, const std::vector<std::string>& layer
           {"pass_count", state.pass_count},
           {"seconds", state.seconds},
           {"mergeable", state.mergeable},
+          {"cut_share", state.cut_share},
           {"width", state.width},
           {"height", state.height},
           {"layers", layers},
@@ -103,7 +111,8 @@ json picture_settings(const std::string& file) {
   constexpr int deepest = 8;
   const auto limit_depth = [](int depth, json::parse_event_t, const json&) { return depth <= deepest; };
   json settings = json::parse(read_image_metadata(file));
-  constexpr std::array<std::string_view, 5> numbers{"seed", "passes", "photons", "max_depth", "seconds"};
+  constexpr std::array<std::string_view, 6> numbers{"seed",      "passes",  "photons",
+                                                    "max_depth", "seconds", "cut_share"};
   for (const auto& member : settings.items()) {
     json& value = member.value();
     if (!value.is_string()) continue;
@@ -139,6 +148,7 @@ void show_state(const std::string& file, bool as_json) {
   print_line("state", file + " (intact)");
   print_settings(settings_of(state));
   print_line("passes", passes_text(state));
+  if (const std::string limit = limit_text(state.cut_share); !limit.empty()) print_line("depth", limit);
   print_line("merge", state.mergeable ? "with states of other passes"
                                       : "not possible: each pass depends on all before it; --resume only");
   print_line("size", size_text(state.window, state.width, state.height));
@@ -165,6 +175,8 @@ void show_picture(const std::string& file, std::uint64_t max_pixels, bool as_jso
   if (metadata.empty()) print_line("method", "(not known: the file holds no settings of Lanthorn)");
   print_settings(metadata);
   if (const auto passes = metadata.find("passes"); passes != metadata.end()) print_line("passes", text_of(*passes));
+  if (const auto cut = metadata.find("cut_share"); cut != metadata.end() && cut->is_number())
+    if (const std::string limit = limit_text(cut->get<double>()); !limit.empty()) print_line("depth", limit);
   print_line("size", size_text(image.window, image.width, image.height));
   print_line("layers", join(layers));
   if (non_finite > 0) print_line("warning", fmt::format("{} values are NaN or infinite", non_finite));

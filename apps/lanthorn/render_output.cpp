@@ -72,12 +72,32 @@ nlohmann::json describe(const FilmReport& report) {
   return {{"non_finite", report.non_finite}, {"too_large", report.too_large}, {"saturated", report.saturated}};
 }
 
+nlohmann::json describe(const PathEnds& ends) { return {{"paths", ends.paths}, {"cut_share", ends.share()}}; }
+
+// What of the paths of the passes rendered now ended at the limit.
+nlohmann::json describe_limit(const nlohmann::json& settings, const RayCounts& rays) {
+  return {{"max_depth", settings.at("identity").at("max_depth")},
+          {"eye", describe(rays.eye)},
+          {"light", describe(rays.light)}};
+}
+
+// The share is that of the whole picture: what is a fifth of the light of a glass of milk can be a hundredth of it.
+void warn_of_limit(const StateSummary& state) {
+  constexpr double much = 0.002;
+  if (state.cut_share < much) return;
+  const nlohmann::json settings = nlohmann::json::parse(state.settings);
+  warn("the limit of {} scattering events ended paths that still had {:.2g} % of the throughput: light may be missing "
+       "where paths are long; a higher --max-depth finds it",
+       settings.at("identity").at("max_depth").get<int>(), 100 * state.cut_share);
+}
+
 void write_report(const std::string& path, const Scene& scene, const RenderState& state,
                   const RenderStatistics& statistics) {
   nlohmann::json report = describe(statistics);
   const StateSummary summary = summarize(state);
   report["settings"] = nlohmann::json::parse(summary.settings);
   report["film"] = describe(summary.report);
+  report["depth_limit"] = describe_limit(report["settings"], statistics.rays);
   report["passes_total"] = summary.pass_count;
   report["scene"] = scene_report(summarize(scene));
   const std::string text = report_text(report);
@@ -124,8 +144,8 @@ void report_warnings(const std::vector<description::Warning>& warnings) {
   for (const description::Warning& warning : warnings) warn("{}", Error(warning.location, warning.message).what());
 }
 
-void save_render(const RenderFiles& a, const std::vector<fs::path>& paths, const Scene& scene, const RenderState& state,
-                 const RenderStatistics& statistics) {
+void save_render(const RenderFiles& a, const RenderOptions& options, const std::vector<fs::path>& paths,
+                 const Scene& scene, const RenderState& state, const RenderStatistics& statistics) {
   const nlohmann::json described = describe(statistics);
   const StateSummary summary = summarize(state);
   OutputSettings settings = a.output;
@@ -141,6 +161,7 @@ void save_render(const RenderFiles& a, const std::vector<fs::path>& paths, const
     outputs.push_back({a.json, OutputKind::report, [&] { write_report(a.json, scene, state, statistics); }});
   write_outputs(outputs, state);
   report_film(summary.report);
+  if (!options.max_depth) warn_of_limit(summary);  // else the user has chosen it
   if (a.quiet) return;
   for (const fs::path& path : paths)
     announce("{}: {} passes by {} in {}\n", path.string(), summary.pass_count, summary.integrator,

@@ -37,7 +37,8 @@ void check_states(const RenderFiles& files, const std::vector<std::filesystem::p
 void report_warnings(const std::vector<description::Warning>& warnings);
 
 /// Writes pictures, states and the report; says what it wrote. Throws Error if something could not be written.
-void save_render(const RenderFiles& files, const std::vector<std::filesystem::path>& outputs, const Scene& scene,
-                 const RenderState& state, const RenderStatistics& statistics);
+void save_render(const RenderFiles& files, const RenderOptions& options,
+                 const std::vector<std::filesystem::path>& outputs, const Scene& scene, const RenderState& state,
+                 const RenderStatistics& statistics);
 
 }  // namespace lanthorn::program

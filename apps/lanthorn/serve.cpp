@@ -97,7 +97,7 @@ void save(const ServeCommand& a, const std::vector<fs::path>& outputs, const Vie
     say("lanthorn: no whole pass was rendered of this view: nothing to save\n");
     end_by_signal();
   }
-  save_render(a, outputs, viewer.scene(), *state, {});
+  save_render(a, a.options, outputs, viewer.scene(), *state, {});
 }
 
 void run_serve(const ServeCommand& a) {

@@ -53,6 +53,9 @@ struct StateSummary {
   int width = 0, height = 0;                                 ///< pixels
   ImageWindow window;                                        ///< of these pixels in the whole picture
   FilmReport report;
+  /// The share of the throughput of paths that reached the limit of scattering events (PathEnds): from the camera or
+  /// from lights, whichever is more. It says how much light the limit may have cut off.
+  double cut_share = 0;
 };
 StateSummary summarize(const RenderState& state);
 

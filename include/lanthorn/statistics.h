@@ -15,16 +15,36 @@ enum class Phase : std::uint8_t { photons, build, eye };
 inline constexpr std::size_t phase_count = 3;
 const char* phase_name(Phase phase);
 
-/// Numbers of rays traced.
+/// Paths from one end, and how much of them the limit of scattering events cut off.
+struct PathEnds {
+  static constexpr double unit = 1 << 20;  ///< of `cut`: whole numbers, so that sums do not depend on their order
+
+  std::uint64_t paths = 0;
+  std::uint64_t cut = 0;  ///< throughput that reached the limit, relative to that of the path's start, times `unit`
+
+  /// The share of all throughput that reached the limit. The share of light that is missing may be less, where surfaces
+  /// would have absorbed the rest, and more, where only long paths find light.
+  double share() const { return paths > 0 ? static_cast<double>(cut) / unit / static_cast<double>(paths) : 0; }
+  PathEnds& operator+=(const PathEnds& o) {
+    paths += o.paths;
+    cut += o.cut;
+    return *this;
+  }
+};
+
+/// Numbers of rays traced, and of the paths that they belong to.
 struct RayCounts {
   std::uint64_t walk = 0;    ///< nearest-hit rays
   std::uint64_t shadow = 0;  ///< occlusion rays
   std::uint64_t spared = 0;  ///< occlusion rays that shadow photons made unnecessary
+  PathEnds eye, light;       ///< paths from the camera and from lights; none of methods that choose lengths of paths
 
   RayCounts& operator+=(const RayCounts& o) {
     walk += o.walk;
     shadow += o.shadow;
     spared += o.spared;
+    eye += o.eye;
+    light += o.light;
     return *this;
   }
 };

@@ -130,6 +130,7 @@ struct VolumeGatherVisitor : GatherVisitor<Gather> {
     this->layers.see(flight);
     this->add(flight.state, walk.along(this->path, flight));
   }
+  void operator()(const MediumRay& ray) { GatherVisitor<Gather>::operator()(ray); }
   void operator()(const EmissionVertex& vertex) {
     if (walk.finds_hits() || !this->path.scene.volume_light(vertex.state.medium))
       GatherVisitor<Gather>::operator()(vertex);
@@ -147,7 +148,7 @@ struct VolumeGatherVisitor : GatherVisitor<Gather> {
     this->layers.see(vertex);
     if (walk.is_gathered()) return walk.follow_glow(this->path);
     if (!vertex.may_scatter) return Continuation::stop();
-    const MediumLight light = walk.scatter(this->path, vertex);
+    const MediumLight light = walk.scatter(this->path, vertex, this->ray_light);
     this->layers.add(class_of_next_event(vertex.state), light.direct.radiance, light.direct.dispersed);
     this->add(vertex.state, light.gathered);
     return Continuation::go_on();

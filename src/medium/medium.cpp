@@ -6,6 +6,7 @@
 #include <cmath>
 #include <glm/mat3x3.hpp>
 #include <iterator>
+#include <limits>
 
 #include "medium/transmittance_curve.h"
 
@@ -88,6 +89,38 @@ bool scatters(const Medium& medium) {
         return true;
       },
       medium);
+}
+
+namespace {
+
+// Of coefficients that vary with wavelength alone.
+float albedo_of(const SpectrumCurve& sigma_a, const SpectrumCurve& sigma_s) {
+  float largest = 0;
+  const auto see = [&](float absorbed, float scattered) {
+    if (scattered > 0) largest = std::max(largest, scattered / (absorbed + scattered));
+  };
+  see(sigma_a.rgb.r, sigma_s.rgb.r);
+  see(sigma_a.rgb.g, sigma_s.rgb.g);
+  see(sigma_a.rgb.b, sigma_s.rgb.b);
+  constexpr float step = 5;  // nm
+  for (float nm = lambda_min; nm <= lambda_max; nm += step) see(sigma_a.at(nm), sigma_s.at(nm));
+  return largest;
+}
+
+// Where no grid is given, the coefficient is 1 everywhere.
+float albedo_of(const std::optional<SampledGrid<Vec3>>& sigma_a, const std::optional<SampledGrid<Vec3>>& sigma_s) {
+  float least_absorbed = sigma_a ? std::numeric_limits<float>::max() : 1.0f, most_scattered = sigma_s ? 0.0f : 1.0f;
+  if (sigma_a)
+    for (const Vec3& v : sigma_a->values) least_absorbed = std::min({least_absorbed, v.x, v.y, v.z});
+  if (sigma_s)
+    for (const Vec3& v : sigma_s->values) most_scattered = std::max({most_scattered, v.x, v.y, v.z});
+  return most_scattered > 0 ? most_scattered / (std::max(0.0f, least_absorbed) + most_scattered) : 0.0f;
+}
+
+}  // namespace
+
+float largest_albedo(const Medium& medium) {
+  return std::visit([](const auto& m) { return albedo_of(m.sigma_a, m.sigma_s); }, medium);
 }
 
 bool is_emissive(const Medium& medium) {

@@ -73,6 +73,10 @@ std::optional<MediumBox> box_of(const Medium& medium);
 /// False if the medium only absorbs and emits. May be true for a medium on a grid whose values are all 0.
 bool scatters(const Medium& medium);
 
+/// The largest share of extinction that is scattering, of any channel of either colour mode; an upper bound of it for
+/// media with RGB grids. 0 if the medium does not scatter.
+float largest_albedo(const Medium& medium);
+
 /// True if the medium has volumetric emission.
 bool is_emissive(const Medium& medium);
 

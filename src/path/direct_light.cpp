@@ -48,26 +48,32 @@ Receiver receiver(const SurfaceVertex& vertex) { return {vertex.at.position, rec
 Receiver receiver(const MediumVertex& vertex) { return {vertex.position, Normal(0)}; }
 
 template <class Vertex>
-std::optional<NextEvent> sample_light(const PathContext& path, const Vertex& vertex) {
+std::optional<NextEvent> sample_chosen(const PathContext& path, const Vertex& vertex, const SampledLight& chosen,
+                                       const Vec2& u) {
   std::optional<NextEvent> result;
-  const Receiver at = receiver(vertex);
-  const std::optional<SampledLight> chosen = path.scene.light_bvh().sample(at.position, at.normal, path.sampler.next());
-  if (!chosen) return result;
-  const Light& light = path.scene.lights()[chosen->light];
-  const std::optional<LightSample> l = sample_direct(light, at.position, path.sampler.next2(), path.w);
+  const Light& light = path.scene.lights()[chosen.light];
+  const std::optional<LightSample> l = sample_direct(light, position_of(vertex), u, path.w);
   if (!l) return result;
 
   const Scattering scattering = scatter_towards(vertex, l->wi);
   if (scattering.f.is_black()) return result;
-  const float pdf = chosen->pmf * l->pdf;
+  const float pdf = chosen.pmf * l->pdf;
   NextEvent& event = result.emplace();
-  event.light = chosen->light;
-  event.pmf = chosen->pmf;
+  event.light = chosen.light;
+  event.pmf = chosen.pmf;
   event.sample = *l;
   event.radiance = vertex.state.beta * scattering.f * l->radiance * (1 / pdf);
   event.pdf_walk = scattering.pdf_walk;
   event.dispersed = vertex.state.dispersed || scattering.dispersed;
   return result;
+}
+
+template <class Vertex>
+std::optional<NextEvent> sample_light(const PathContext& path, const Vertex& vertex) {
+  const Receiver at = receiver(vertex);
+  const std::optional<SampledLight> chosen = path.scene.light_bvh().sample(at.position, at.normal, path.sampler.next());
+  if (!chosen) return {};
+  return sample_chosen(path, vertex, *chosen, path.sampler.next2());
 }
 
 template <class Vertex>
@@ -81,9 +87,9 @@ Passage passage_to(const PathContext& path, const Vertex& vertex, const NextEven
   return passage(path, ray, medium, dimensions);
 }
 
+// Only the part of the sample's light that arrives.
 template <class Vertex>
-std::optional<NextEvent> sample_visible(const PathContext& path, const Vertex& vertex) {
-  std::optional<NextEvent> e = sample_light(path, vertex);
+std::optional<NextEvent> visible(const PathContext& path, const Vertex& vertex, std::optional<NextEvent> e) {
   if (!e) return e;
   const Passage way = passage_to(path, vertex, *e);
   e->radiance *= way.transmittance;
@@ -110,11 +116,16 @@ DirectLight weighted(const NextEvent& event, float pdf_walk) {
 }
 
 std::optional<NextEvent> sample_next_event(const PathContext& path, const SurfaceVertex& vertex) {
-  return sample_visible(path, vertex);
+  return visible(path, vertex, sample_light(path, vertex));
 }
 
 std::optional<NextEvent> sample_next_event(const PathContext& path, const MediumVertex& vertex) {
-  return sample_visible(path, vertex);
+  return visible(path, vertex, sample_light(path, vertex));
+}
+
+std::optional<NextEvent> sample_next_event_of(const PathContext& path, const MediumVertex& vertex,
+                                              const SampledLight& light) {
+  return visible(path, vertex, sample_chosen(path, vertex, light, Vec2(0.5f)));
 }
 
 Spectrum detail::hit_light(const PathContext& path, const SurfaceVertex& vertex, std::uint32_t index) {

@@ -35,6 +35,9 @@ struct NextEvent {
 /// Chooses a light by the light BVH and samples it. Empty if there is no light or it is occluded.
 std::optional<NextEvent> sample_next_event(const PathContext& path, const SurfaceVertex& vertex);
 std::optional<NextEvent> sample_next_event(const PathContext& path, const MediumVertex& vertex);
+/// The same of a given light at a point, which needs no random numbers.
+std::optional<NextEvent> sample_next_event_of(const PathContext& path, const MediumVertex& vertex,
+                                              const SampledLight& light);
 
 // Next-event estimation in three steps, for callers that can sometimes skip the shadow ray.
 

@@ -75,6 +75,7 @@ class LightLayers {
   }
 
   void see(const MediumVertex& vertex) { come_from(true, vertex.state); }
+  void see(const MediumRay& ray) { come_from(true, ray.state); }
   /// For light that is scattered along the flight.
   void see(const FlownSegment& flight) { come_from(true, flight.state); }
 

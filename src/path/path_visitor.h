@@ -7,6 +7,7 @@
 
 #include "path/direct_light.h"
 #include "path/light_layers.h"
+#include "path/ray_light.h"
 #include "path/transmittance.h"
 #include "path/walk.h"
 
@@ -16,6 +17,7 @@ namespace lanthorn {
 struct PathVisitor {
   const PathContext& path;
   LightLayers& layers;
+  RayLight ray_light = {};
 
   Continuation operator()(const SurfaceVertex& vertex) {
     find_light(vertex, Continuation::go_on());
@@ -25,9 +27,15 @@ struct PathVisitor {
     layers.see(vertex);
     if (!vertex.may_scatter) return Continuation::stop();
     path.sampler.seek(visitor_dimensions(vertex.state.depth));
-    const DirectLight direct = next_event(path, vertex, Continuation::go_on());
+    const DirectLight direct = ray_light.next_event_at(path, vertex);
     layers.add(class_of_next_event(vertex.state), direct.radiance, direct.dispersed);
     return Continuation::go_on();
+  }
+  void operator()(const MediumRay& ray) {
+    const DirectLight direct = ray_light.along(path, ray);
+    if (direct.radiance.is_black()) return;
+    layers.see(ray);
+    layers.add(class_of_next_event(ray.state), direct.radiance, direct.dispersed);
   }
   void operator()(const EmissionVertex& vertex) { layers.add_hit(vertex, hit_glow(path, vertex)); }
   void operator()(const EscapeVertex& vertex) { layers.add_hit(vertex, hit_environment(path, vertex)); }

@@ -2,8 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <atomic>
-#include <cstdint>
+#include <mutex>
 
 #include "lanthorn/statistics.h"
 
@@ -13,14 +12,15 @@ namespace lanthorn {
 class SharedRayCounts {
  public:
   void add(const RayCounts& counts) {
-    walk_ += counts.walk;
-    shadow_ += counts.shadow;
-    spared_ += counts.spared;
+    const std::lock_guard lock(mutex_);
+    sum_ += counts;
   }
-  RayCounts sum() const { return {walk_, shadow_, spared_}; }
+  /// When all have been added.
+  const RayCounts& sum() const { return sum_; }
 
  private:
-  std::atomic<std::uint64_t> walk_{0}, shadow_{0}, spared_{0};
+  std::mutex mutex_;
+  RayCounts sum_;
 };
 
 }  // namespace lanthorn

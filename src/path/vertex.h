@@ -94,6 +94,14 @@ struct EmissionVertex {
   Spectrum radiance;       ///< at the start of the segment
 };
 
+/// A ray of the walk through a medium, up to the next surface or interface, before it is decided where on it the walk
+/// scatters.
+struct MediumRay {
+  const WalkState& state;  ///< at its start; state.medium is the medium
+  Segment segment;         ///< infinite if the ray leaves the scene
+  float time;
+};
+
 /// A straight flight of the walk through one medium or through vacuum. Visitors that declare it get it before the
 /// vertex at its end.
 struct FlownSegment {

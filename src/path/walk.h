@@ -205,6 +205,7 @@ Crossing cross_medium(const PathContext& path, Ray& ray, const Normal& begin_nor
       const Spectrum emitted = glow_along(medium, way, path.w, flights).emitted;
       if (!emitted.is_black()) visit(EmissionVertex{state, ray.direction, emitted});
     }
+  if constexpr (requires(const MediumRay& in_medium) { visit(in_medium); }) visit(MediumRay{state, way, ray.time});
   const Flight flight = fly(medium, way, state.beta, path.w, flights);
   show(visit, state, ray, begin_normal, at, flight);
   const Spectrum before = state.beta;
@@ -228,6 +229,7 @@ Crossing cross_medium(const PathContext& path, Ray& ray, const Normal& begin_nor
 ///   surfaces one of the types derived from it is possible too.
 /// - `visit(EscapeVertex)` when the walk leaves the scene.
 /// - `visit(EmissionVertex)`, if the visitor declares it, for volumetric emission.
+/// - `visit(MediumRay)`, if the visitor declares it, for each ray through a medium.
 /// - `visit(FlownSegment)`, if the visitor declares it, for each flight.
 /// The walk draws from `path.sampler` at `walk_dimensions(depth)`. A visitor must seek `visitor_dimensions(depth)`
 /// before it draws.
@@ -322,6 +324,17 @@ inline Ray spawn_from_light(const EmissionSample& emission, float time) {
   return spawn_ray(at, emission.direction);
 }
 
+/// Notes the end of a path whose throughput at its start was `start`. Roulette keeps throughputs about as large as at
+/// the start; `most` only keeps whole numbers from overflowing.
+inline void note_end(const PathContext& path, const WalkState& end, const Spectrum& start, PathEnds& ends) {
+  ++ends.paths;
+  if (end.depth <= path.limits.max_depth) return;
+  constexpr float most = 1 << 10;
+  const float share = walk_detail::magnitude(end.beta, end.dispersed, path.w.mode) /
+                      walk_detail::magnitude(start, false, path.w.mode);
+  if (share > 0) ends.cut += static_cast<std::uint64_t>(PathEnds::unit * static_cast<double>(std::min(share, most)));
+}
+
 /// The initial throughput of a walk. In RGB mode the fourth channel carries no light and is 0, so that media do not
 /// sample distances by it.
 inline const Spectrum& unit_beta(const Wavelengths& w) {
@@ -338,6 +351,7 @@ void walk_from_camera(const PathContext& path, const CameraRay& start, MediumId 
   state.previous = start.ray.origin;
   state.medium = medium;
   walk<Transport::radiance>(path, start.ray, state, visit);
+  note_end(path, state, unit_beta(path.w) * start.weight, path.counts.eye);
 }
 
 /// A light path before its emission.
@@ -389,7 +403,9 @@ void walk_from_light(const PathContext& path, const LightPath& start, float time
     state.medium = way.medium;
     if (state.beta.is_black()) return;
   }
+  const Spectrum beta = state.beta;
   walk<Transport::importance>(path, spawn_from_light(*emission, time), state, visit);
+  note_end(path, state, beta, path.counts.light);
 }
 
 }  // namespace lanthorn

@@ -21,11 +21,19 @@ namespace lanthorn {
 namespace {
 
 constexpr std::uint64_t default_passes = 64;
-constexpr int default_max_depth = 64;
+
+// In a medium of albedo a, light that scatters k times has a share of a^k left. The default lets it scatter until a
+// thousandth is left, within limits: the upper one is of media that absorb nothing.
+int default_max_depth(const Scene& scene) {
+  constexpr double least = 64, most = 4096, rest = 1e-3;
+  const auto albedo = static_cast<double>(scene.largest_medium_albedo());
+  return static_cast<int>(std::clamp(albedo < 1 ? std::ceil(std::log(rest) / std::log(albedo)) : most, least, most));
+}
 
 // pbrt's SPPM limits eye and light paths separately; Lanthorn limits the whole path.
-int scene_max_depth(const description::RenderHints& hints) {
-  if (!hints.max_depth) return default_max_depth;
+int scene_max_depth(const Scene& scene) {
+  const description::RenderHints& hints = scene.description().hints;
+  if (!hints.max_depth) return default_max_depth(scene);
   const int depth = *hints.max_depth;
   return std::max(1, hints.integrator == "sppm" ? 2 * std::min(depth, std::numeric_limits<int>::max() / 2) : depth);
 }
@@ -54,7 +62,7 @@ RenderSettings choose_settings(const Scene& scene, const ViewDescription& descri
   s.color = options.color.value_or(wants_spectra ? ColorMode::spectral : ColorMode::rgb);
   if (buckets && s.color == ColorMode::rgb)
     throw Error("--color rgb: the scene's film is \"spectral\", which only spectral rendering can fill");
-  s.max_depth = options.max_depth.value_or(scene_max_depth(hints));
+  s.max_depth = options.max_depth ? *options.max_depth : scene_max_depth(scene);
   const PixelWindow& window = plan.view.window;
   const auto pixels = static_cast<std::uint64_t>(window.width()) * static_cast<std::uint64_t>(window.height());
   const std::uint64_t automatic = std::max(pixels, plan.info->fewest_light_paths);

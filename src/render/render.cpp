@@ -140,6 +140,8 @@ RenderStatistics render(const Scene& scene, RenderPlan& plan, const StopRule& st
     timer.end();
     const Clock::time_point now = Clock::now();
     state.add_pass(pass);
+    state.eye += report.rays.eye;
+    state.light += report.rays.light;
     state.integrator_state = plan.integrator->save();
     pass_seconds = seconds_between(pass_start, now);
     statistics.seconds = seconds_between(start, now);

@@ -109,6 +109,8 @@ json layers_json(const FilmContents& contents) {
   return layers;
 }
 
+json ends_json(const PathEnds& ends) { return {{"paths", ends.paths}, {"cut", ends.cut}}; }
+
 json header_of(const RenderState& state, const SaveOptions& options) {
   json passes = json::array();
   for (const PassRange& range : state.passes) passes.push_back({range.begin, range.end});
@@ -126,6 +128,8 @@ json header_of(const RenderState& state, const SaveOptions& options) {
           {"integrator_state_bytes", state.integrator_state.size()},
           {"settings", json::parse(state.settings)},
           {"shardable", state.shardable},
+          {"eye_paths", ends_json(state.eye)},
+          {"light_paths", ends_json(state.light)},
           {"seconds", options.times ? state.seconds : 0.0}};
 }
 
@@ -317,6 +321,13 @@ class Decoder {
     return passes;
   }
 
+  // Files of before 2026-11-27 have no such counts.
+  PathEnds decode_ends(const json& header, const char* name) const {
+    const auto found = header.find(name);
+    if (found == header.end()) return {};
+    return {count(found->at("paths")), count(found->at("cut"))};
+  }
+
   RenderState decode_body(const json& header) {
     RenderState state;
     state.film = decode_film(header.at("film"));
@@ -328,6 +339,8 @@ class Decoder {
     state.shardable = header.at("shardable").get<bool>();
     state.seconds = header.at("seconds").get<double>();
     if (!(state.seconds >= 0 && state.seconds <= max_seconds)) fail("damaged: its time is not one");
+    state.eye = decode_ends(header, "eye_paths");
+    state.light = decode_ends(header, "light_paths");
     const std::uint64_t raw_size = count(header.at("integrator_state_bytes"));
     const ByteSpan compressed = take_bytes(take<std::uint64_t>());
     if (raw_size / max_compression > compressed.size()) fail("damaged: its integrator's state is too large");
@@ -524,6 +537,8 @@ RenderState merge_states(const RenderState& a, const RenderState& b) {
   merged.film.merge(b.film);
   merged.passes = std::move(*passes);
   merged.seconds = coarse(a.seconds) + coarse(b.seconds);
+  merged.eye += b.eye;
+  merged.light += b.light;
   merged.settings = common_members(a.settings, b.settings);  // what differs does not hold for the sum
   return merged;
 }

@@ -13,6 +13,7 @@
 
 #include "film/film.h"
 #include "lanthorn/state.h"
+#include "lanthorn/statistics.h"
 
 namespace lanthorn {
 
@@ -27,6 +28,7 @@ struct RenderState {
   std::string settings = "{}";
   bool shardable = true;  ///< passes do not depend on earlier ones
   double seconds = 0;     ///< spent rendering, over all processes
+  PathEnds eye, light;    ///< of the paths of all passes (RayCounts)
 
   std::uint64_t pass_count() const;
   /// Records a pass as done; it must not be done yet.

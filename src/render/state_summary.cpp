@@ -57,7 +57,8 @@ StateSummary summarize(const RenderState& state) {
           .width = state.film.width(),
           .height = state.film.height(),
           .window = window_of(state),
-          .report = state.film.report()};
+          .report = state.film.report(),
+          .cut_share = std::max(state.eye.share(), state.light.share())};
 }
 
 Image picture_of(const RenderState& state) {

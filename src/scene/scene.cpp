@@ -64,6 +64,7 @@ bool Scene::visible(const Ray& ray) const { return !data_->geometry.occluded(ray
 
 const std::vector<Light>& Scene::lights() const { return data_->lights; }
 const LightBvh& Scene::light_bvh() const { return data_->light_bvh; }
+const RayLights& Scene::ray_lights() const { return data_->ray_lights; }
 const std::vector<std::uint32_t>& Scene::infinite_lights() const { return data_->infinite_lights; }
 std::vector<Obstacle> Scene::obstacles() const { return find_obstacles(data_->geometry, data_->materials); }
 const Bounds& Scene::bounds() const { return data_->geometry.bounds(); }
@@ -78,6 +79,11 @@ bool Scene::has_interfaces() const { return data_->has_interfaces; }
 bool Scene::has_scattering_media() const {
   return has_media() &&
          std::any_of(data_->media->begin(), data_->media->end(), [](const Medium& m) { return scatters(m); });
+}
+float Scene::largest_medium_albedo() const {
+  float largest = 0;
+  for (const Medium& medium : *data_->media) largest = std::max(largest, largest_albedo(medium));
+  return largest;
 }
 bool Scene::has_emissive_media() const { return data_->has_emissive; }
 std::optional<std::vector<Bounds>> Scene::scattering_boxes() const {

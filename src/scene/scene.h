@@ -11,6 +11,7 @@
 #include "lanthorn/scene_description.h"
 #include "light/light.h"
 #include "light/light_sampler.h"
+#include "light/ray_lights.h"
 #include "material/material_table.h"
 #include "math/ray.h"
 #include "math/vec.h"
@@ -56,6 +57,8 @@ class Scene {
   const LightBvh& light_bvh() const;
   /// Indices of the lights that are visible to rays leaving the scene.
   const std::vector<std::uint32_t>& infinite_lights() const;
+  /// Lights that are sampled along rays through media; none if no medium scatters.
+  const RayLights& ray_lights() const;
   const Bounds& bounds() const;
   BoundingSphere bounding_sphere() const;
   /// Largest radiance of any light, in any channel; for lights without extent, that of what they illuminate. Scales the
@@ -75,6 +78,8 @@ class Scene {
   bool has_interfaces() const;
   /// True if any medium scatters.
   bool has_scattering_media() const;
+  /// The largest albedo of a medium (`largest_albedo`); 0 if none scatters.
+  float largest_medium_albedo() const;
   /// True if any medium has volumetric emission.
   bool has_emissive_media() const;
   /// Boxes that contain all media that scatter; empty if one of them has no end.

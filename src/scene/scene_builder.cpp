@@ -477,6 +477,8 @@ void index_lights(SceneData& data) {
     if (is_infinite(data.lights[i])) data.infinite_lights.push_back(static_cast<std::uint32_t>(i));
   data.largest_radiance = find_largest_radiance(data);
   data.light_bvh = LightBvh(data.lights);
+  if (std::any_of(data.media->begin(), data.media->end(), [](const Medium& m) { return scatters(m); }))
+    data.ray_lights = RayLights(data.lights);
 }
 
 }  // namespace lanthorn

@@ -12,6 +12,7 @@
 #include "lanthorn/scene_description.h"
 #include "light/light.h"
 #include "light/light_sampler.h"
+#include "light/ray_lights.h"
 #include "material/material_table.h"
 #include "medium/medium.h"
 #include "scene/area_lights.h"
@@ -57,6 +58,7 @@ struct SceneData {
   std::map<std::uint32_t, SourceLocation> light_locations;  ///< by the index of the first light described there
   std::vector<std::uint32_t> infinite_lights;
   LightBvh light_bvh;
+  RayLights ray_lights;
   BoundingSphere sphere;
   float largest_radiance = 0;
   bool has_measured_spectra = false, has_dispersion = false, has_interfaces = false, has_emissive = false;

@@ -173,6 +173,7 @@ class SceneEditor {
     data_->infinite_lights = base_->infinite_lights;
     data_->largest_radiance = edits_.instances.empty() ? base_->largest_radiance : find_largest_radiance(*data_);
     data_->light_bvh = base_->light_bvh;
+    data_->ray_lights = base_->ray_lights;
   }
 
   std::shared_ptr<const SceneData> base_;

@@ -99,6 +99,9 @@ FrameSettings frame_settings(const RealtimeSettings& s, const View& view, std::u
   f.has_light_focus = true;
   f.photons = s.photons;
   f.max_depth = s.max_depth;
+  // Without dispersion at first: the coloured noise of what follows is then a small part of the mean.
+  constexpr std::uint32_t frames_without_dispersion = 8;
+  f.disperses = frame >= frames_without_dispersion;
   return f;
 }
 

@@ -292,6 +292,7 @@ void Viewer::draw_frame() {
   FrameSettings settings = frame_settings(panel_.settings, view, frame);
   settings.eye_path_spacing = spacing;
   settings.has_stand_ins = !is_exact;
+  settings.disperses = settings.disperses && is_exact;
   shown_is_exact_ = is_exact || (share == 1 && spacing == 1 && !renderer_.gpu_scene().has_stand_ins());
   renderer_.draw(view, settings);
   picture.add(renderer_, view.imaging_ratio);

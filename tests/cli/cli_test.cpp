@@ -66,6 +66,33 @@ TEST_F(Cli, ConvertTranslatesToPbrtV4) {
   refuse({"convert", "old/scene.pbrt", "new.txt"}, "expected a name that ends in .pbrt");
 }
 
+TEST_F(Cli, RenderSaysWhatTheDepthLimitCutsOff) {
+  const std::string milk =
+      "Film \"rgb\" \"integer xresolution\" 8 \"integer yresolution\" 8\nWorldBegin\nLightSource \"infinite\"\n"
+      "MakeNamedMedium \"milk\" \"string type\" \"homogeneous\" \"rgb sigma_s\" [9 9 9] \"rgb sigma_a\" [0 0 0]\n"
+      "MediumInterface \"milk\" \"\"\nMaterial \"interface\"\nTranslate 0 0 3\nShape \"sphere\"\n";
+  dir_.write("file.pbrt", "Integrator \"path\" \"integer maxdepth\" 4\n" + milk);
+  dir_.write("milk.pbrt", milk);
+  const auto render_milk = [&](const std::string& scene, const Words& options) {
+    return succeed(Words{"render", scene, "-i", "path", "-p", "2", "-q", "--color", "rgb"} + options);
+  };
+  const Ending cut = render_milk("file.pbrt", {"-o", "a.state", "-o", "a.exr", "--json", "a.json"});
+  EXPECT_TRUE(contains(cut.err, "the limit of 4 scattering events ended paths that still had ")) << cut.err;
+  const nlohmann::json limit = nlohmann::json::parse(read_file(dir_.path() / "a.json"))["depth_limit"];
+  EXPECT_EQ(limit["max_depth"], 4);
+  EXPECT_GT(limit["eye"]["cut_share"].get<double>(), 0.1);
+  EXPECT_EQ(limit["eye"]["paths"], 128);
+  for (const char* file : {"a.state", "a.exr"}) {
+    EXPECT_TRUE(contains(succeed({"info", file}).out, "depth      ended paths that still had ")) << file;
+    EXPECT_TRUE(contains(succeed({"info", file, "--json"}).out, "\"cut_share\"")) << file;
+  }
+  // Who chooses a limit knows it.
+  EXPECT_EQ(render_milk("file.pbrt", {"-o", "b.state", "-d", "3"}).err, "");
+  // The default leaves room for what media scatter.
+  EXPECT_EQ(render_milk("milk.pbrt", {"-o", "c.state"}).err, "");
+  EXPECT_TRUE(contains(succeed({"info", "c.state"}).out, "max-depth  4096"));
+}
+
 TEST_F(Cli, DevelopMakesThePngThatRenderWrites) {
   succeed(render({"-p", "2", "-o", "a.exr", "-o", "a.png", "--exposure", "1.5", "--filmic"}));
   const Ending ending = succeed({"develop", "a.exr", "b.png", "--exposure", "1.5", "--filmic"});

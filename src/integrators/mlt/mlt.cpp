@@ -210,6 +210,7 @@ PassReport MetropolisLightTransport::render_pass(const RenderJob& job, std::uint
     for (const RayCounts& c : counts) report.rays += c;
   }
   report.rays += see_emission(job, {.scatterings = settings.max_depth}, number, film);
+  report.rays.eye = report.rays.light = {};  // the mutations choose the lengths of paths
   return report;
 }
 

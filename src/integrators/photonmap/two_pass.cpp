@@ -37,7 +37,7 @@ Continuation TwoPassVisitor::operator()(const MediumVertex& vertex) {
   if (!volume_) return PathVisitor::operator()(vertex);
   if (volume_->is_gathered()) return volume_->follow_glow(path);
   if (!vertex.may_scatter) return Continuation::stop();
-  const MediumLight light = volume_->scatter(path, vertex);
+  const MediumLight light = volume_->scatter(path, vertex, ray_light);
   layers.add(class_of_next_event(vertex.state), light.direct.radiance, light.direct.dispersed);
   add_photons(vertex.state, is_first, light.gathered);
   return Continuation::go_on();

@@ -110,6 +110,10 @@ class TwoPassVisitor : PathVisitor {
     layers.see(flight);
     add_photons(flight.state, flight.state.depth == 0, volume_->along(path, flight));
   }
+  void operator()(const MediumRay& ray) {
+    begin(ray.state.depth == 0 ? Term::direct : Term::specular);
+    PathVisitor::operator()(ray);
+  }
   void operator()(const EmissionVertex& vertex) {
     begin(term_of_hit(vertex.state, vertex.state.depth));
     if (adds_hits(vertex.state) || !path.scene.volume_light(vertex.state.medium)) PathVisitor::operator()(vertex);

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "path/direct_light.h"
+#include "path/ray_light.h"
 #include "path/walk.h"
 #include "photon/media/volume_gather.h"
 
@@ -34,11 +34,11 @@ class VolumeWalk {
 
   /// Light at a vertex, and the decision whether the walk is gathered from there on. It must go on in either case.
   /// Preconditions: it is not gathered, and the vertex may scatter.
-  MediumLight scatter(const PathContext& path, const MediumVertex& vertex) {
+  MediumLight scatter(const PathContext& path, const MediumVertex& vertex, const RayLight& ray_light) {
     const bool photons_reach = vertex.state.depth <= PhotonFlags::most_eye_scatterings + 1;
     const float p = photons_reach ? gather_probability(vertex.phase) : 0.0f;
     path.sampler.seek(visitor_dimensions(vertex.state.depth));
-    const MediumLight light{next_event(path, vertex, Continuation::go_on()), volume_->at(path, vertex)};
+    const MediumLight light{ray_light.next_event_at(path, vertex), volume_->at(path, vertex)};
     is_gathered_ = path.sampler.next() < p;
     return light;
   }

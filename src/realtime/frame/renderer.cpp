@@ -158,6 +158,7 @@ void Renderer::draw_specular(const FrameContext& frame, Technique& technique, bo
                             s.time,
                             s.eye_path_spacing,
                             frame.eye_paths,
+                            s.disperses,
                             find_indirect,
                             [&] { return technique.light_at_vertices(frame); }};
   const std::uint64_t rays = programs_.specular.trace(*scene_, frame.view, gbuffer_, gpu_scene_.materials(), paths);

@@ -13,6 +13,7 @@
 #include "path/path_visitor.h"
 #include "path/walk.h"
 #include "photon/gather/photon_gather.h"
+#include "realtime/scene/frame_heroes.h"
 
 namespace lanthorn {
 
@@ -50,7 +51,8 @@ struct SpecularVisitor {
   }
   void scatter(const SurfaceVertex& v, const NarrowContinuation& answer) {
     path.sampler.seek(visitor_dimensions(v.state.depth));
-    layers.add(class_of_next_event(v.state), next_event(path, v, answer).radiance, false);
+    const DirectLight direct = next_event(path, v, answer);
+    layers.add(class_of_next_event(v.state), direct.radiance, direct.dispersed);
     if (answer.branches_to_sky()) add_sky(path, v, layers);
     if (light && !answer.split.is_all_narrow()) light(v, answer.split, path.limits.max_depth, layers);
   }
@@ -103,9 +105,9 @@ SpecularPlan plan_paths(const GBuffer& seen, const std::vector<GpuMaterial>& mat
 using ClassLight = std::array<Spectrum, path_class_count>;  // by PathClass
 
 ClassLight light_of(const SpecularPath& eye_path, const Scene& scene, const View& view, const SpecularPaths& paths,
-                    const VertexLight& vertex_light, RayCounts& counts) {
-  const Wavelengths w = Wavelengths::rgb(0.5f);
+                    const FrameHeroes& heroes, const VertexLight& vertex_light, RayCounts& counts) {
   const int x = view.window.x0 + eye_path.x, y = view.window.y0 + eye_path.y;
+  const Wavelengths w = heroes.of_pixel(x, y);
   const Vec2 raster = Vec2(static_cast<float>(x), static_cast<float>(y)) + 0.5f + paths.offset;
   Sampler sampler =
       Sampler::for_pixel(paths.seed, stream_of("specular paths of a frame"), view.pixel_key(x, y), paths.frame);
@@ -147,12 +149,14 @@ std::uint64_t SpecularLight::trace(const Scene& scene, const View& view, const G
   gl::require_buffer_texels(texels_of_pixel * plan.pixels.size(), "mirrors, glass and gloss in view",
                             "a smaller picture (-r)");
   const VertexLight light = paths.light();
+  const FrameHeroes heroes(scene.has_dispersion() && paths.disperses, paths.seed, paths.frame);
   std::vector<ClassLight> found(plan.paths.size());
   SharedRayCounts rays;
   constexpr std::size_t chunk = 256;
   parallel_chunks(plan.paths.size(), chunk, [&](std::size_t, std::size_t begin, std::size_t end) {
     RayCounts counts;
-    for (std::size_t i = begin; i < end; ++i) found[i] = light_of(plan.paths[i], scene, view, paths, light, counts);
+    for (std::size_t i = begin; i < end; ++i)
+      found[i] = light_of(plan.paths[i], scene, view, paths, heroes, light, counts);
     rays.add(counts);
   });
   std::vector<PixelLight> lights;

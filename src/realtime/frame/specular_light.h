@@ -35,6 +35,7 @@ struct SpecularPaths {
   /// approximation if above 1, for an eye that moves.
   int spacing = 1;
   EyePaths eye_paths = all_eye_paths;
+  bool disperses = true;               ///< as FrameSettings
   bool finds_indirect = true;          ///< false: direct light alone
   std::function<VertexLight()> light;  ///< of the technique; is called if there are paths
 };

@@ -47,6 +47,9 @@ struct FrameSettings {
   int eye_path_spacing = 1;       ///< SpecularPaths::spacing
   /// For an eye that moves: the GPU draws materials that it knows nearly, instead of eye paths, whose light has noise.
   bool has_stand_ins = false;
+  /// Paths through dispersive glass have wavelengths of their own, and their colours. A single frame shows these as
+  /// coloured noise. False: glass without dispersion.
+  bool disperses = true;
   /// Parallel light has finer maps, and half of its photons, around what is seen of a large scene. Photons from beyond
   /// are few and heavy.
   bool has_light_focus = false;

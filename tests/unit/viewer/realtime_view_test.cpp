@@ -39,6 +39,14 @@ Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-1 0 -1  1 0 -1
   EXPECT_GT(number(large, "ambient"), number(small, "ambient") / 100);
 }
 
+// Coloured noise of dispersive glass does not begin a picture.
+TEST(FrameSettings, FirstFramesAreWithoutDispersion) {
+  const Scene scene = test::scene_from_text("WorldBegin\nShape \"sphere\"\n");
+  const View view = make_view(scene.description().view);
+  EXPECT_FALSE(frame_settings({}, view, 0).disperses);
+  EXPECT_TRUE(frame_settings({}, view, 100).disperses);
+}
+
 // A processor that takes 900 ms for a path in each pixel: the spacing is found in a frame, stays, and goes back when
 // few pixels need paths.
 TEST(EyePathSpacing, FitsTheTimeOfAFrame) {

@@ -88,7 +88,7 @@ void ImageSpacePhotons::follow(const FrameContext& frame) {
   glFlush();
   const auto begin = std::chrono::steady_clock::now();
   FramePhotons found =
-      walk_photons(frame.scene, frame.light_views, starts_, {s.views.seed, s.views.frame, s.max_depth});
+      walk_photons(frame.scene, frame.light_views, starts_, {s.views.seed, s.views.frame, s.max_depth, s.disperses});
   frame.report.rays += found.rays;
   frame.report.stages.push_back({"photon walk (CPU)", milliseconds_since(begin)});
   light_.upload(std::move(found));

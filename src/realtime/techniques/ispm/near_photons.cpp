@@ -26,9 +26,10 @@ void NearPhotons::gather(const SurfaceVertex& vertex, const LobeSplit& split, in
     if (!met.admits({.eye_scatterings = max_depth - static_cast<int>(photons_->depths[i])})) return;
     (i < photons_->indirect ? indirect : caustic) += light_of(photons_->photons[i], met, split);
   });
-  layers.add(PathClass::indirect, vertex.state.beta * indirect, false);
+  const bool is_dispersed = met.is_dispersed(false);  // photons have their colour already
+  layers.add(PathClass::indirect, vertex.state.beta * indirect, is_dispersed);
   layers.add(vertex.state.non_delta == 0 ? PathClass::caustic : PathClass::indirect, vertex.state.beta * caustic,
-             false);
+             is_dispersed);
 }
 
 Spectrum NearPhotons::light_of(const GpuPhoton& photon, const GatherVertex& met, const LobeSplit& split) const {

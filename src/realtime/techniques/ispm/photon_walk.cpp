@@ -9,6 +9,7 @@
 #include "light/light.h"
 #include "path/walk.h"
 #include "photon/incidence.h"
+#include "realtime/scene/frame_heroes.h"
 
 namespace lanthorn {
 
@@ -25,6 +26,7 @@ struct Chunk {
 };
 
 struct StoreVisitor {
+  const Wavelengths& w;
   Chunk& chunk;
 
   Continuation operator()(const MediumVertex&) const { return Continuation::stop(); }
@@ -37,7 +39,7 @@ struct StoreVisitor {
     ++chunk.per_bounce[bounces - 1];
     if (!has_non_delta(vertex.at.bsdf)) return Continuation::go_on();
     const float gain = grazing_gain(std::fabs(dot(vertex.wi, vertex.at.normal)));
-    const Spectrum power = state.beta * gain;
+    const Spectrum power = (state.dispersed ? state.beta * w.dispersed : state.beta) * gain;
     const GpuPhoton photon{vertex.at.position, encode_octahedral<16>(vertex.at.normal),
                            Vec3(power[0], power[1], power[2]), encode_octahedral<16>(vertex.wi)};
     (state.non_delta == 0 ? chunk.caustic : chunk.indirect)
@@ -76,11 +78,11 @@ void follow(const PathContext& path, const PhotonStart& start, const LightView& 
     state.non_delta = 1;
     state.last_delta = false;
     state.previous_normal = surface_normal(start);
-    walk<Transport::importance>(path, leaving_ray(start), state, StoreVisitor{chunk});
+    walk<Transport::importance>(path, leaving_ray(start), state, StoreVisitor{path.w, chunk});
   } else {
     state.previous = view.origin;
     const Ray ray = arriving_ray(start, view, path.scene.bounding_sphere().radius);
-    walk<Transport::importance>(path, ray, state, StoreVisitor{chunk});
+    walk<Transport::importance>(path, ray, state, StoreVisitor{path.w, chunk});
   }
 }
 
@@ -110,7 +112,7 @@ FramePhotons walk_photons(const Scene& scene, const std::vector<LightView>& view
   constexpr std::size_t chunk_size = 1024;
   std::vector<Chunk> chunks((starts.size() + chunk_size - 1) / chunk_size);
   std::atomic<std::uint64_t> rays{0}, started{0};
-  const Wavelengths w = Wavelengths::rgb(0.5f);
+  const FrameHeroes heroes(scene.has_dispersion() && settings.disperses, settings.seed, settings.frame);
   parallel_chunks(starts.size(), chunk_size, [&](std::size_t c, std::size_t begin, std::size_t end) {
     RayCounts counts;
     std::uint64_t alive = 0;
@@ -119,6 +121,7 @@ FramePhotons walk_photons(const Scene& scene, const std::vector<LightView>& view
       ++alive;
       Sampler sampler = Sampler::for_pixel(settings.seed, stream_of("photons of a frame"),
                                            static_cast<std::uint32_t>(i), settings.frame);
+      const Wavelengths w = heroes.of_photon(i);
       const PathContext path{scene, w, sampler, counts, {settings.max_depth - 1, 1}};
       follow(path, starts[i], views[static_cast<std::size_t>(starts[i].view)], chunks[c]);
     }

@@ -40,7 +40,8 @@ using SharedPhotons = std::shared_ptr<const FramePhotons>;
 struct WalkSettings {
   std::uint64_t seed = 0;
   std::uint32_t frame = 0;
-  int max_depth = 64;  ///< scattering events of a whole path, from light to eye
+  int max_depth = 64;     ///< scattering events of a whole path, from light to eye
+  bool disperses = true;  ///< as FrameSettings
 };
 
 /// Follows the photons. The order of the result, and all of it, is a function of the arguments.
