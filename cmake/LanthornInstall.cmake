@@ -15,6 +15,7 @@ endif()
 install(TARGETS lanthorn EXPORT lanthorn)
 install(DIRECTORY include/lanthorn DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN *.h)
 install(FILES README.md LICENSE CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR})
 # The program has written these (apps/lanthorn/CMakeLists.txt).
 install(DIRECTORY ${CMAKE_BINARY_DIR}/share/man/ DESTINATION ${CMAKE_INSTALL_MANDIR})
 install(DIRECTORY ${CMAKE_BINARY_DIR}/share/bash-completion DESTINATION ${CMAKE_INSTALL_DATADIR})
@@ -25,8 +26,13 @@ write_basic_package_version_file(lanthorn-config-version.cmake COMPATIBILITY Sam
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/lanthorn-config.cmake ${CMAKE_CURRENT_BINARY_DIR}/lanthorn-config-version.cmake
         DESTINATION ${package_dir})
 
-# pkg-config knows neither embree nor meshoptimizer, so the file names all libraries by their paths on this machine.
-list(TRANSFORM LANTHORN_LINKED REPLACE "(.+)" "$<TARGET_LINKER_FILE:\\1>" OUTPUT_VARIABLE linked_files)
+# pkg-config knows neither embree nor meshoptimizer, so the file names all libraries by their paths on this machine: shared
+# ones by the link without a version, so that it holds after an update.
+set(linked_files)
+foreach(library IN LISTS LANTHORN_LINKED)
+  set(file $<TARGET_LINKER_FILE:${library}>)
+  list(APPEND linked_files $<IF:$<STREQUAL:$<TARGET_PROPERTY:${library},TYPE>,SHARED_LIBRARY>,$<PATH:REPLACE_EXTENSION,${file},.so>,${file}>)
+endforeach()
 if(LANTHORN_BUILD_VIEWER)
   list(APPEND linked_files -lepoxy)
 endif()

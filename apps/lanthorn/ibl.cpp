@@ -5,14 +5,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <chrono>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -114,6 +117,18 @@ json sh_json(const ShMaps& sh) {
           {"window", sh.window}};
 }
 
+// "lanthornMap", as KTX names its keys, is the attribute "lanthorn:map" in EXR files.
+json attributes_of(const std::map<std::string, std::string>& key_values) {
+  constexpr std::string_view prefix = "lanthorn";
+  json attributes = json::object();
+  for (const auto& [key, value] : key_values) {
+    std::string name = key.substr(prefix.size());
+    name.front() = static_cast<char>(std::tolower(static_cast<unsigned char>(name.front())));
+    attributes[name] = value;
+  }
+  return attributes;
+}
+
 /// A folder that is made if it is not there, and taken away again if nothing is kept in it.
 class OutputFolder {
  public:
@@ -149,7 +164,7 @@ class Files {
   }
   void add_texture(const std::string& name, const std::vector<const Image*>& levels, bool cube,
                    std::map<std::string, std::string> key_values) {
-    if (has("exr")) add_levels(name, levels, json(key_values).dump());
+    if (has("exr")) add_levels(name, levels, attributes_of(key_values).dump());
     const Texture texture{levels, cube, a_.texels};
     key_values["KTXorientation"] = "rd";
     key_values["KTXwriter"] = fmt::format("lanthorn {}", version);

@@ -1,10 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Image files: multi-layer OpenEXR and PNG out; Radiance pictures and what OpenImageIO knows in.
+// Image files: multi-layer OpenEXR, PNG, JPEG and TIFF out; Radiance pictures and what OpenImageIO knows in.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,18 +14,31 @@
 
 namespace lanthorn {
 
-/// Tone curve from linear colours to display values in [0,1].
+/// View transform from linear colours to display values in [0,1].
 enum class ToneCurve : std::uint8_t {
   none,    ///< clamp
   filmic,  ///< a film-like shoulder and toe (Narkowicz 2015, fit of the ACES curve)
+  agx,     ///< bright colours lose their saturation, as on film (Sobotka's AgX)
+};
+
+/// A view of an OpenColorIO configuration.
+struct OcioView {
+  std::string config;         ///< its file
+  std::string display, view;  ///< empty: the configuration's defaults
+  friend bool operator==(const OcioView&, const OcioView&) = default;
 };
 
 struct DisplaySettings {
   static constexpr float largest_exposure = 64;
   float exposure = 0;  ///< stops: colours are scaled by 2^exposure
   ToneCurve curve = ToneCurve::none;
-  bool display_emission = false;  ///< the layer `emission` is shown as it is, without exposure and curve
+  std::optional<OcioView> ocio{};  ///< instead of the curve
+  bool display_emission = false;  ///< the layer `emission` is shown as it is, without exposure, curve and view
 };
+
+/// The layer `color` as a display wants it: R, G, B in [0,1], sRGB-encoded or as the OpenColorIO view has them. Throws
+/// Error if the picture has no such layer, or the view cannot be had.
+Image displayed(const Image& image, const DisplaySettings& display = {});
 
 /// The exposure in stops, a multiple of 0.1, at which the picture is neither dark nor bleached: white surfaces are
 /// white under the light that 10 % of the lit pixels exceed. That light is the sum of the layers direct, indirect and
@@ -34,7 +48,8 @@ struct DisplaySettings {
 /// pictures.
 float measured_exposure(const Image& image);
 
-/// An EXR file of all channels as 32-bit floats (ZIP compression), `image.window` as data and display window.
+/// An EXR file of all channels as 32-bit floats (ZIP compression), `image.window` as data and display window. The
+/// channel depth.Z is called Z there, as other programs expect it, and is depth.Z again in `read_image`.
 /// `metadata`: text of a JSON object, or empty; each member becomes an attribute "lanthorn:NAME" (numbers and strings
 /// as such, all else as JSON text). Same input, same bytes.
 std::vector<unsigned char> encode_exr(const Image& image, const std::string& metadata = {});
@@ -50,7 +65,11 @@ void write_exr(const std::filesystem::path& path, const Image& image, const std:
 void write_png(const std::filesystem::path& path, const Image& image, const DisplaySettings& display = {},
                const std::string& metadata = {});
 
-/// Writes EXR or PNG by the extension of `path`; Error for others.
+/// Extensions of the files that `write_image` writes: .exr, .png ...
+const std::vector<std::string>& picture_extensions();
+
+/// Writes EXR, PNG, JPEG (quality 95) or TIFF (16 bits, displayed as a PNG) by the extension of `path`; Error for
+/// others.
 void write_image(const std::filesystem::path& path, const Image& image, const DisplaySettings& display = {},
                  const std::string& metadata = {});
 
@@ -65,7 +84,7 @@ enum class ColorEncoding : std::uint8_t {
 Image read_image(const std::filesystem::path& path, ColorEncoding encoding = ColorEncoding::automatic,
                  std::uint64_t max_pixels = FileAccess::default_max_pixels);
 
-/// The attributes that `write_exr` or `write_png` wrote ("lanthorn:NAME"), by name without prefix: text of a JSON
+/// The attributes that `write_image` wrote ("lanthorn:NAME"), by name without prefix: text of a JSON
 /// object.
 std::string read_image_metadata(const std::filesystem::path& path);
 

@@ -20,27 +20,50 @@ inline float linear_from_srgb(float x) { return x <= 0.04045f ? x / 12.92f : std
 /// Narkowicz (2015), "ACES filmic tone mapping curve": [0, inf) to [0, 1.03]; not clamped. x >= 0 and finite.
 inline float filmic_curve(float x) { return x * (2.51f * x + 0.03f) / (x * (2.43f * x + 0.59f) + 0.14f); }
 
-/// A linear component to a linear display value in [0,1]: exposure, curve, clamp. NaN becomes black, infinity white.
-inline float exposed(float x, const DisplaySettings& display) {
-  x *= std::exp2(display.exposure);
-  if (!(x > 0)) return 0.0f;
-  // Both curves have reached 1 long before this limit; larger numbers would overflow in the filmic curve.
-  x = std::fmin(x, 1e4f);
-  if (display.curve == ToneCurve::filmic) x = filmic_curve(x);
-  return std::fmin(x, 1.0f);
+/// AgX (Sobotka 2022, "AgX", the script that makes its configuration), linear to display values, with components >= 0
+/// and finite. Colours count in primaries that lie a fifth of the way nearer to white: with w the share of each primary
+/// in the sum X + Y + Z of white, x' = 0.8 x + 0.2 w.x. Their logarithms from 10 stops below middle grey (0.18) to 6.5
+/// above it pass a sigmoid, which has the slope 2 in its middle, and the primaries go back.
+inline Rgb agx(const Rgb& linear) {
+  constexpr float inset = 0.2f, darkest = -10, brightest = 6.5f, middle_grey = 0.18f;
+  const auto white_part = [](const Rgb& c) { return 0.2120f * c.r + 0.3921f * c.g + 0.3959f * c.b; };
+  // y = m + s t / (1 + t^p)^(1/p), t = 2 (x - x_m) / s, with s such that y is 0 at x = 0 and 1 at x = 1.
+  const auto sigmoid = [](float x) {
+    constexpr float slope = 2, pivot = -darkest / (brightest - darkest), middle = 0.5f;
+    const float power = x < pivot ? 3.0f : 3.25f, end = slope * (x < pivot ? pivot : 1 - pivot);
+    const float scale = std::pow((std::pow(end / middle, power) - 1) * std::pow(end, -power), -1 / power);
+    const float t = slope * std::fabs(x - pivot) / scale;
+    const float y = scale * t / std::pow(1 + std::pow(t, power), 1 / power);
+    return x < pivot ? middle - y : middle + y;
+  };
+  const float white = inset * white_part(linear);
+  const auto curve = [&](float x) {
+    const float stops = std::log2(((1 - inset) * x + white) / middle_grey);
+    return sigmoid(std::fmin(std::fmax((stops - darkest) / (brightest - darkest), 0.0f), 1.0f));
+  };
+  const Rgb inside{curve(linear.r), curve(linear.g), curve(linear.b)};
+  const float white_inside = inset * white_part(inside);
+  const auto outside = [&](float x) { return std::fmin(std::fmax((x - white_inside) / (1 - inset), 0.0f), 1.0f); };
+  return {outside(inside.r), outside(inside.g), outside(inside.b)};
 }
 
-/// Linear colour to sRGB-encoded display values in [0,1].
+/// Linear colour to sRGB-encoded display values in [0,1]: exposure, curve, clamp, transfer. NaN becomes black, infinity
+/// white.
 inline Rgb to_display(const Rgb& linear, const DisplaySettings& display) {
-  const auto encode = [&](float x) { return srgb_from_linear(exposed(x, display)); };
-  return {encode(linear.r), encode(linear.g), encode(linear.b)};
-}
-/// The same where `emission`, a part of the colour, is meant for the display: neither exposure nor curve applies to it.
-inline Rgb to_display(const Rgb& linear, const Rgb& emission, const DisplaySettings& display) {
-  const auto encode = [&](float all, float shown) {
-    return srgb_from_linear(std::fmin(exposed(all - shown, display) + std::fmax(shown, 0.0f), 1.0f));
+  const float gain = std::exp2(display.exposure);
+  if (display.curve == ToneCurve::agx) {
+    const auto usable = [&](float x) { return x * gain > 0 ? std::fmin(x * gain, 1e4f) : 0.0f; };
+    return agx({usable(linear.r), usable(linear.g), usable(linear.b)});
+  }
+  const auto encode = [&](float x) {
+    x *= gain;
+    if (!(x > 0)) return 0.0f;
+    // Both curves have reached 1 long before this limit; larger numbers would overflow in the filmic curve.
+    x = std::fmin(x, 1e4f);
+    if (display.curve == ToneCurve::filmic) x = filmic_curve(x);
+    return srgb_from_linear(std::fmin(x, 1.0f));
   };
-  return {encode(linear.r, emission.r), encode(linear.g, emission.g), encode(linear.b, emission.b)};
+  return {encode(linear.r), encode(linear.g), encode(linear.b)};
 }
 
 }  // namespace lanthorn

@@ -41,10 +41,23 @@ struct OpenImage {
   std::function<void(int channels, SampleType as, void* pixels)> read;
 };
 
+/// Colours of a picture, interleaved R, G, B, rows from the top.
+struct CodecColors {
+  int width = 0, height = 0;
+  SampleType samples = SampleType::uint8;  ///< or uint16
+  const void* pixels = nullptr;
+};
+
 /// `format` is OpenImageIO's name of a format ("openexr"). What fails throws a std::exception that says why.
 struct ImageCodec {
   /// `bytes` must outlive what is returned.
   OpenImage (*open)(std::string_view bytes, const char* format);
+  /// A file with a text for its attribute ImageDescription.
+  std::vector<unsigned char> (*encode)(const char* format, const CodecColors& colors, const std::string& text);
+  /// Linear Rec.709 to display values, in place: by a view of the OpenColorIO configuration in the file `config`; empty
+  /// names are its defaults.
+  void (*apply_view)(const std::string& config, const std::string& display, const std::string& view, int width,
+                     int height, float* colors);
   /// Decodes OpenEXR with the calling thread alone from now on.
   void (*use_one_thread)();
 };

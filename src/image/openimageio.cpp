@@ -1,10 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 // The module behind `image_codec`. It uses nothing of the library but headers.
+#include <OpenImageIO/color.h>
 #include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imagebuf.h>
+#include <OpenImageIO/imagebufalgo.h>
 #include <OpenImageIO/imageio.h>
 #include <dlfcn.h>
 
+#include <algorithm>
 #include <atomic>
 #include <memory>
 #include <mutex>
@@ -119,12 +123,70 @@ OpenImage open(std::string_view bytes, const char* format) {
           }};
 }
 
+std::vector<unsigned char> encode(const char* format, const CodecColors& colors, const std::string& text) {
+  const std::unique_ptr<OIIO::ImageOutput> file = OIIO::ImageOutput::create(format);
+  if (!file || !file->supports("ioproxy"))
+    throw std::runtime_error(std::string("OpenImageIO was built without ") + format);
+  const OIIO::TypeDesc type = colors.samples == SampleType::uint16 ? OIIO::TypeUInt16 : OIIO::TypeUInt8;
+  OIIO::ImageSpec spec(colors.width, colors.height, 3, type);
+  const bool is_tiff = std::string_view(format) == "tiff";
+  spec.attribute("compression", is_tiff ? "zip" : "jpeg:95");
+  // A colour space makes a directory of Exif, for which OpenImageIO's TIFF writer would read what it has written.
+  if (!is_tiff) spec.attribute("oiio:ColorSpace", "sRGB");
+  spec.attribute("ImageDescription", text);
+  spec.attribute("Software", "Lanthorn");
+  OIIO::Filesystem::IOVecOutput memory;
+  OIIO::Filesystem::IOProxy* proxy = &memory;
+  spec.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
+  if (!file->open(std::string("image.") + format, spec) || !file->write_image(type, colors.pixels) || !file->close())
+    throw std::runtime_error(file->geterror());
+  return memory.buffer();
+}
+
+// What configurations call our linear colours.
+std::string linear_rec709_of(const OIIO::ColorConfig& config) {
+  const std::vector<std::string> spaces = config.getColorSpaceNames();
+  for (const char* name : {"lin_rec709", "lin_srgb", "Linear Rec.709 (sRGB)", "Linear Rec.709", "Linear BT.709",
+                           "Utility - Linear - sRGB", "Linear sRGB", "Linear", "linear"})
+    if (std::find(spaces.begin(), spaces.end(), name) != spaces.end()) return name;
+  throw std::runtime_error("has no colour space for linear Rec.709 (lin_rec709)");
+}
+
+std::string listed(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
+// The name, or the default for an empty one.
+std::string chosen(const std::string& name, const std::vector<std::string>& names, const char* otherwise,
+                   const char* kind) {
+  const std::string choice = name.empty() && otherwise != nullptr ? otherwise : name;
+  if (std::find(names.begin(), names.end(), choice) == names.end())
+    throw std::runtime_error(std::string("has no ") + kind + " '" + choice + "'; expected one of " + listed(names));
+  return choice;
+}
+
+void apply_view(const std::string& file, const std::string& wanted_display, const std::string& wanted_view, int width,
+                int height, float* colors) {
+  OIIO::ColorConfig config(file);
+  if (config.has_error()) throw std::runtime_error("is no OpenColorIO configuration: " + config.geterror());
+  const std::string display =
+      chosen(wanted_display, config.getDisplayNames(), config.getDefaultDisplayName(), "display");
+  const std::string view =
+      chosen(wanted_view, config.getViewNames(display), config.getDefaultViewName(display), "view");
+  OIIO::ImageBuf pixels(OIIO::ImageSpec(width, height, 3, OIIO::TypeFloat), colors);
+  if (!OIIO::ImageBufAlgo::ociodisplay(pixels, pixels, display, view, linear_rec709_of(config), "", false, "", "",
+                                       &config))
+    throw std::runtime_error("cannot be applied: " + pixels.geterror());
+}
+
 void use_one_thread() { OIIO::attribute("exr_threads", -1); }
 
 }  // namespace
 
 extern "C" const ImageCodec* lanthorn_image_codec() {
-  static constexpr ImageCodec codec{open, use_one_thread};
+  static constexpr ImageCodec codec{open, encode, apply_view, use_one_thread};
   return &codec;
 }
 

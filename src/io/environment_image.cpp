@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -57,6 +58,25 @@ void copy_face(const Image& from, const std::array<std::size_t, 3>& channels, co
     }
 }
 
+bool has_face(const CubePicture& picture, int column, int row) {
+  return std::any_of(picture.places.begin(), picture.places.end(),
+                     [&](const FacePlace& place) { return place.column == column && place.row == row; });
+}
+
+// Beside the faces of a cross there is nothing; a photograph of the same shape has content there. Of each empty place
+// all pixels must be alike.
+bool is_empty_beside_faces(const Image& image, const std::array<std::size_t, 3>& channels, const CubePicture& picture,
+                           int size) {
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) {
+      const int column = x / size, row = y / size;
+      if (has_face(picture, column, row)) continue;
+      for (const std::size_t c : channels)
+        if (image.at(x, y, c) != image.at(column * size, row * size, c)) return false;
+    }
+  return true;
+}
+
 Image read_faces(const std::vector<fs::path>& files, std::uint64_t max_pixels) {
   Image strip;
   for (int face = 0; face < cube_faces; ++face) {
@@ -86,6 +106,7 @@ Image read_layout(const std::vector<fs::path>& files, std::uint64_t max_pixels) 
   for (const CubePicture& picture : cube_pictures) {
     const int size = image.height / picture.rows;
     if (size < 1 || image.width != picture.columns * size || image.height != picture.rows * size) continue;
+    if (!is_empty_beside_faces(image, channels, picture, size)) continue;
     Image strip = empty_strip(size, file);
     for (int face = 0; face < cube_faces; ++face)
       copy_face(image, channels, picture.places[static_cast<std::size_t>(face)], face, strip);
@@ -93,8 +114,8 @@ Image read_layout(const std::vector<fs::path>& files, std::uint64_t max_pixels) 
   }
   if (!layout_of(image))
     throw Error({file.string()},
-                fmt::format("is no environment: it is {} x {} pixels, but must be 2:1 (equirectangular), square "
-                            "(octahedral), or a cube of 6:1, 1:6, 4:3 or 3:4",
+                fmt::format("is no environment: it is {} x {} pixels; expected 2:1 (equirectangular), square "
+                            "(octahedral), a cube of 6:1, 1:6, or a cross of 4:3 or 3:4 with nothing beside its faces",
                             image.width, image.height));
   return image;
 }

@@ -6,19 +6,25 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <exception>
 #include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/memory.h"
 #include "film/display.h"
+#include "image/image_codec.h"
 #include "image/image_encoder.h"
 #include "image/image_file.h"
 #include "lanthorn/error.h"
 #include "lanthorn/file.h"
+#include "lanthorn/text.h"
 
 namespace lanthorn {
 namespace fs = std::filesystem;
@@ -60,6 +66,71 @@ void decode_srgb(Image& image, const ImageHeader& header) {
     if (is_color_channel(header, static_cast<int>(i % count))) image.pixels[i] = linear_from_srgb(image.pixels[i]);
 }
 
+// NaN becomes black.
+template <class Integer>
+std::vector<Integer> whole_numbers(const Image& displayed) {
+  constexpr auto largest = static_cast<float>(std::numeric_limits<Integer>::max());
+  std::vector<Integer> numbers;
+  numbers.reserve(displayed.pixels.size());
+  for (const float x : displayed.pixels)
+    numbers.push_back(static_cast<Integer>(std::lround((x > 0 ? std::fmin(x, 1.0f) : 0) * largest)));
+  return numbers;
+}
+
+template <class Function>
+auto with_codec(const std::string& file, Function&& function) {
+  try {
+    return function(image_codec());
+  } catch (const Error&) {
+    throw;
+  } catch (const std::exception& problem) {
+    throw Error({file}, printable(problem.what()));
+  }
+}
+
+void apply_ocio(const OcioView& ocio, float gain, Image& colors) {
+  read_file(ocio.config);  // which says what is wrong with the name
+  for (float& x : colors.pixels) x = std::isfinite(x) ? x * gain : 0;
+  with_codec(ocio.config, [&](const ImageCodec& codec) {
+    codec.apply_view(ocio.config, ocio.display, ocio.view, colors.width, colors.height, colors.pixels.data());
+  });
+}
+
+void apply_curve(const DisplaySettings& display, Image& colors) {
+  std::vector<float>& values = colors.pixels;
+  for (std::size_t i = 0; i + 2 < values.size(); i += 3) {
+    const Rgb encoded = to_display({values[i], values[i + 1], values[i + 2]}, display);
+    values[i] = encoded.r, values[i + 1] = encoded.g, values[i + 2] = encoded.b;
+  }
+}
+
+// Adds linear light to sRGB-encoded colours.
+void add_light(const Image& light, Image& encoded) {
+  for (std::size_t i = 0; i < encoded.pixels.size(); ++i) {
+    const float sum = linear_from_srgb(encoded.pixels[i]) + std::fmax(light.pixels[i], 0.0f);
+    encoded.pixels[i] = srgb_from_linear(std::fmin(sum, 1.0f));
+  }
+}
+
+// As 8 bits in JPEG and 16 in TIFF files. The metadata are one text, which begins with our prefix.
+std::vector<unsigned char> encode_by_codec(const char* format, const Image& displayed, const std::string& metadata) {
+  const std::string text = std::string(attribute_prefix) + parse_metadata(metadata).dump();
+  CodecColors colors{displayed.width, displayed.height, SampleType::uint8, nullptr};
+  const auto encoded = [&](const auto& numbers, SampleType samples) {
+    colors.samples = samples;
+    colors.pixels = numbers.data();
+    return with_codec({}, [&](const ImageCodec& codec) { return codec.encode(format, colors, text); });
+  };
+  return std::string_view(format) == "tiff" ? encoded(whole_numbers<std::uint16_t>(displayed), SampleType::uint16)
+                                            : encoded(whole_numbers<std::uint8_t>(displayed), SampleType::uint8);
+}
+
+// Layers are called otherwise in files of OpenEXR.
+void rename_channel(Image& image, std::string_view from, const char* to) {
+  if (const auto channel = image.find_channel(from)) image.channels[*channel] = to;
+}
+constexpr const char *depth_channel = "depth.Z", *depth_in_file = "Z";
+
 }  // namespace
 
 std::vector<unsigned char> encode_exr(const Image& image, const std::string& metadata) {
@@ -69,26 +140,31 @@ std::vector<unsigned char> encode_exr(const Image& image, const std::string& met
     attributes.push_back({"spectralLayoutVersion", "1.0"});
     attributes.push_back({"emissiveUnits", "W.m^-2.sr^-1"});
   }
-  return encode_openexr(image, attributes);
+  if (!image.find_channel(depth_channel) || image.find_channel(depth_in_file)) return encode_openexr(image, attributes);
+  Image renamed = image;
+  rename_channel(renamed, depth_channel, depth_in_file);
+  return encode_openexr(renamed, attributes);
+}
+
+Image displayed(const Image& image, const DisplaySettings& display) {
+  std::optional<Image> color = select_layer(image, "color");
+  if (!color) throw Error("cannot write: the picture has no channels R, G, B");
+  if (color->pixels.empty()) throw Error("cannot write: the picture is empty");
+  color->channels = {"R", "G", "B"};
+  std::vector<float>& values = color->pixels;
+  const std::optional<Image> emission = display.display_emission ? select_layer(image, "emission") : std::nullopt;
+  if (emission)
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] -= emission->pixels[i];
+  if (display.ocio)
+    apply_ocio(*display.ocio, std::exp2(display.exposure), *color);
+  else
+    apply_curve(display, *color);
+  if (emission) add_light(*emission, *color);
+  return *std::move(color);
 }
 
 std::vector<unsigned char> encode_png(const Image& image, const DisplaySettings& display, const std::string& metadata) {
-  const auto color = select_layer(image, "color");
-  if (!color) throw Error("cannot write: the picture has no channels R, G, B");
-  if (color->pixels.empty()) throw Error("cannot write: the picture is empty");
-  std::vector<std::uint8_t> pixels(color->pixels.size());
-  const auto emission = display.display_emission ? select_layer(image, "emission") : std::nullopt;
-  const auto rgb_at = [](const Image& layer, std::size_t i) {
-    return Rgb{layer.pixels[i], layer.pixels[i + 1], layer.pixels[i + 2]};
-  };
-  for (std::size_t i = 0; i + 2 < pixels.size(); i += 3) {
-    const Rgb encoded = emission ? to_display(rgb_at(*color, i), rgb_at(*emission, i), display)
-                                 : to_display(rgb_at(*color, i), display);
-    const auto to_byte = [](float x) { return static_cast<std::uint8_t>(std::lround(x * 255)); };
-    pixels[i] = to_byte(encoded.r);
-    pixels[i + 1] = to_byte(encoded.g);
-    pixels[i + 2] = to_byte(encoded.b);
-  }
+  const std::vector<std::uint8_t> pixels = whole_numbers<std::uint8_t>(displayed(image, display));
   std::vector<PngText> texts;
   const json members = parse_metadata(metadata);
   for (const auto& member : members.items())
@@ -112,7 +188,20 @@ void write_image(const fs::path& path, const Image& image, const DisplaySettings
   const std::string extension = lower_extension(path);
   if (extension == ".exr") return write_exr(path, image, metadata);
   if (extension == ".png") return write_png(path, image, display, metadata);
-  throw Error({path.string()}, "unknown kind of picture; its name must end in .exr (all layers, linear) or .png");
+  const bool is_jpeg = extension == ".jpg" || extension == ".jpeg",
+             is_tiff = extension == ".tif" || extension == ".tiff";
+  if (!is_jpeg && !is_tiff)
+    throw Error({path.string()},
+                fmt::format("unknown kind of picture; its name must end in .exr (all layers, linear), {}",
+                            fmt::join(picture_extensions().begin() + 1, picture_extensions().end(), ", ")));
+  const std::vector<unsigned char> bytes =
+      encode_by_codec(is_jpeg ? "jpeg" : "tiff", displayed(image, display), metadata);
+  write_file(path, std::as_bytes(std::span(bytes)));
+}
+
+const std::vector<std::string>& picture_extensions() {
+  static const std::vector<std::string> extensions{".exr", ".png", ".jpg", ".jpeg", ".tif", ".tiff"};
+  return extensions;
 }
 
 Image read_image(const fs::path& path, ColorEncoding encoding, std::uint64_t max_pixels) {
@@ -126,6 +215,7 @@ Image read_image(const fs::path& path, ColorEncoding encoding, std::uint64_t max
   Image image(header.width, header.height, header.channels);
   image.window = header.window;
   file.read(static_cast<int>(header.channels.size()), image.pixels.data());
+  if (!image.find_channel(depth_channel)) rename_channel(image, depth_in_file, depth_channel);
   const bool integers = header.samples != SampleType::float32 && header.samples != SampleType::half;
   if (encoding == ColorEncoding::srgb || (encoding == ColorEncoding::automatic && integers)) decode_srgb(image, header);
   return image;
@@ -135,10 +225,15 @@ std::string read_image_metadata(const fs::path& path) {
   const std::string bytes = read_file(path);
   const ImageFile file(bytes, "the file", {path.string()}, FileAccess::default_max_pixels);
   json metadata = json::object();
-  for (const ImageAttribute& attribute : file.header().attributes)
+  for (const ImageAttribute& attribute : file.header().attributes) {
+    const auto* const text = std::get_if<std::string>(&attribute.value);
+    if (attribute.name == "ImageDescription" && text != nullptr && text->starts_with(attribute_prefix))
+      if (json all = json::parse(text->substr(attribute_prefix.size()), nullptr, false); all.is_object())
+        metadata.update(all);
     if (attribute.name.starts_with(attribute_prefix))
       std::visit([&](const auto& value) { metadata[attribute.name.substr(attribute_prefix.size())] = value; },
                  attribute.value);
+  }
   return metadata.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 

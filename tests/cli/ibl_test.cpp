@@ -41,6 +41,8 @@ TEST_F(CliIbl, WritesAllMapsByTheirNames) {
   EXPECT_EQ(level.width, 6 * 16);
   EXPECT_EQ(level.height, 16);
   EXPECT_EQ(read_image(path("out/brdf.exr")).width, 128);
+  EXPECT_EQ(metadata_of("out/specular-1.exr")["alphas"], "0 0.25 1");
+  EXPECT_TRUE(contains(metadata_of("out/irradiance.exr")["map"], "irradiance over pi"));
   const nlohmann::json report = json("out/report.json");
   EXPECT_EQ(report["environment"]["layout"], "equirectangular");
   EXPECT_EQ(report["suns"]["texels"], 1);

@@ -34,6 +34,7 @@ function(check_files)
                         ${LIBDIR}/cmake/lanthorn/lanthorn-config.cmake ${LIBDIR}/cmake/lanthorn/lanthorn-config-version.cmake
                         ${LIBDIR}/cmake/lanthorn/lanthorn-targets.cmake share/man/man1/lanthorn.1
                         share/man/man1/lanthorn-render.1 share/bash-completion/completions/lanthorn
+                        share/doc/lanthorn/docs/using.md share/doc/lanthorn/docs/methods/vcm.md
                         share/doc/lanthorn/README.md share/doc/lanthorn/LICENSE share/doc/lanthorn/CHANGELOG.md)
     require_file(${prefix}/${file})
   endforeach()
@@ -70,6 +71,10 @@ function(check_pkg_config)
   set(ENV{PKG_CONFIG_PATH} ${prefix}/${LIBDIR}/pkgconfig)
   execute_process(COMMAND ${pkg_config} --static --cflags --libs lanthorn OUTPUT_VARIABLE flags
                   OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
+  # An update of a library by a patch must not break programs that are built after it.
+  if(flags MATCHES "[.]so[.0-9]+")
+    message(SEND_ERROR "lanthorn.pc names a version of a library: ${flags}")
+  endif()
   separate_arguments(flags UNIX_COMMAND "${flags}")
   run(${COMPILER} -std=c++20 ${example}/main.cpp -o ${work}/by_pkg_config ${flags})
   expect_render(${work}/by_pkg_config pkg-config.png)

@@ -410,6 +410,37 @@ TEST(Display, MapsToTheUnitInterval) {
   EXPECT_FLOAT_EQ(to_display({1e30f, 0, 0}, filmic).r, 1);
 }
 
+// What the construction says of its curve: middle grey in the middle, black 10 stops below it, white 6.5 above it, and
+// the slope 2 in the middle, over all 16.5 stops.
+TEST(Display, AgxKeepsGreysAndTakesSaturationFromBrightColours) {
+  const auto grey = [](float x) { return agx({x, x, x}); };
+  EXPECT_NEAR(grey(0.18f).r, 0.5f, 1e-5f);
+  EXPECT_NEAR(grey(0.18f * std::exp2(-10.0f)).r, 0, 1e-4f);
+  EXPECT_NEAR(grey(0.18f * std::exp2(6.5f)).r, 1, 1e-4f);
+  EXPECT_NEAR(grey(0).g, 0, 1e-6f);
+  EXPECT_NEAR(grey(1e4f).b, 1, 1e-5f);
+  const float step = 0.01f;
+  EXPECT_NEAR((grey(0.18f * std::exp2(step)).r - grey(0.18f * std::exp2(-step)).r) / (2 * step), 2 / 16.5f, 1e-3f);
+  float before = -1;
+  for (float stops = -10; stops <= 6.5f; stops += 0.25f) {
+    const Rgb c = grey(0.18f * std::exp2(stops));
+    EXPECT_NEAR(c.r, c.g, 1e-5f);
+    EXPECT_NEAR(c.r, c.b, 1e-5f);
+    EXPECT_GT(c.r, before);
+    before = c.r;
+  }
+  // From dim to bright, red turns to white without going through another hue.
+  const Rgb dim = agx({0.1f, 0, 0}), bright = agx({100, 0, 0});
+  EXPECT_GT(dim.r, 2 * dim.g);
+  EXPECT_GT(bright.g, 0.6f * bright.r);
+  EXPECT_NEAR(bright.g, bright.b, 0.02f);
+  // A colour that is white by our primaries is not changed by their inset: as many parts red, green and blue as white.
+  const DisplaySettings display{.exposure = 1, .curve = ToneCurve::agx};
+  EXPECT_NEAR(to_display({0.09f, 0.09f, 0.09f}, display).r, 0.5f, 1e-5f);
+  EXPECT_FLOAT_EQ(to_display({infinity, infinity, infinity}, display).r, 1);
+  EXPECT_NEAR(to_display({-1, std::nanf(""), 0}, display).r, 0, 1e-6f);
+}
+
 // A picture of 100 x 1 pixels: surfaces of one albedo in one light, a lamp over a fifth of it, and the rest black.
 Image lit_picture(float albedo, float light, int surfaces) {
   std::vector<std::string> channels{"R", "G", "B"};
@@ -552,7 +583,7 @@ TEST(ImageFile, UnreadableFilesAreErrors) {
   EXPECT_THROW(read_image(dir.path()), Error);
   EXPECT_THROW(read_image(dir.write("text.exr", "not an image")), Error);
   EXPECT_THROW(read_image(dir.write("text.pbrt", "WorldBegin")), Error);
-  EXPECT_THROW(write_image(dir.path() / "a.jpg", test_image(), {}, {}), Error);
+  EXPECT_THROW(write_image(dir.path() / "a.gif", test_image(), {}, {}), Error);
 }
 
 std::size_t files_in(const std::filesystem::path& folder) {

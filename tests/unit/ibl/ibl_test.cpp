@@ -562,9 +562,35 @@ TEST(BrdfTable, ThirdChannelIsTheAlbedoOfSheen) {
 TEST(ContactSheet, HasARowForEachMap) {
   const Ibl ibl = bake_ibl(equirectangular(64, smooth), small());
   const Image sheet = contact_sheet(ibl);
-  EXPECT_EQ(sheet.width, 6 * 100 + 4);
-  EXPECT_EQ(sheet.height, static_cast<int>(ibl.specular.size() + 2) * 100 + 4);
-  EXPECT_NEAR(sheet.at(4 + 48, 4 + 48, 0), smooth({1, 0, 0}).r, 0.02f);
+  constexpr int left = 88, top = 14;  // of the labels
+  EXPECT_EQ(sheet.width, left + 6 * 100 + 4);
+  EXPECT_EQ(sheet.height, top + static_cast<int>(ibl.specular.size() + 2) * 100 + 4);
+  EXPECT_NEAR(sheet.at(left + 4 + 48, top + 4 + 48, 0), smooth({1, 0, 0}).r, 0.02f);
+}
+
+// Its labels in dots: "+X" above the first face, "SPECULAR" and its roughness before the first row.
+TEST(ContactSheet, HasLabels) {
+  const Ibl ibl = bake_ibl(equirectangular(64, smooth), small());
+  const Image sheet = contact_sheet(ibl);
+  const auto text = [&](int left, int top, int characters) {
+    std::string rows;
+    for (int y = 0; y < 5; ++y, rows += '\n')
+      for (int x = 0; x < 4 * characters - 1; ++x) rows += sheet.at(left + 2 * x, top + 2 * y, 1) > 0 ? '#' : ' ';
+    return rows;
+  };
+  EXPECT_EQ(text(88 + 4, 4, 2),
+            "    # #\n"
+            " #  # #\n"
+            "###  # \n"
+            " #  # #\n"
+            "    # #\n");
+  EXPECT_EQ(text(4, 14 + 4, 2),
+            "### ###\n"
+            "#   # #\n"
+            "### ###\n"
+            "  # #  \n"
+            "### #  \n");
+  EXPECT_EQ(text(4, 14 + 4 + 14, 1).substr(0, 8), "###\n# #\n") << "0.00";
 }
 
 }  // namespace

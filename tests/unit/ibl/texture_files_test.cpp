@@ -189,8 +189,16 @@ TEST_F(EnvironmentFiles, ThatAreNoneAreNamed) {
   const auto odd = save("odd.exr", Image(10, 4, {"R", "G", "B"}));
   EXPECT_EQ(problem_of({odd}),
             odd.string() +
-                ": is no environment: it is 10 x 4 pixels, but must be 2:1 (equirectangular), square "
-                "(octahedral), or a cube of 6:1, 1:6, 4:3 or 3:4");
+                ": is no environment: it is 10 x 4 pixels; expected 2:1 (equirectangular), square (octahedral), a cube "
+                "of 6:1, 1:6, or a cross of 4:3 or 3:4 with nothing beside its faces");
+  // A photograph has the shape of a cross, but something in its corners.
+  for (const auto& [width, height] : std::vector<std::array<int, 2>>{{8, 6}, {6, 8}}) {
+    Image photograph(width, height, {"R", "G", "B"});
+    for (std::size_t i = 0; i < photograph.pixels.size(); ++i)
+      photograph.pixels[i] = 0.5f + 0.001f * static_cast<float>(i);
+    EXPECT_NE(problem_of({save("photograph.exr", photograph)}).find("a cross of 4:3 or 3:4 with nothing beside"),
+              std::string::npos);
+  }
   const auto depth = save("depth.exr", Image(4, 2, {"Z"}));
   EXPECT_EQ(problem_of({depth}), depth.string() + ": is no environment: it has no channels R, G, B");
   const auto face = save("face.exr", Image(2, 2, {"R", "G", "B"})),

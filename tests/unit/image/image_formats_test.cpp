@@ -4,13 +4,16 @@
 #include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <cstddef>
+#include <nlohmann/json.hpp>
 #include <numeric>
 #include <random>
 #include <string>
 #include <thread>
+#include <tuple>
 #include <vector>
 
 #include "image/image_encoder.h"
@@ -122,6 +125,98 @@ TEST_F(ImageFormats, OpenExrSaysWhatItCannotHold) {
   EXPECT_NE(error_text([] {
               encode_openexr(Image(1, 1, {"R"}), {{std::string(256, 'n'), 1}});
             }).find("more than 255 characters"),
+            std::string::npos);
+}
+
+TEST_F(ImageFormats, OtherProgramsKnowColoursAndDepthOfOpenExr) {
+  Image image(2, 1, {"R", "G", "B", "depth.Z", "normal.Z"});
+  for (std::size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] = static_cast<float>(i);
+  const auto file = open_elsewhere("a.exr", encode_exr(image));
+  const OIIO::ImageSpec& spec = file->spec();
+  EXPECT_EQ(spec.z_channel, spec.channelindex("Z"));
+  EXPECT_GE(spec.z_channel, 0);
+  EXPECT_GE(spec.channelindex("normal.Z"), 0);
+  std::array<float, 8> rec709{};
+  ASSERT_TRUE(spec.getattribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8), rec709.data()));
+  EXPECT_EQ(rec709, (std::array<float, 8>{0.64f, 0.33f, 0.30f, 0.60f, 0.15f, 0.06f, 0.3127f, 0.3290f}));
+  // Here it is the layer that it was.
+  write_exr(dir_.path() / "b.exr", image);
+  const Image again = read_image(dir_.path() / "b.exr");
+  ASSERT_TRUE(again.find_channel("depth.Z"));
+  EXPECT_EQ(again.at(1, 0, *again.find_channel("depth.Z")), 8);
+}
+
+// A gradient, which JPEG keeps but for a few steps.
+TEST_F(ImageFormats, JpegAndTiffShowWhatPngDoes) {
+  Image image(64, 32, {"R", "G", "B"});
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) {
+      image.at(x, y, 0) = static_cast<float>(x) / 80;
+      image.at(x, y, 1) = static_cast<float>(y) / 40;
+      image.at(x, y, 2) = 0.2f;
+    }
+  const DisplaySettings display{.exposure = 1, .curve = ToneCurve::agx};
+  const Image shown = displayed(image, display);
+  for (const auto& [name, step, type] :
+       std::vector<std::tuple<std::string, float, OIIO::TypeDesc>>{{"a.tif", 0.5f / 65535, OIIO::TypeUInt16},
+                                                                   {"a.TIFF", 0.5f / 65535, OIIO::TypeUInt16},
+                                                                   {"a.png", 0.5f / 255, OIIO::TypeUInt8},
+                                                                   {"a.jpg", 6.0f / 255, OIIO::TypeUInt8},
+                                                                   {"a.jpeg", 6.0f / 255, OIIO::TypeUInt8}}) {
+    SCOPED_TRACE(name);
+    const auto path = dir_.path() / name;
+    write_image(path, image, display, R"({"integrator":"vcm","passes":3})");
+    const auto file = OIIO::ImageInput::open(path.string());
+    ASSERT_TRUE(file) << OIIO::geterror();
+    EXPECT_EQ(file->spec().format, type);
+    std::vector<float> pixels(shown.pixels.size());
+    ASSERT_TRUE(file->read_image(0, 0, 0, 3, OIIO::TypeFloat, pixels.data()));
+    for (std::size_t i = 0; i < pixels.size(); ++i) ASSERT_NEAR(pixels[i], shown.pixels[i], step + 1e-6f) << i;
+    EXPECT_EQ(nlohmann::json::parse(read_image_metadata(path))["integrator"], "vcm");
+  }
+  EXPECT_NE(error_text([&] { write_image(dir_.path() / "a.gif", image); }).find(".png, .jpg, .jpeg, .tif, .tiff"),
+            std::string::npos);
+}
+
+// A configuration whose view halves the logarithm: display = linear^0.5, and one whose view keeps red alone.
+TEST_F(ImageFormats, OpenColorIoShowsWhatItsConfigurationSays) {
+  dir_.write("own.ocio", R"(ocio_profile_version: 2
+roles: {default: raw, scene_linear: lin_rec709}
+file_rules:
+  - !<Rule> {name: Default, colorspace: default}
+displays:
+  Screen:
+    - !<View> {name: Root, colorspace: root}
+    - !<View> {name: Red, colorspace: red}
+active_displays: [Screen]
+active_views: [Root, Red]
+colorspaces:
+  - !<ColorSpace> {name: raw, isdata: true}
+  - !<ColorSpace> {name: lin_rec709}
+  - !<ColorSpace>
+    name: root
+    from_scene_reference: !<ExponentTransform> {value: [0.5, 0.5, 0.5, 1]}
+  - !<ColorSpace>
+    name: red
+    from_scene_reference: !<MatrixTransform> {matrix: [1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1]}
+)");
+  const std::string config = (dir_.path() / "own.ocio").string();
+  Image image(1, 1, {"R", "G", "B"});
+  image.pixels = {0.25f, 0.04f, 0.16f};
+  const auto shown = [&](const std::string& display, const std::string& view, float exposure) {
+    return displayed(image, {.exposure = exposure, .ocio = OcioView{config, display, view}}).pixels;
+  };
+  const auto expect = [](const std::vector<float>& pixels, const std::vector<float>& expected) {
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(pixels[i], expected[i], 1e-4f) << i;
+  };
+  expect(shown("", "", 0), {0.5f, 0.2f, 0.4f});
+  expect(shown("", "", 2), {1, 0.4f, 0.8f});
+  expect(shown("Screen", "Red", 0), {0.25f, 0, 0});
+  EXPECT_NE(error_text([&] { shown("Screen", "Blue", 0); }).find("no view 'Blue'; expected one of Root, Red"),
+            std::string::npos);
+  EXPECT_NE(error_text([&] {
+              displayed(image, {.ocio = OcioView{"nosuch.ocio", "", ""}});
+            }).find("no such file"),
             std::string::npos);
 }
 
