@@ -10,6 +10,9 @@
 #include <type_traits>
 #include <utility>
 
+#include "light/brightness.h"
+#include "scene/scene_data.h"
+
 namespace lanthorn {
 
 namespace {
@@ -59,8 +62,10 @@ struct Maker {
   }
   SpectrumCurve emission() const {
     if (!source.emission) return SpectrumCurve::constant(0);
-    return spectra.curve(*source.emission, SpectrumRole::illuminant, space, source.location)
-        .scaled(source.emission_scale);
+    const SpectrumCurve curve =
+        spectra.curve(*source.emission, SpectrumRole::illuminant, space, source.location).scaled(source.emission_scale);
+    check_radiance(largest_value(curve), source.location);
+    return curve;
   }
   template <class T, class U>
   static SampledGrid<T> grid(const description::MediumGrid<U>& g) {

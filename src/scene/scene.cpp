@@ -110,9 +110,7 @@ std::optional<SourceLocation> Scene::locate(const Ray& ray) const {
   const std::optional<GeometryHit> hit = data_->geometry.intersect(ray);
   return hit ? std::optional(data_->geometry.location(*hit)) : std::nullopt;
 }
-const SourceLocation& Scene::light_location(std::uint32_t light) const {
-  return std::prev(data_->light_locations.upper_bound(light))->second;
-}
+const SourceLocation& Scene::light_location(std::uint32_t light) const { return data_->light_location(light); }
 const SceneStatistics& Scene::statistics() const { return data_->statistics; }
 const std::vector<description::Warning>& Scene::warnings() const { return data_->description.warnings; }
 const SceneDescription& Scene::description() const { return data_->description; }

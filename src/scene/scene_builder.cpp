@@ -417,6 +417,10 @@ std::shared_ptr<const SceneData> build(SceneDescription&& description) {
   return data;
 }
 
+const SourceLocation& SceneData::light_location(std::uint32_t light) const {
+  return std::prev(light_locations.upper_bound(light))->second;
+}
+
 float shutter_middle(const SceneDescription& description) {
   const description::Camera& camera = description.view.camera;
   return lerp(0.5f, camera.shutter_open, std::max(camera.shutter_open, camera.shutter_close));
@@ -428,9 +432,19 @@ void warn_once(SceneDescription& description, const SourceLocation& location, co
   if (!known) description.warnings.push_back({location, message});
 }
 
+// Products of light with densities and areas must stay below the largest float, 3e38.
 void check_power(const Light& light, const SourceLocation& location) {
-  if (!std::isfinite(power(light)))
-    throw Error(location, "the light's power is not finite: it is too bright, or it or the scene is too large");
+  constexpr float most = 1e32f;  // the sun's is 4e26
+  if (!(power(light) <= most))
+    throw Error(location, "the light's power exceeds 1e32 W: it is too bright, or it or the scene is too large");
+}
+
+void check_radiance(float radiance, const SourceLocation& location) {
+  constexpr float most = 1e25f;  // the sun's is 2e7
+  if (!(radiance <= most))
+    throw Error(location,
+                "the emission is too bright: its radiance, or that of a white surface near the light, exceeds 1e25 "
+                "W/(m² sr)");
 }
 
 BoundingSphere bounding_sphere(const Bounds& box) {
@@ -460,15 +474,24 @@ float find_largest_radiance(const SceneData& data) {
   constexpr std::size_t chunk = 4096, most_rays = std::size_t{1} << 18;
   const std::size_t rays =
       std::clamp<std::size_t>(most_rays / std::max<std::size_t>(1, data.lights.size()), 1, 64);  // of a light
-  std::vector<float> largest((data.lights.size() + chunk - 1) / chunk);
+  struct Brightest {
+    float radiance = 0;
+    std::uint32_t light = 0;
+  };
+  std::vector<Brightest> of_chunks((data.lights.size() + chunk - 1) / chunk);
   parallel_chunks(data.lights.size(), chunk, [&](std::size_t c, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Light& light = data.lights[i];
       const float distance = is_point(light) ? distance_lit(data, light, HashRng(i), rays) : 0;
-      largest[c] = std::max(largest[c], largest_radiance(light, distance));
+      const float radiance = largest_radiance(light, distance);
+      if (radiance > of_chunks[c].radiance) of_chunks[c] = {radiance, static_cast<std::uint32_t>(i)};
     }
   });
-  return largest.empty() ? 0 : *std::max_element(largest.begin(), largest.end());
+  Brightest brightest;
+  for (const Brightest& b : of_chunks)
+    if (b.radiance > brightest.radiance) brightest = b;
+  if (brightest.radiance > 0) check_radiance(brightest.radiance, data.light_location(brightest.light));
+  return brightest.radiance;
 }
 
 void index_lights(SceneData& data) {

@@ -40,6 +40,9 @@ struct SceneData {
   SceneData(const SceneData&) = delete;
   SceneData& operator=(const SceneData&) = delete;
 
+  /// Where the light, an index of `lights`, is described.
+  const SourceLocation& light_location(std::uint32_t light) const;
+
   std::vector<std::shared_ptr<const void>> kept;  ///< parts of other scenes that parts of this one point to
 
   SceneDescription description;
@@ -75,12 +78,14 @@ std::shared_ptr<const SceneData> build(SceneDescription&& description);
 float shutter_middle(const SceneDescription& description);
 /// Appends the warning unless one says the same.
 void warn_once(SceneDescription& description, const SourceLocation& location, const std::string& message);
-/// Lights are chosen in proportion to their power: throws Error at `location` unless it is finite.
+/// Throws Error at `location` if the light's power is so large that numbers computed from it might overflow.
 void check_power(const Light& light, const SourceLocation& location);
+/// The same for a radiance, in any channel or at any wavelength.
+void check_radiance(float radiance, const SourceLocation& location);
 /// A sphere around all surfaces; the unit sphere if there are none.
 BoundingSphere bounding_sphere(const Bounds& box);
 /// Largest radiance of any light, in any channel. For lights without extent, that of a white surface where they first
-/// meet one. Depends on lights and geometry.
+/// meet one. Depends on lights and geometry. Throws Error as `check_radiance` does.
 float find_largest_radiance(const SceneData& data);
 /// What follows from the lights: their index, which are infinite, the largest radiance.
 void index_lights(SceneData& data);

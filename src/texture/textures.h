@@ -96,7 +96,7 @@ class TextureGraph {
     std::size_t lookups = 0;  ///< nodes, each as often as it is evaluated; noise counts once for each octave
   };
   /// The largest cost. Chains are evaluated recursively, and nodes that share inputs evaluate them anew.
-  static constexpr Cost most{256, 10'000};
+  static constexpr Cost most{256, 1'000};
   Cost cost(const FloatInput& input) const { return input.node ? float_costs_[*input.node] : Cost{}; }
   Cost cost(const SpectrumInput& input) const { return input.node ? spectrum_costs_[*input.node] : Cost{}; }
 

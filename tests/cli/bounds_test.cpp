@@ -111,7 +111,7 @@ TEST_F(Bounds, TexturesThatNameEachOtherTooOftenAreRefused) {
     write("doubling.pbrt", scene(kind, {"tex1", "tex2"}, 60));
     for (const std::string command : {"render", "photons"})
       refuse({command, "doubling.pbrt", "-o", command == "render" ? "a.exr" : "a.ply"},
-             "doubling.pbrt:31:1: a value of this texture takes more than 10000 lookups");
+             "doubling.pbrt:27:1: a value of this texture takes more than 1000 lookups");
   }
   for (const std::string kind : {"mix", "checkerboard"}) {
     write("deep.pbrt.gz", test::gzip(scene(kind, {"tex1"}, 8200)));

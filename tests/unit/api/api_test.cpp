@@ -18,6 +18,7 @@
 #include "lanthorn/scene.h"
 #include "lanthorn/session.h"
 #include "lanthorn/state.h"
+#include "lanthorn/threads.h"
 #include "support/temporary_dir.h"
 
 namespace {
@@ -108,6 +109,13 @@ TEST(Api, AStoppedPassLeavesNoTrace) {
     undisturbed.render_pass();
     EXPECT_EQ(session.picture().pixels, undisturbed.picture().pixels) << "one more pass";
   }
+}
+
+// Embree can limit the threads of the whole program.
+TEST(Api, ScenesLeaveTheNumberOfThreads) {
+  const unsigned before = lanthorn::thread_count();
+  const SharedScene scene = load(box);
+  EXPECT_EQ(lanthorn::thread_count(), before);
 }
 
 TEST(Api, ThePictureCanBeHadWhilePassesRun) {

@@ -456,12 +456,12 @@ TEST(SceneMaterials, RefusesDeepAndDoublingMixes) {
     return test::error_text([&] { EXPECT_TRUE(at_uv(world(text + unit_quad), 0.5f, 0.5f)); });
   };
   const std::string deep = "mixes of materials name each other more than 256 deep",
-                    costly = "this mix takes more than 10000 lookups: each part counts as often as others name it";
+                    costly = "this mix takes more than 1000 lookups: each part counts as often as others name it";
   const std::string half = "\"float amount\" 0.5";
   EXPECT_EQ(error_of(256, false, half), "no error");
   EXPECT_EQ(error_of(10'000, false, half), "test scene:261:1: " + deep);
-  EXPECT_EQ(error_of(13, true, half), "no error");
-  EXPECT_EQ(error_of(60, true, half), "test scene:18:1: " + costly);
+  EXPECT_EQ(error_of(9, true, half), "no error");
+  EXPECT_EQ(error_of(60, true, half), "test scene:14:1: " + costly);
   EXPECT_EQ(error_of(60, true, "\"float amount\" 1"), "no error");
 }
 

@@ -458,16 +458,33 @@ TEST(SceneLights, WhatCannotEmitSaysSo) {
   EXPECT_EQ(at->light, 0u);
 }
 
-TEST(SceneLights, PowersAreFinite) {
+TEST(SceneLights, MayNotBeSoBrightThatNumbersOverflow) {
   const auto error_of = [](const std::string& directives) { return test::error_text([&] { world(directives); }); };
-  const std::string message = "the light's power is not finite: it is too bright, or it or the scene is too large";
+  const std::string message = "the light's power exceeds 1e32 W: it is too bright, or it or the scene is too large";
   const std::string lamp = std::string(area_light) + "Shape \"bilinearmesh\" \"point3 P\" ";
   EXPECT_EQ(error_of(lamp + "[0 0 0 1 0 0 0 1e15 0 1 1 0]\n"), "no error");
   EXPECT_EQ(error_of(lamp + "[0 0 0 1 0 0 0 1e38 0 1 1 0]\n"), "test scene:5:1: " + message);
   EXPECT_EQ(error_of("LightSource \"point\" \"rgb I\" [9 9 9] \"float scale\" 1e38\n"), "test scene:4:1: " + message);
-  const std::string sun = "LightSource \"distant\" \"float scale\" 1e30\n";
+  const std::string sun = "LightSource \"distant\" \"float scale\" 1e24\n";
   EXPECT_EQ(error_of(sun), "no error");
-  EXPECT_EQ(error_of(sun + "Shape \"sphere\" \"float radius\" 1e9\n"), "test scene:4:1: " + message);
+  EXPECT_EQ(error_of(sun + "Shape \"sphere\" \"float radius\" 1e5\n"), "test scene:4:1: " + message);
+  const std::string bright =
+      "the emission is too bright: its radiance, or that of a white surface near the light, exceeds 1e25 W/(m² sr)";
+  const std::string weak = "LightSource \"infinite\"\n";
+  EXPECT_EQ(error_of(weak + "LightSource \"infinite\" \"rgb L\" [0 2e25 0]\n"), "test scene:5:1: " + bright);
+  EXPECT_EQ(error_of("AreaLightSource \"diffuse\" \"rgb L\" [1e38 3 1] \"bool twosided\" true\n"
+                     "Shape \"curve\" \"float width\" 1e-8 \"point3 P\" [0 0 0 1 0 0 1 1 0 0 1 0]\n" +
+                     weak),
+            "test scene:5:1: " + bright);
+  // A medium without end is no light.
+  EXPECT_EQ(error_of("MakeNamedMedium \"m\" \"string type\" \"homogeneous\" \"rgb Le\" [2e25 0 0]\n"
+                     "MediumInterface \"\" \"m\" Shape \"sphere\"\n"),
+            "test scene:4:1: " + bright);
+  // A point light is as bright as what it lights.
+  const std::string near = "LightSource \"point\" \"rgb I\" [1e24 0 0]\n";
+  EXPECT_EQ(error_of(near + weak), "no error");
+  EXPECT_EQ(error_of(weak + near + "Translate 0 0 .2 Shape \"disk\" \"float radius\" 10\n"),
+            "test scene:5:1: " + bright);
 }
 
 }  // namespace

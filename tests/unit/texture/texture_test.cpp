@@ -345,19 +345,19 @@ TEST(TextureGraph, RefusesDeepChains) {
 
 TEST(TextureGraph, RefusesDoublingChains) {
   const std::string message =
-      ":1: a value of this texture takes more than 10000 lookups: each texture counts as often as others name it";
+      ":1: a value of this texture takes more than 1000 lookups: each texture counts as often as others name it";
   for (const std::string type : {"float", "spectrum"})
     for (const Chain& c : chains) {
       if (c.twice.empty()) continue;
-      EXPECT_EQ(error_of_last(chain(c.kind, c.twice, 12, type)), "no error") << c.kind;
-      EXPECT_EQ(error_of_last(chain(c.kind, c.twice, 60, type)), "t.pbrt:15" + message) << c.kind;
+      EXPECT_EQ(error_of_last(chain(c.kind, c.twice, 8, type)), "no error") << c.kind;
+      EXPECT_EQ(error_of_last(chain(c.kind, c.twice, 60, type)), "t.pbrt:11" + message) << c.kind;
     }
-  EXPECT_EQ(error_of_last(chain("scale", "tex scale", 60, "float")), "t.pbrt:15" + message);
+  EXPECT_EQ(error_of_last(chain("scale", "tex scale", 60, "float")), "t.pbrt:11" + message);
   // Each octave of noise counts.
-  std::string noise = chain("mix", "tex1 tex2", 10, "float");
+  std::string noise = chain("mix", "tex1 tex2", 8, "float");
   EXPECT_EQ(error_of_last(noise), "no error");
   noise.replace(noise.find("\"bilerp\""), 8, "\"fbm\" \"integer octaves\" 24");
-  EXPECT_EQ(error_of_last(noise), "t.pbrt:11" + message);
+  EXPECT_EQ(error_of_last(noise), "t.pbrt:8" + message);
 }
 
 TEST(TextureGraph, RefusesTexturesThatNameThemselves) {
