@@ -111,8 +111,7 @@ json picture_settings(const std::string& file) {
   constexpr int deepest = 8;
   const auto limit_depth = [](int depth, json::parse_event_t, const json&) { return depth <= deepest; };
   json settings = json::parse(read_image_metadata(file));
-  constexpr std::array<std::string_view, 6> numbers{"seed",      "passes",  "photons",
-                                                    "max_depth", "seconds", "cut_share"};
+  constexpr std::array<std::string_view, 6> numbers{"seed", "passes", "photons", "max_depth", "seconds", "cut_share"};
   for (const auto& member : settings.items()) {
     json& value = member.value();
     if (!value.is_string()) continue;

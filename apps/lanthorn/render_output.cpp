@@ -86,9 +86,10 @@ void warn_of_limit(const StateSummary& state) {
   constexpr double much = 0.002;
   if (state.cut_share < much) return;
   const nlohmann::json settings = nlohmann::json::parse(state.settings);
-  warn("the limit of {} scattering events ended paths that still had {:.2g} % of the throughput: light may be missing "
-       "where paths are long; a higher --max-depth finds it",
-       settings.at("identity").at("max_depth").get<int>(), 100 * state.cut_share);
+  warn(
+      "the limit of {} scattering events ended paths that still had {:.2g} % of the throughput: light may be missing "
+      "where paths are long; a higher --max-depth finds it",
+      settings.at("identity").at("max_depth").get<int>(), 100 * state.cut_share);
 }
 
 void write_report(const std::string& path, const Scene& scene, const RenderState& state,

@@ -33,7 +33,8 @@ Polygon clipped(const Polygon& polygon, int axis, double sign, double limit) {
   return kept;
 }
 
-/// Solid angle of a polygon on a face of a map of `size`, sr: that of a fan of triangles (Van Oosterom & Strackee 1983).
+/// Solid angle of a polygon on a face of a map of `size`, sr: that of a fan of triangles (Van Oosterom & Strackee
+/// 1983).
 double solid_angle_of(const Polygon& polygon, int size) {
   std::vector<glm::dvec3> corners;
   corners.reserve(polygon.size());
@@ -61,7 +62,8 @@ std::vector<Direction> outline_of(const Environment& environment, const ImagePar
   const auto side = [&](float x, float y, float dx, float dy) {
     for (int i = 0; i < steps; ++i) {
       const float t = static_cast<float>(i) / steps;
-      outline.push_back(environment.direction_at(part.x + (x + t * dx) * part.width, part.y + (y + t * dy) * part.height));
+      outline.push_back(
+          environment.direction_at(part.x + (x + t * dx) * part.width, part.y + (y + t * dy) * part.height));
     }
   };
   side(0, 0, 1, 0);
@@ -116,8 +118,7 @@ void add_suns(const Environment& environment, CubeMap& map) {
   for (const Environment::Sun& sun : environment.suns())
     for (int j = 0; j < parts; ++j)
       for (int i = 0; i < parts; ++i) {
-        const std::vector<Direction> outline =
-            outline_of(environment, {place(sun.x, i), place(sun.y, j), step, step});
+        const std::vector<Direction> outline = outline_of(environment, {place(sun.x, i), place(sun.y, j), step, step});
         for (int face = 0; face < cube_faces; ++face)
           add_polygon(on_face(outline, face, map.size()), sun.excess, face, solid_angles, map);
       }

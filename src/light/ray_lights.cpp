@@ -16,8 +16,8 @@ struct Interval {
 };
 
 /// The t of o + t d in a cone with its tip at the origin and a half angle below 90 degrees. `d` is a unit vector. The
-/// cone is convex, so that it is one interval. It is the part of a double cone, (o + t d)·axis² >= cos² |o + t d|², where
-/// (o + t d)·axis >= 0.
+/// cone is convex, so that it is one interval. It is the part of a double cone, (o + t d)·axis² >= cos² |o + t d|²,
+/// where (o + t d)·axis >= 0.
 Interval part_in_cone(const glm::dvec3& o, const glm::dvec3& d, const glm::dvec3& axis, double cos) {
   constexpr double endless = std::numeric_limits<double>::infinity();
   const double along = glm::dot(o, axis), slope = glm::dot(d, axis), cos2 = cos * cos;

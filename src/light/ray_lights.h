@@ -13,10 +13,10 @@
 
 namespace lanthorn {
 
-/// Samples a light at a point and a distance along a segment, with a density in proportion to the light's intensity over
-/// its squared distance, in the part of the segment that its cone contains: equiangular sampling (Kulla & Fajardo 2012,
-/// "Importance Sampling Techniques for Path Tracing in Participating Media"), for all such lights together. Occlusion
-/// and what the medium absorbs are not considered.
+/// Samples a light at a point and a distance along a segment, with a density in proportion to the light's intensity
+/// over its squared distance, in the part of the segment that its cone contains: equiangular sampling (Kulla & Fajardo
+/// 2012, "Importance Sampling Techniques for Path Tracing in Participating Media"), for all such lights together.
+/// Occlusion and what the medium absorbs are not considered.
 class RayLights {
  public:
   RayLights() = default;

@@ -45,11 +45,11 @@ struct EmissionVisitor {
 
 RayCounts see_emission(const RenderJob& job, const EyeShare& share, std::uint32_t pass, Film& film) {
   const WalkLimits limits{share.unlit_glow ? job.settings.max_depth : share.scatterings, 3};
-  RayCounts rays = trace_eye_paths(
-      job, {pass, limits}, film,
-      [&](const PathContext& path, const EyeStart& start, const PixelPlace&, LightLayers& layers) {
-        walk_from_camera(path, start.camera, job.view.medium, EmissionVisitor{path, share, layers});
-      });
+  RayCounts rays =
+      trace_eye_paths(job, {pass, limits}, film,
+                      [&](const PathContext& path, const EyeStart& start, const PixelPlace&, LightLayers& layers) {
+                        walk_from_camera(path, start.camera, job.view.medium, EmissionVisitor{path, share, layers});
+                      });
   rays.eye = {};  // paths to emission alone: the limit cuts off nothing of what they look for
   return rays;
 }

@@ -63,11 +63,11 @@ class OwnPathDraw {
 /// its time.
 ///
 /// Where something `disperses`, light has the colour of the heroes alone, and these must be as even as the offsets are.
-/// In spectral mode 32 passes are then a block of eight offsets, of which each of the four wavelengths is the hero once.
-/// After a block, the heroes are the same rectangle rule with 32 nodes that all wavelengths are. Eight passes have the
-/// eight offsets, and their heroes lie in the eight eighths of the range. Of the orders with these properties, this is
-/// one whose heroes have the best colour after 2, 4, 8 and 16 passes. `round` changes which offsets go with which
-/// quarter of the shutter interval, and heroes go with all quarters alike.
+/// In spectral mode 32 passes are then a block of eight offsets, of which each of the four wavelengths is the hero
+/// once. After a block, the heroes are the same rectangle rule with 32 nodes that all wavelengths are. Eight passes
+/// have the eight offsets, and their heroes lie in the eight eighths of the range. Of the orders with these properties,
+/// this is one whose heroes have the best colour after 2, 4, 8 and 16 passes. `round` changes which offsets go with
+/// which quarter of the shutter interval, and heroes go with all quarters alike.
 inline Wavelengths wavelengths_of_pass(std::uint64_t seed, ColorMode mode, std::uint32_t pass, bool disperses) {
   const float shift = unit_float(hash_words({seed, static_cast<std::uint64_t>(Stream::pass), 1}));
   const auto shifted = [shift](float u) { return u + shift < 1 ? u + shift : u + shift - 1; };

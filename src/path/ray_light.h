@@ -7,13 +7,13 @@
 
 namespace lanthorn {
 
-/// Single scattering along rays. Next-event estimation where a walk scatters seldom finds a narrow beam in thin fog, and
-/// hardly ever what is close to a light. So the light of lights at points is also sampled along the ray as if each point
-/// of it scattered, where these lights shine (`RayLights`). The balance heuristic joins both techniques, in the measure
-/// of light and distance.
+/// Single scattering along rays. Next-event estimation where a walk scatters seldom finds a narrow beam in thin fog,
+/// and hardly ever what is close to a light. So the light of lights at points is also sampled along the ray as if each
+/// point of it scattered, where these lights shine (`RayLights`). The balance heuristic joins both techniques, in the
+/// measure of light and distance.
 ///
-/// Only the rays before the first scattering that is not specular have the second technique: later ones are too many for
-/// what it costs.
+/// Only the rays before the first scattering that is not specular have the second technique: later ones are too many
+/// for what it costs.
 class RayLight {
  public:
   /// One sample of the light along the ray, which is remembered for `next_event_at`.

@@ -330,8 +330,8 @@ inline void note_end(const PathContext& path, const WalkState& end, const Spectr
   ++ends.paths;
   if (end.depth <= path.limits.max_depth) return;
   constexpr float most = 1 << 10;
-  const float share = walk_detail::magnitude(end.beta, end.dispersed, path.w.mode) /
-                      walk_detail::magnitude(start, false, path.w.mode);
+  const float share =
+      walk_detail::magnitude(end.beta, end.dispersed, path.w.mode) / walk_detail::magnitude(start, false, path.w.mode);
   if (share > 0) ends.cut += static_cast<std::uint64_t>(PathEnds::unit * static_cast<double>(std::min(share, most)));
 }
 

@@ -52,9 +52,9 @@ TEST(Media, WhiteFurnace) {
     EXPECT_TRUE(test::runs_agree(mean(scene, options(integrator, 8)), 1, 0, 0.05, test::false_alarm_rate / 2));
 }
 
-// White media in a white world are invisible, however dense: the light in them scatters hundreds of times, for which the
-// default limit of scattering events has to leave room. A limit of 64 darkens this ball to .84. (vcm is
-// right, too, but takes a hundred times as many passes to show it.)
+// White media in a white world are invisible, however dense: the light in them scatters hundreds of times, for which
+// the default limit of scattering events has to leave room. A limit of 64 darkens this ball to .84. (vcm is right, too,
+// but takes a hundred times as many passes to show it.)
 TEST(Media, WhiteFurnaceOfMilk) {
   const Scene scene = test::scene_from_text(
       "LookAt 0 0 -8  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [8]\n" + film + "WorldBegin\n" +
@@ -72,11 +72,11 @@ TEST(Media, WhiteFurnaceOfMilk) {
 
 // What the limit of scattering events cuts off is counted, the same for any number of threads and shards.
 TEST(Media, CutPathsAreCounted) {
-  const Scene scene = test::scene_from_text(
-      "LookAt 0 0 3  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [30]\n" + film + "WorldBegin\n" +
-      fog("\"rgb sigma_a\" [0 0 0] \"rgb sigma_s\" [20 20 20]") +
-      "LightSource \"infinite\" \"rgb L\" [1 1 1]\n"
-      "MediumInterface \"fog\" \"\"\nMaterial \"interface\"\nShape \"sphere\"\n");
+  const Scene scene =
+      test::scene_from_text("LookAt 0 0 3  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [30]\n" + film +
+                            "WorldBegin\n" + fog("\"rgb sigma_a\" [0 0 0] \"rgb sigma_s\" [20 20 20]") +
+                            "LightSource \"infinite\" \"rgb L\" [1 1 1]\n"
+                            "MediumInterface \"fog\" \"\"\nMaterial \"interface\"\nShape \"sphere\"\n");
   RenderOptions o = options("path", 64);
   o.max_depth = 8;
   const RenderState state = test::render_state(scene, o);

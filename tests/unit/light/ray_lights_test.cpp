@@ -29,7 +29,8 @@ std::vector<Segment> random_segments(int count) {
   return segments;
 }
 
-// Cones that are narrow, wide, and wider than half of the sphere; a point; and a lamp with a surface, which has no part.
+// Cones that are narrow, wide, and wider than half of the sphere; a point; and a lamp with a surface, which has no
+// part.
 std::vector<Light> some_lights() {
   return {spot({-1, 0, 0}, {1, 0.1f, 0}, 8), AreaLight{}, spot({0, 1, 0}, {0.2f, -1, 0.3f}, 60),
           spot({0.5f, 0, 1}, {0, 0, -1}, 120), PointLight{{0.3f, -0.4f, 0.2f}, one}};
@@ -45,8 +46,8 @@ TEST(RayLights, DensitiesIntegrateToOne) {
     for (int i = 0; i < steps; ++i)
       for (const std::uint32_t light : {0u, 1u, 2u, 3u, 4u})
         sum += static_cast<double>(segment.length) / steps *
-               static_cast<double>(lights.pdf(segment, strength, light,
-                                              segment.length * (static_cast<float>(i) + 0.5f) / steps));
+               static_cast<double>(
+                   lights.pdf(segment, strength, light, segment.length * (static_cast<float>(i) + 0.5f) / steps));
     EXPECT_NEAR(sum, 1, 2e-3);
   }
 }

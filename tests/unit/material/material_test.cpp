@@ -377,8 +377,8 @@ TEST(SceneMaterials, IndicesAreThoseOfTheHeroWavelength) {
 TEST(SceneMaterials, ConstantSpectraDisperseNothing) {
   for (const char* material : {"dielectric", "coateddiffuse", "coatedconductor", "thindielectric"}) {
     const char* const name = std::string(material) == "coatedconductor" ? "interface.eta" : "eta";
-    const Scene scene = world(fmt::format("Material \"{}\" \"spectrum {}\" [360 1.5 500 1.5 830 1.5]\n{}", material,
-                                          name, unit_quad));
+    const Scene scene =
+        world(fmt::format("Material \"{}\" \"spectrum {}\" [360 1.5 500 1.5 830 1.5]\n{}", material, name, unit_quad));
     EXPECT_FALSE(scene.has_dispersion()) << material;
     EXPECT_FALSE(scene.has_measured_spectra()) << material;
   }

@@ -111,7 +111,8 @@ TEST(WavelengthsOfPass, WhatDispersesIsNearlyWhiteBefore) {
 // Eight passes have their heroes in eight eighths of the scale of wavelengths, from which `spectral` draws.
 TEST(WavelengthsOfPass, HeroesAreSpread) {
   std::vector<float> scale;
-  for (int i = 0; i < 4096; ++i) scale.push_back(Wavelengths::spectral((static_cast<float>(i) + 0.5f) / 4096).lambda[0]);
+  for (int i = 0; i < 4096; ++i)
+    scale.push_back(Wavelengths::spectral((static_cast<float>(i) + 0.5f) / 4096).lambda[0]);
   for (std::uint32_t first = 0; first < 64; first += 8) {
     std::vector<double> places;
     for (std::uint32_t pass = first; pass < first + 8; ++pass) {
