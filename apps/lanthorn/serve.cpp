@@ -48,7 +48,7 @@ std::string command_of(const ServeCommand& a, const SceneChanges& changes, std::
   render.options.memory.reset();
   render.options.seconds.reset();
   render.options.passes = passes;
-  render.changes = changes;
+  render.changes = moved(changes, changes.look, changes.lights);
   std::erase_if(render.changes.lights, [](const auto& light) { return light.second == 1; });
   render.outputs = {"picture.exr"};
   return render_command_line(render);

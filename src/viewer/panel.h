@@ -49,7 +49,7 @@ struct Panel {
   std::size_t method = 0;
   RealtimeSettings settings;
   float exposure = 0;  ///< stops
-  bool filmic = false;
+  ToneCurve curve = ToneCurve::none;
   int layer = 0;  ///< 0: all of them; else 1 + index of emission, direct, indirect, caustic
   std::vector<LightRow> lights;
   std::optional<std::size_t> selected_light;

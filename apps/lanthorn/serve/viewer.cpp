@@ -50,7 +50,7 @@ nlohmann::json to_json(const LookAt& look, bool is_mirrored) {
 Viewer::Viewer(const SharedScene& scene, ViewerSettings settings)
     : scene_(scene),
       settings_(std::move(settings)),
-      session_(scene_of(settings_.changes), view_of(*scene_, settings_.changes), settings_.options),
+      session_(scene_of(settings_.changes), view_of(*scene_, settings_.changes, settings_.options), settings_.options),
       warnings_(session_.warnings()),
       lights_(lights_of(description_of(*scene))),
       coarse_pixels_(first_coarse_pixels) {
@@ -66,9 +66,8 @@ Viewer::Viewer(const SharedScene& scene, ViewerSettings settings)
 }
 
 RenderOptions Viewer::coarse_options(double pixels) const {
-  const description::Film& film = description_of(*scene_).view.film;
   RenderOptions options = settings_.options;
-  const std::array<int, 2> full = options.resolution.value_or(std::array<int, 2>{film.width, film.height});
+  const std::array<int, 2> full = film_size(description_of(*scene_).view, options);
   const double share = std::sqrt(std::min(1.0, pixels / full_pixels_));
   const auto scaled = [share](int x) { return static_cast<int>(std::lround(share * x)); };
   options.resolution = {std::max(1, scaled(full[0])), std::max(1, scaled(full[1]))};
@@ -155,7 +154,8 @@ void Viewer::render_coarse(const Wanted& wanted) {
 // Returns the seconds that it took.
 double Viewer::render_coarse(const Wanted& wanted, double pixels) {
   const Clock::time_point start = Clock::now();
-  Session session(scene_of(wanted.changes), view_of(*scene_, wanted.changes), coarse_options(pixels));
+  const RenderOptions options = coarse_options(pixels);
+  Session session(scene_of(wanted.changes), view_of(*scene_, wanted.changes, options), options);
   // The first picture of a camera is worth waiting for; those after it are not.
   const bool is_first = pixels <= coarse_pixels_;
   const RenderStatistics statistics =
@@ -170,7 +170,7 @@ void Viewer::refine(const Wanted& wanted) {
       session_.set_scene(scene_of(wanted.changes));
       session_lights_ = lights;
     }
-    session_.set_view(view_of(*scene_, wanted.changes));
+    session_.set_view(view_of(*scene_, wanted.changes, settings_.options));
     const std::lock_guard lock(mutex_);
     full_revision_ = wanted.revision;
   }
@@ -259,8 +259,9 @@ void Viewer::show(const Wanted& wanted, const RenderState& state, const RenderSt
   metadata["passes"] = summary.pass_count;
   const std::lock_guard lock(mutex_);
   if (!has_home_) {
-    const LookAt here = look_of(view_of(*scene_, {}), settings_.options, 1);
-    home_ = look_of(view_of(*scene_, {}), settings_.options, distance_to_middle(*image, *scene_, here.eye));
+    const ViewDescription home = view_of(*scene_, moved(settings_.changes, {}, {}), settings_.options);
+    const LookAt here = look_of(home, settings_.options, 1);
+    home_ = look_of(home, settings_.options, distance_to_middle(*image, *scene_, here.eye));
     has_home_ = true;
   }
   nlohmann::json lights = nlohmann::json::object();

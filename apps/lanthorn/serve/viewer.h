@@ -63,6 +63,8 @@ class Viewer {
   const std::vector<description::Warning>& warnings() const { return warnings_; }
   const std::vector<NamedLight>& lights() const { return lights_; }
   const Scene& scene() const { return *scene_; }
+  /// What is seen at the start.
+  ViewDescription first_view() const { return view_of(*scene_, settings_.changes, settings_.options); }
 
  private:
   using Clock = std::chrono::steady_clock;

@@ -137,8 +137,8 @@ void draw_tone(Panel& panel) {
   ImGui::SliderFloat("Exposure", &panel.exposure, -8, 8, "%+.1f stops");
   if (ImGui::IsItemClicked(ImGuiMouseButton_Right)) panel.exposure = 0;
   tip("Right click: 0");
-  int curve = panel.filmic ? 1 : 0;
-  if (ImGui::Combo("Curve", &curve, "Clipped\0Filmic\0")) panel.filmic = curve == 1;
+  int curve = static_cast<int>(panel.curve);
+  if (ImGui::Combo("View", &curve, "Clipped\0Filmic\0AgX\0")) panel.curve = static_cast<ToneCurve>(curve);
   ImGui::Combo("Layer", &panel.layer, "All light\0Emission\0Direct\0Indirect\0Caustic\0");
 }
 
