@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "commands.h"
 #include "console.h"
@@ -34,8 +35,14 @@ Image picture_of(const DevelopCommand& a) {
   return image;
 }
 
+std::vector<std::string> display_extensions() {
+  std::vector<std::string> extensions = picture_extensions();
+  std::erase(extensions, ".exr");
+  return extensions;
+}
+
 void run(const DevelopCommand& a) {
-  check_outputs({{a.picture, "the picture"}}, {{a.output, "OUTPUT", {".png"}}}, a.settings.force);
+  check_outputs({{a.picture, "the picture"}}, {{a.output, "OUTPUT", display_extensions()}}, a.settings.force);
   write_picture(a.output, picture_of(a), a.settings, false, read_image_metadata(a.picture));
   announce("{}: layer {} of {}\n", a.output, a.layer, a.picture);
 }
@@ -47,7 +54,7 @@ OptionTable develop_options(DevelopCommand& a) {
                      .required = true},
                     {.names = "output",
                      .value = into(a.output, text_type("FILE")),
-                     .brief = "File to write (.png)",
+                     .brief = "File to write (.png, .jpg, .tif)",
                      .required = true},
                     layer_option(a.layer, "Layer to show")};
   table = joined(std::move(table), display_options(a.settings, "0"));
@@ -61,12 +68,12 @@ OptionTable develop_options(DevelopCommand& a) {
 void add_develop(CLI::App& app) {
   const auto a = std::make_shared<DevelopCommand>();
   constexpr const char* footer =
-      "The .png is that which render writes with the same options. Settings that the picture holds are kept.\n\n"
+      "The picture is that which render writes with the same options. Settings that the picture holds are kept.\n\n"
       "Examples:\n"
-      "  lanthorn develop picture.exr picture.png --exposure auto --filmic\n"
+      "  lanthorn develop picture.exr picture.png --exposure auto --view-transform agx\n"
       "  lanthorn develop picture.exr caustic.png --layer caustic --exposure 2";
-  add_command(app, {"develop", "Make a PNG of a picture: exposure, tone curve, layer", develop_options(*a), footer,
-                    [a] { run(*a); }});
+  add_command(app, {"develop", "Make a PNG, JPEG or TIFF of a picture: exposure, view transform, layer",
+                    develop_options(*a), footer, [a] { run(*a); }});
 }
 
 }  // namespace lanthorn::program

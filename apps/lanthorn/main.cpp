@@ -1,14 +1,19 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstddef>
 #include <exception>
 #include <new>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "commands.h"
 #include "console.h"
 #include "lanthorn/error.h"
 #include "lanthorn/realtime.h"
+#include "lanthorn/scene.h"
 #include "lanthorn/threads.h"
 #include "lanthorn/version.h"
 #include "rescue.h"
@@ -17,9 +22,24 @@
 namespace lanthorn::program {
 namespace {
 
+// A scene alone is rendered; "help" is another word for --help.
+std::vector<std::string> completed(std::vector<std::string> words) {
+  if (words.empty() || words.front().starts_with('-')) return words;
+  if (words.front() == "help") {
+    words.erase(words.begin());
+    words.resize(std::min<std::size_t>(words.size(), 1));
+    words.emplace_back("--help");
+  } else if (is_scene_file(words.front())) {
+    words.insert(words.begin(), "render");
+  }
+  return words;
+}
+
 int run_command(CLI::App& app, int argc, char** argv) {
   try {
-    app.parse(argc, argv);
+    std::vector<std::string> words = completed({argv + 1, argv + argc});
+    std::reverse(words.begin(), words.end());  // as CLI11 wants them
+    app.parse(std::move(words));
     return 0;
   } catch (const CLI::RuntimeError& e) {
     return e.get_exit_code();
@@ -31,15 +51,16 @@ int run_command(CLI::App& app, int argc, char** argv) {
 int run(int argc, char** argv) {
   CLI::App app("Lanthorn renders light that other renderers lose: caustics, glass, water, lamps behind glass.",
                "lanthorn");
-  app.set_version_flag("--version", version);
+  app.set_version_flag("-v,--version", version);
   app.require_subcommand(1);
   app.footer(
       "Exit codes: 0 done, also after a signal if the passes so far are saved; 1 a comparison that failed; 2 bad "
       "input, "
       "or a\nfile that cannot be written; 3 an internal error.\n\n"
       "Examples:\n"
+      "  lanthorn scene.pbrt                   # the same as lanthorn render scene.pbrt\n"
       "  lanthorn render scene.pbrt -o picture.png --time 30s\n"
-      "  lanthorn render --help");
+      "  lanthorn help render");
   add_suggestions(app);
   add_render(app);
   add_serve(app);

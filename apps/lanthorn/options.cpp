@@ -101,6 +101,11 @@ std::string command_line(const std::string& command, const OptionTable& table) {
   return text;
 }
 
+std::vector<std::string> joined(std::vector<std::string> words, const std::vector<std::string>& more) {
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
 void refuse_value(const std::string& option, const std::string& text, const std::string& expected,
                   const std::vector<std::string>& known) {
   throw CLI::ValidationError(

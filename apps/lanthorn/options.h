@@ -83,6 +83,7 @@ CLI::App& add_command(CLI::App& program, Command command);
 /// their defaults; quoted for a shell.
 std::string command_line(const std::string& command, const OptionTable& table);
 
+std::vector<std::string> joined(std::vector<std::string> words, const std::vector<std::string>& more);
 /// Ends the parsing with a message.
 [[noreturn]] void refuse_value(const std::string& option, const std::string& text, const std::string& expected,
                                const std::vector<std::string>& known);
@@ -90,7 +91,7 @@ std::string command_line(const std::string& command, const OptionTable& table);
 template <class Value>
 Value parse_value(const ValueType<Value>& type, const std::string& option, const std::string& text) {
   std::optional<Value> value = type.parse(text);
-  if (!value) refuse_value(option, text, type.expected, type.words);
+  if (!value) refuse_value(option, text, type.expected, joined(type.words, type.similar(text)));
   return *std::move(value);
 }
 

@@ -61,12 +61,33 @@ void warn_of_exposure(const fs::path& path, const Image& image, const DisplaySet
     return;
   }
   const double clipped = share_above(white, brightest);
-  if (clipped <= few || display.curve != ToneCurve::none) return;
+  if (clipped <= few || display.curve != ToneCurve::none || display.ocio) return;
   const auto bright =
       brightest.begin() + static_cast<std::ptrdiff_t>((1 - few) * static_cast<double>(brightest.size()));
   std::nth_element(brightest.begin(), bright, brightest.end());
-  warn("{}: {:.0f} % of the pixels are brighter than white: --exposure {:.1f} or --filmic shows them", path.string(),
-       100 * clipped, std::floor(-10 * std::log2(static_cast<double>(*bright))) / 10);
+  warn("{}: {:.0f} % of the pixels are brighter than white: --exposure {:.1f} or --view-transform filmic shows them",
+       path.string(), 100 * clipped, std::floor(-10 * std::log2(static_cast<double>(*bright))) / 10);
+}
+
+}  // namespace
+
+namespace {
+
+// CONFIG, or CONFIG:DISPLAY/VIEW.
+ValueType<OcioView> ocio_type() {
+  const auto parse = [](std::string_view text) -> std::optional<OcioView> {
+    if (text.empty()) return std::nullopt;
+    const std::size_t colon = text.rfind(':');
+    const std::string_view after = colon == text.npos ? std::string_view() : text.substr(colon + 1);
+    const std::size_t slash = after.find('/');
+    if (slash == after.npos || colon == 0) return OcioView{std::string(text), "", ""};
+    return OcioView{std::string(text.substr(0, colon)), std::string(after.substr(0, slash)),
+                    std::string(after.substr(slash + 1))};
+  };
+  return {"CONFIG[:DISPLAY/VIEW]", "the file of an OpenColorIO configuration, or CONFIG:DISPLAY/VIEW", parse,
+          [](const OcioView& ocio) {
+            return ocio.display.empty() ? ocio.config : fmt::format("{}:{}/{}", ocio.config, ocio.display, ocio.view);
+          }};
 }
 
 }  // namespace
@@ -84,12 +105,27 @@ OptionTable display_options(OutputSettings& settings, const std::string& default
   constexpr double most = DisplaySettings::largest_exposure;
   return {{.names = "--exposure",
            .value = through<Stops>(number_or_word_type({-most, most}, "auto"), set, get),
-           .brief = "For .png: stops of exposure, or auto",
+           .brief = "Of all pictures but .exr: stops of exposure, or auto",
            .details = "auto makes a white surface in the light of the picture white, and says the number.",
            .otherwise = default_exposure},
-          {.names = "--filmic",
-           .value = flag(settings.display.curve, ToneCurve::filmic),
-           .brief = "For .png: a filmic tone curve instead of clipping"}};
+          view_transform_option(settings.display),
+          {.names = "--ocio",
+           .value = into(settings.display.ocio, ocio_type()),
+           .brief = "In place of these: a view of an OpenColorIO configuration",
+           .details = "CONFIG is its file; without DISPLAY/VIEW it is the configuration's default. The exposure counts "
+                      "before it."}};
+}
+
+ValueType<ToneCurve> view_transform_type() {
+  return choice_type<ToneCurve>({{"none", ToneCurve::none}, {"filmic", ToneCurve::filmic}, {"agx", ToneCurve::agx}});
+}
+
+Option view_transform_option(DisplaySettings& display) {
+  return {.names = "--view-transform",
+          .value = into(display.curve, view_transform_type()),
+          .brief = "How bright colours fit on a display",
+          .details = "none clips them; filmic has a shoulder; agx takes their saturation, too, as film does.",
+          .otherwise = "none"};
 }
 
 OutputSettings shown_as(const DisplaySettings& display, bool measures_exposure, bool film_measures) {
@@ -116,8 +152,8 @@ OptionTable output_options(OutputSettings& settings) {
 Option outputs_option(std::vector<std::string>& outputs, const std::string& what, const std::string& otherwise) {
   return {.names = "-o,--output",
           .value = each_into(outputs, text_type("FILE")),
-          .brief = what + ": .exr, .png or .state; may be given several times",
-          .details = ".exr has all layers, .png the color; a .state can be resumed or merged.",
+          .brief = what + ": .exr, .png, .jpg, .tif or .state; may be given several times",
+          .details = ".exr has all layers, .png, .jpg and .tif (16 bits) the color; a .state can be resumed or merged.",
           .otherwise = otherwise};
 }
 
@@ -130,7 +166,7 @@ bool displays_emission(const std::string& metadata) {
   return found != members.end() && (*found == true || *found == "true");
 }
 
-// Returns how the picture is shown if it is a .png.
+// Returns how the picture is shown unless it is an .exr.
 DisplaySettings write(const fs::path& path, const Image& image, const OutputSettings& settings, bool measures_exposure,
                       const std::string& metadata) {
   DisplaySettings display = settings.display;
@@ -152,7 +188,7 @@ void write_picture(const fs::path& path, const Image& image, const OutputSetting
                    const std::string& metadata) {
   const bool is_measured = settings.measures_exposure.value_or(measures_exposure);
   const DisplaySettings display = write(path, image, settings, is_measured, metadata);
-  if (!settings.hints || lower_extension(path) != ".png") return;
+  if (!settings.hints || lower_extension(path) == ".exr") return;
   if (is_measured)
     announce("{}: --exposure {:.1f}, measured from the picture\n", path.string(), display.exposure);
   else

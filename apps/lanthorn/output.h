@@ -16,17 +16,20 @@
 namespace lanthorn::program {
 
 struct OutputSettings {
-  DisplaySettings display;                ///< for .png
-  std::optional<bool> measures_exposure;  ///< from each .png, instead of the display's; none: as the scene wants it
+  DisplaySettings display;                ///< of all pictures but .exr
+  std::optional<bool> measures_exposure;  ///< from each of them, instead of the display's; none: as the scene wants it
   bool reproducible = false;              ///< no times in the files
-  bool hints = true;                      ///< says the measured exposure of a .png, or a better one if it is too bright
+  bool hints = true;                      ///< says the measured exposure, or a better one if it is too bright
   bool force = false;  ///< replace states that hold something else, and files that are write-protected
 };
 
 /// The default of --exposure, for the help, where it depends on the scene's file.
 inline constexpr const char* exposure_of_scene =
     "auto for glTF and OBJ files with lights, since they have no exposure; else 0";
-/// --exposure and --filmic.
+ValueType<ToneCurve> view_transform_type();
+/// --view-transform.
+Option view_transform_option(DisplaySettings& display);
+/// --exposure, --view-transform and --ocio. `default_exposure`: for the help.
 OptionTable display_options(OutputSettings& settings, const std::string& default_exposure);
 /// The settings of a picture that is shown like this. `film_measures`: without --exposure, the exposure is measured.
 OutputSettings shown_as(const DisplaySettings& display, bool measures_exposure, bool film_measures);
@@ -38,13 +41,18 @@ OptionTable output_options(OutputSettings& settings);
 Option outputs_option(std::vector<std::string>& outputs, const std::string& what, const std::string& otherwise);
 
 /// What `write_output` writes, by extension.
-inline const std::vector<std::string> output_extensions{".exr", ".png", ".state"};
+inline const std::vector<std::string> output_extensions = [] {
+  std::vector<std::string> extensions = picture_extensions();
+  extensions.emplace_back(".state");
+  return extensions;
+}();
 
 /// Writes the picture of a running render. Throws Error.
 void write_preview(const std::filesystem::path& path, const RenderState& state, const OutputSettings& settings);
 
-/// Writes a picture. Says the measured exposure of a .png, and warns if many of its pixels are brighter than white or
-/// nearly all are black, if the settings say so. `measures_exposure`: unless the settings say whether. Throws Error.
+/// Writes a picture. Says the measured exposure unless it is an .exr, and warns if many of its pixels are brighter than
+/// white or nearly all are black, if the settings say so. `measures_exposure`: unless the settings say whether. Throws
+/// Error.
 void write_picture(const std::filesystem::path& path, const Image& image, const OutputSettings& settings,
                    bool measures_exposure, const std::string& metadata);
 

@@ -23,6 +23,7 @@ constexpr Unit byte_units[]{{"", 1}, {"k", 0x1p10}, {"K", 0x1p10}, {"M", 0x1p20}
 // A number and its unit; nothing unless the text is just that and the product finite.
 std::optional<double> scaled(std::string_view text, std::span<const Unit> units) {
   double value = 0;
+  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
   const char* const end = text.data() + text.size();
   const auto [next, error] = std::from_chars(text.data(), end, value);
   const std::string_view name(next, static_cast<std::size_t>(end - next));

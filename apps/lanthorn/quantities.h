@@ -18,7 +18,7 @@ std::optional<double> parse_duration(std::string_view text);
 /// Bytes, one at least: "65536", "64k", "512M", "2G" (powers of 1024; "MB" and "MiB" are the same). Nothing for any
 /// other text.
 std::optional<std::uint64_t> parse_bytes(std::string_view text);
-/// A finite number. Nothing for any other text.
+/// A finite number: "1.5", "+1", "-2e-3". Nothing for any other text.
 std::optional<double> parse_number(std::string_view text);
 
 }  // namespace lanthorn::program

@@ -13,6 +13,7 @@
 #include "checkpoint.h"
 #include "commands.h"
 #include "console.h"
+#include "frames.h"
 #include "lanthorn/error.h"
 #include "lanthorn/scene.h"
 #include "lanthorn/session.h"
@@ -71,6 +72,11 @@ struct Onlookers {
   std::optional<TevLink> tev{};
 };
 
+// Throws Error if --tev is no host and port.
+std::optional<HostPort> viewer_of(const RenderCommand& a) {
+  return a.tev.empty() ? std::nullopt : std::optional(parse_host_port(a.tev, "--tev"));
+}
+
 Observer make_observer(const RenderCommand& a, Onlookers& onlookers) {
   Observer observer;
   observer.progress = [&](const RenderState& state, const RenderStatistics& s) {
@@ -88,24 +94,31 @@ Observer make_observer(const RenderCommand& a, Onlookers& onlookers) {
 }
 
 // A picture in which nothing is seen says nothing of what is wrong.
-void explain_black(const RenderCommand& a, const Scene& scene, const std::vector<fs::path>& outputs,
+void explain_black(const RenderCommand& a, const Scene& scene, const ViewDescription& view, const fs::path& output,
                    const Session& session) {
   const auto color = select_layer(session.picture(), "color");
   if (a.quiet || !color || std::any_of(color->pixels.begin(), color->pixels.end(), [](float x) { return x != 0; }))
     return;
-  warn("{}: the picture is black: {}", outputs.front().string(), reason_for_black(scene, view_of(scene, a.changes)));
+  warn("{}: the picture is black: {}", output.string(), reason_for_black(scene, view));
 }
 
-void run_render(const RenderCommand& a) {
-  handle_signals();
-  const std::optional<HostPort> viewer = a.tev.empty() ? std::nullopt : std::optional(parse_host_port(a.tev, "--tev"));
-  const ThreadLimit limit(a.threads);
+// What is checked before the render, and read for it once.
+struct Prepared {
+  SharedScene scene;
+  std::vector<fs::path> outputs;
+};
+
+Prepared prepare(const RenderCommand& a) {
   SceneDescription description = read_scene(a.scene, a.reading);
   check_view(description.view, a.options);
-  const std::vector<fs::path> outputs = choose_outputs(a, a.scene, description);
+  std::vector<fs::path> outputs = choose_outputs(a, a.scene, description);
   check_files(a, a.scene, description, outputs);
-  const SharedScene scene = scale_lights(build_scene(std::move(description)), a.changes.lights);
-  Session session(scene, view_of(*scene, a.changes), a.options);
+  return {scale_lights(build_scene(std::move(description)), a.changes.lights), std::move(outputs)};
+}
+
+void render_view(const RenderCommand& a, const Prepared& prepared, const ViewDescription& view) {
+  const auto& [scene, outputs] = prepared;
+  Session session(scene, view, a.options);
   if (!a.resume.empty()) session.resume(open_state(a.resume), a.resume);
   check_states(a, outputs, session);
 
@@ -113,7 +126,7 @@ void run_render(const RenderCommand& a) {
   if (auto planned = plan_checkpoints(a, outputs, session, onlookers.progress)) onlookers.checkpoints.emplace(*planned);
   if (auto planned = plan_previews(a, outputs, session.plan(), onlookers.progress))
     onlookers.previews.emplace(*planned);
-  if (viewer) onlookers.tev.emplace(*viewer, printable(outputs.front().filename().string()));
+  if (const auto viewer = viewer_of(a)) onlookers.tev.emplace(*viewer, printable(outputs.front().filename().string()));
   set_stage(Stage::rendering);
   if (onlookers.checkpoints && !a.quiet) announce_checkpoints(*onlookers.checkpoints);
   announce_color(a, session.state());
@@ -131,13 +144,47 @@ void run_render(const RenderCommand& a) {
   }
   if (onlookers.tev) onlookers.tev->show(session.picture());
   save_render(a, a.options, outputs, *scene, session.state(), statistics);
-  explain_black(a, *scene, outputs, session);
+  explain_black(a, *scene, view, outputs.front(), session);
   if (statistics.out_of_memory)
     throw Error(
         fmt::format("not enough memory for a pass: the pictures have the {} passes before it; fewer --photons "
                     "need less",
                     session.pass_count()));
   if (onlookers.checkpoints) onlookers.checkpoints->finish(session.state(), stop_requested());
+}
+
+ViewDescription first_view(const RenderCommand& a, const Scene& scene) { return view_of(scene, a.changes, a.options); }
+
+// The scene is read and built once: the camera alone moves.
+void render_turntable(const RenderCommand& a) {
+  const FrameRange frames = frames_of(a);
+  Prepared prepared = prepare(of_frame(a, frames.begin));
+  const Scene& scene = *prepared.scene;
+  std::vector<ViewDescription> views = turntable(first_view(a, scene), scene, *a.turntable);
+  for (std::uint64_t i = frames.begin; i < frames.end && !stop_requested(); ++i) {
+    const RenderCommand one = of_frame(a, i);
+    prepared.outputs = choose_outputs(one, a.scene, description_of(scene));
+    check_files(one, a.scene, description_of(scene), prepared.outputs);
+    focus(views[i], a.changes.lens, scene, a.options);
+    render_view(one, prepared, views[i]);
+  }
+}
+
+void run_render(const RenderCommand& a) {
+  handle_signals();
+  viewer_of(a);
+  const ThreadLimit limit(a.threads);
+  if (a.frames || a.turntable) check_frames(a);
+  if (a.turntable) return render_turntable(a);
+  if (!a.frames) {
+    const Prepared prepared = prepare(a);
+    return render_view(a, prepared, first_view(a, *prepared.scene));
+  }
+  for (std::uint64_t i = a.frames->begin; i < a.frames->end && !stop_requested(); ++i) {
+    const RenderCommand one = of_frame(a, i);
+    const Prepared prepared = prepare(one);
+    render_view(one, prepared, first_view(one, *prepared.scene));
+  }
 }
 
 }  // namespace
@@ -153,7 +200,8 @@ void add_render(CLI::App& app) {
       "indirect\n(the rest). media has all light that comes out of media once more.\n\nExamples:\n"
       "  lanthorn render scene.pbrt -o picture.png --time 30s\n"
       "  lanthorn render scene.pbrt -o a.exr -o a.state --integrator probppm --passes 200 --checkpoint 10m\n"
-      "  lanthorn render scene.pbrt -o a.exr --passes 400 --resume a.state";
+      "  lanthorn render scene.pbrt -o a.exr --passes 400 --resume a.state\n"
+      "  lanthorn render ring.glb --environment sky.hdr --aperture 8 --turntable 48 -t 10s -o ring.####.png";
   add_command(app,
               {"render", "Render a scene to an image", render_command_options(*a), footer, [a] { run_render(*a); }});
 }

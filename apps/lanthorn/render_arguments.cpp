@@ -55,6 +55,40 @@ OptionTable read_options(ReadOptions& o) {
            .otherwise = "everything is at rest"}};
 }
 
+namespace {
+
+OptionTable environment_options(EnvironmentChoice& e) {
+  constexpr double most_degrees = 1e6, brightest = 1e12;
+  return {{.names = "--environment",
+           .value = into(e.source, existing_file_or_word_type(environment_names())),
+           .brief = "Light the scene by a picture of its surroundings, or by studio, overcast or sunny",
+           .details = "It takes the place of the scene's environment and of the stand-in studio; lamps stay. Any image "
+                      "of 2:1 (equirectangular), 1:1 (octahedral) or of a cube will do. y is up."},
+          {.names = "--environment-rotate",
+           .value = into(e.rotation, number_type<float>({-most_degrees, most_degrees})),
+           .brief = "Turn the environment, degrees counter-clockwise as seen from above",
+           .details = "At 0 the middle of an equirectangular picture lies in the direction +x, at 90 in -z.",
+           .otherwise = "0"},
+          {.names = "--environment-scale",
+           .value = into(e.scale, number_type<float>({0, brightest})),
+           .brief = "Multiply its light",
+           .otherwise = "1"},
+          {.names = "--environment-up",
+           .value = into(e.up, choice_type<UpAxis>({{"y", UpAxis::y}, {"z", UpAxis::z}})),
+           .brief = "The axis of the scene that is upwards",
+           .otherwise = "y; for pbrt files the one nearer to the camera's direction upwards, as a warning says"}};
+}
+
+OptionTable scene_options(ReadOptions& o) {
+  return joined({{.names = "--camera",
+                  .value = into(o.camera, text_type("NAME")),
+                  .brief = "A camera of a glTF file: its name, or its number from 1 on",
+                  .otherwise = "the first one"}},
+                environment_options(o.environment));
+}
+
+}  // namespace
+
 OptionTable render_options(RenderArguments& a) {
   RenderOptions& o = a.options;
   const OptionTable picture{
@@ -77,7 +111,7 @@ OptionTable render_options(RenderArguments& a) {
        .otherwise = "spectral if glass disperses light or spectra other than metals' are measured, else rgb"},
       {.names = "-r,--resolution",
        .value = into(o.resolution, resolution_type()),
-       .brief = "Size of the picture in pixels",
+       .brief = "Size of the picture in pixels; the height is left out if it follows from the shape",
        .otherwise = "the scene file's"},
       {.names = "--clamp",
        .value = into(o.clamp, number_type<float>()),
@@ -109,7 +143,7 @@ OptionTable render_options(RenderArguments& a) {
                                 .value = each_into(o.set, setting_type()),
                                 .brief = "A parameter of the integrator; may be given several times",
                                 .details = "'lanthorn list INTEGRATOR' shows them."}};
-  return joined(joined(picture, read_options(a.reading)), parameters);
+  return joined(joined(joined(picture, read_options(a.reading)), scene_options(a.reading)), parameters);
 }
 
 }  // namespace lanthorn::program

@@ -24,6 +24,7 @@ OptionValue interval(std::optional<double>& seconds, bool& none) {
 }  // namespace
 
 OptionTable render_command_options(RenderCommand& a) {
+  constexpr std::uint64_t most_places = 1'000'000;
   OptionTable files{
       outputs_option(a.outputs, "Where to write the picture", "the name in the scene file"),
       {.names = "-p,--passes",
@@ -52,6 +53,16 @@ OptionTable render_command_options(RenderCommand& a) {
        .value = into(a.tev, text_type("HOST:PORT")),
        .brief = "Show the picture in the viewer tev while it is rendered, such as localhost:14158",
        .details = "tev gets all layers."},
+      {.names = "--turntable",
+       .value = into(a.turntable, count_type({1, most_places})),
+       .brief = "Render so many pictures from all around the model, to -o NAME.####.png",
+       .details = "The camera turns to the right around what it looks at; --at chooses the moment of an animation."},
+      {.names = "--frames",
+       .value = into(a.frames, frame_range_type()),
+       .brief = "Render the frames FIRST:END (END not included) of a glTF animation, to -o NAME.####.png",
+       .details = "The number of the frame stands in the place of ####. Frame 0 is at 0 seconds. With --turntable: "
+                  "pictures of that.",
+       .otherwise = "24 frames a second"},
       {.names = "--resume",
        .value = into(a.resume, existing_file_type()),
        .brief = "Continue a saved state of the same scene and settings"},

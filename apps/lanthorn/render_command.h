@@ -3,6 +3,7 @@
 // The command line of `render`, which `serve` and `view` print for the picture that they show.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -10,6 +11,7 @@
 #include "render_arguments.h"
 #include "render_output.h"
 #include "scene_changes.h"
+#include "value_types.h"
 
 namespace lanthorn::program {
 
@@ -18,6 +20,8 @@ struct RenderCommand : RenderArguments, RenderFiles {
   std::string tev;
   std::optional<double> preview_seconds;
   bool no_checkpoint = false, no_preview = false;
+  std::optional<FrameRange> frames;
+  std::optional<std::uint64_t> turntable;  ///< number of pictures around the model
 };
 
 OptionTable render_command_options(RenderCommand& arguments);

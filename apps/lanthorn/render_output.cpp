@@ -13,6 +13,7 @@
 #include "json_text.h"
 #include "lanthorn/error.h"
 #include "lanthorn/file.h"
+#include "lanthorn/image_file.h"
 #include "lanthorn/threads.h"
 #include "output_check.h"
 #include "progress.h"
@@ -116,6 +117,8 @@ std::vector<fs::path> choose_outputs(const RenderFiles& a, const std::string& sc
 
 void check_files(const RenderFiles& a, const std::string& scene_file, const SceneDescription& scene,
                  const std::vector<fs::path>& outputs) {
+  // A configuration of colours that cannot be used is found before the render.
+  if (a.output.display.ocio) displayed(Image(1, 1, {"R", "G", "B"}), a.output.display);
   std::vector<InputFile> read = files_of(scene.files, scene_file);
   if (!a.resume.empty()) read.push_back({a.resume, "the state of --resume"});
   const auto is_resumed = [&](const fs::path& path) { return !a.resume.empty() && same_file(path, a.resume); };

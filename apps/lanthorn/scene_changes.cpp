@@ -141,22 +141,36 @@ SharedScene scale_lights(const SharedScene& scene, const LightFactors& factors) 
   return edit_scene(*scene, edits);
 }
 
-ViewDescription view_of(const Scene& scene, const SceneChanges& changes) {
+ViewDescription view_of(const Scene& scene, const SceneChanges& changes, const ViewOptions& options) {
   ViewDescription view = description_of(scene).view;
-  if (changes.look) place_camera(view, *changes.look, description_of(scene).origin);
+  LensChanges lens = changes.lens;
+  if (changes.look) {
+    place_camera(view, *changes.look, description_of(scene).origin);
+    lens.orbit.reset();
+  }
+  change_lens(view, lens, scene, options);
   return view;
 }
 
+SceneChanges moved(SceneChanges changes, const std::optional<LookAt>& look, LightFactors lights) {
+  changes.look = look;
+  changes.lights = std::move(lights);
+  if (look) changes.lens.orbit.reset();
+  return changes;
+}
+
 OptionTable scene_change_options(SceneChanges& changes) {
-  return {{.names = "--look-at",
-           .value = into(changes.look, look_at_type()),
-           .brief = "Camera at ex,ey,ez, looking at tx,ty,tz, with ux,uy,uz upwards",
-           .details = "Lens and picture are those of the scene file."},
-          {.names = "--light",
-           .value = each_into(changes.lights, light_factor_type()),
-           .brief = "Multiply a light, such as light1=0.5; may be given several times",
-           .details = "light1, light2 ... are the scene's lights, area1 ... its emitting surfaces, in the file's "
-                      "order."}};
+  OptionTable table{
+      {.names = "--look-at",
+       .value = into(changes.look, look_at_type()),
+       .brief = "Camera at ex,ey,ez, looking at tx,ty,tz, with ux,uy,uz upwards",
+       .details = "Lens and picture are those of the scene file, unless options change them."},
+      {.names = "--light",
+       .value = each_into(changes.lights, light_factor_type()),
+       .brief = "Multiply a light, such as light1=0.5; may be given several times",
+       .details = "light1, light2 ... are the scene's lights, area1 ... its emitting surfaces, in the file's "
+                  "order."}};
+  return joined(std::move(table), lens_options(changes.lens));
 }
 
 }  // namespace lanthorn::program

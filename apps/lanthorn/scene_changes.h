@@ -11,6 +11,7 @@
 
 #include "lanthorn/scene.h"
 #include "lanthorn/session.h"
+#include "lens.h"
 #include "options.h"
 
 namespace lanthorn::program {
@@ -34,14 +35,17 @@ ValueType<std::pair<std::string, float>> light_factor_type();
 /// for names that are not among `lights_of`.
 SharedScene scale_lights(const SharedScene& scene, const LightFactors& factors);
 
-/// What the options --look-at and --light say.
+/// What the options --look-at and --light say, and those of the lens.
 struct SceneChanges {
   std::optional<LookAt> look{};
   LightFactors lights{};
+  LensChanges lens{};
 };
-/// The scene's own view with the camera of `changes`.
-ViewDescription view_of(const Scene& scene, const SceneChanges& changes);
-/// --look-at and --light.
+/// The scene's own view with the camera of `changes`. A camera that has moved does not orbit.
+ViewDescription view_of(const Scene& scene, const SceneChanges& changes, const ViewOptions& options = {});
+/// The changes with another camera and lights than those that the command line named.
+SceneChanges moved(SceneChanges changes, const std::optional<LookAt>& look, LightFactors lights);
+/// --look-at, --light and those of the lens.
 OptionTable scene_change_options(SceneChanges& changes);
 
 }  // namespace lanthorn::program

@@ -36,6 +36,10 @@ Words option_names(const CLI::App& command) {
 const std::map<std::string, std::string> removed_options{
     {"--frame", "write --at frame=36@24 for frame 36 at 24 a second"},
     {"--fps", "write --at frame=36@24 for frame 36 at 24 a second"},
+    {"--filmic", "write --view-transform filmic"},
+    {"--frames", "view counts --passes"},
+    {"--method", "write --integrator"},
+    {"-m", "write -i"},
     {"--no-checkpoint", "write --checkpoint none"},
     {"--no-preview", "write --preview none"},
     {"--pixels-per-degree", "FLIP is that of a 0.7 m wide 4K monitor seen from 0.7 m"},

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <system_error>
 
+#include "lanthorn/file.h"
 #include "quantities.h"
 
 namespace lanthorn::program {
@@ -114,14 +115,19 @@ ValueType<std::string> text_type(const std::string& name) {
           [](const std::string& text) { return text; }};
 }
 
-ValueType<std::string> existing_file_type() {
-  const auto parse = [](std::string_view text) {
+ValueType<std::string> existing_file_type() { return existing_file_or_word_type({}); }
+
+ValueType<std::string> existing_file_or_word_type(const std::vector<std::string>& words) {
+  const auto parse = [words](std::string_view text) {
     std::error_code code;
     const auto status = std::filesystem::status(text, code);
     const bool is_file = std::filesystem::exists(status) && !std::filesystem::is_directory(status);
-    return is_file ? std::optional<std::string>(text) : std::nullopt;
+    const bool is_known = is_file || std::find(words.begin(), words.end(), text) != words.end();
+    return is_known ? std::optional<std::string>(text) : std::nullopt;
   };
-  return {"FILE", "an existing file", parse, [](const std::string& text) { return text; }};
+  const std::string expected =
+      words.empty() ? "an existing file" : fmt::format("an existing file, or {}", fmt::join(words, " or "));
+  return {"FILE", expected, parse, [](const std::string& text) { return text; }, words, file_names_beside};
 }
 
 ValueType<std::pair<std::string, std::string>> setting_type() {
@@ -152,9 +158,14 @@ ValueType<std::vector<std::string>> word_list_type(const std::vector<std::string
 }
 
 ValueType<std::array<int, 2>> resolution_type() {
-  return {"WIDTHxHEIGHT", "WIDTHxHEIGHT, e.g. 640x480",
-          [](std::string_view text) { return parse_integers<2>(text, 'x'); },
-          [](const std::array<int, 2>& size) { return fmt::format("{}x{}", size[0], size[1]); }};
+  using Size = std::array<int, 2>;
+  const auto parse = [](std::string_view text) -> std::optional<Size> {
+    if (const auto width = parse_integers<1>(text, 'x'); width && width->front() > 0) return Size{width->front(), 0};
+    return parse_integers<2>(text, 'x');
+  };
+  return {"WIDTHxHEIGHT", "WIDTHxHEIGHT or WIDTH, e.g. 640x480 or 640", parse, [](const Size& size) {
+            return size[1] == 0 ? fmt::format("{}", size[0]) : fmt::format("{}x{}", size[0], size[1]);
+          }};
 }
 
 ValueType<std::array<int, 4>> pixel_window_type() {
@@ -171,6 +182,31 @@ ValueType<PassRange> pass_range_type() {
   };
   return {"FIRST:END", fmt::format("FIRST:END with FIRST < END, {} at most, e.g. 0:50", most_passes), parse,
           [](const PassRange& range) { return fmt::format("{}:{}", range.begin, range.end); }};
+}
+
+ValueType<FrameRange> frame_range_type() {
+  const auto parse = [](std::string_view text) -> std::optional<FrameRange> {
+    constexpr std::uint64_t most = 10'000'000;
+    constexpr double slowest = 1e-3;
+    FrameRange frames;
+    if (const auto rate = split(text, '@')) {
+      const auto per_second = parse_number(rate->second);
+      if (!per_second || !(*per_second >= slowest)) return std::nullopt;
+      frames.per_second = *per_second;
+      text = rate->first;
+    }
+    const auto parts = split(text, ':');
+    if (!parts) return std::nullopt;
+    const auto begin = parse_count(parts->first), end = parse_count(parts->second);
+    if (!begin || !end || *begin >= *end || *end > most) return std::nullopt;
+    frames.begin = *begin, frames.end = *end;
+    return frames;
+  };
+  return {"FIRST:END[@FPS]", "FIRST:END or FIRST:END@FPS with FIRST < END, e.g. 0:48@24", parse,
+          [](const FrameRange& f) {
+            const std::string range = fmt::format("{}:{}", f.begin, f.end);
+            return f.per_second == FrameRange().per_second ? range : fmt::format("{}@{}", range, f.per_second);
+          }};
 }
 
 ValueType<double> animation_time_type() {

@@ -30,6 +30,10 @@ struct ValueType {
   std::function<std::optional<Value>(std::string_view)> parse;  ///< nothing for text that is not `expected`
   std::function<std::string(const Value&)> print;               ///< text that `parse` reads as this value
   std::vector<std::string> words{};                             ///< that `parse` knows, for messages
+  /// More words that may have been meant by text that is not `expected`.
+  std::function<std::vector<std::string>(std::string_view)> similar = [](std::string_view) {
+    return std::vector<std::string>();
+  };
 };
 
 /// The range of a value, both ends included.
@@ -54,14 +58,25 @@ ValueType<std::uint64_t> bytes_type();
 ValueType<std::string> text_type(const std::string& name);
 /// The name of a file that is there and is no folder.
 ValueType<std::string> existing_file_type();
+/// The same, or one of these words.
+ValueType<std::string> existing_file_or_word_type(const std::vector<std::string>& words);
 /// NAME=VALUE, with a name.
 ValueType<std::pair<std::string, std::string>> setting_type();
 /// Several words of `known` with commas between them.
 ValueType<std::vector<std::string>> word_list_type(const std::vector<std::string>& known);
+/// WIDTHxHEIGHT, or WIDTH alone, with 0 for the height.
 ValueType<std::array<int, 2>> resolution_type();
 ValueType<std::array<int, 4>> pixel_window_type();
 /// FIRST:END, counts.
 ValueType<PassRange> pass_range_type();
+/// Frames of an animation.
+struct FrameRange {
+  std::uint64_t begin = 0, end = 0;  ///< end excluded
+  double per_second = 24;
+  friend bool operator==(const FrameRange&, const FrameRange&) = default;
+};
+/// FIRST:END, or FIRST:END@FPS.
+ValueType<FrameRange> frame_range_type();
 /// Seconds, or a frame: frame=36@24 is frame 36 at 24 a second.
 ValueType<double> animation_time_type();
 

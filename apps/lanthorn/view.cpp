@@ -23,6 +23,7 @@
 #include "lanthorn/threads.h"
 #include "lanthorn/version.h"
 #include "lanthorn/viewer.h"
+#include "output.h"
 #include "output_check.h"
 #include "render_command.h"
 
@@ -88,7 +89,7 @@ void check_arguments(const ViewCommand& a) {
   if (a.headless && a.output.empty()) throw Error("--headless: expected -o FILE, where the picture goes");
   if (!a.headless && !a.output.empty())
     throw Error("-o: goes with --headless; the window saves pictures by its own buttons");
-  if (a.headless && a.frames == 0) throw Error("--headless: expected --frames N, the number of frames of the picture");
+  if (a.headless && a.frames == 0) throw Error("--headless: expected --passes N, the number of frames of the picture");
   const std::vector<MethodInfo> here = realtime_methods();
   const auto is_asked_for = [&](const MethodInfo& method) { return method.name == a.method; };
   if (here.empty() || std::any_of(here.begin(), here.end(), is_asked_for)) return;
@@ -96,7 +97,7 @@ void check_arguments(const ViewCommand& a) {
     find_method(a.method);
   } catch (const Error& e) {
     throw Error(
-        fmt::format("--method {}: expected {}, or an offline method: {}", a.method, known_methods(), e.message));
+        fmt::format("--integrator {}: expected {}, or an offline method: {}", a.method, known_methods(), e.message));
   }
 }
 
@@ -107,7 +108,10 @@ std::string command_of(const ViewCommand& a, const ShownRender& shown, bool film
   render.options = shown.options;
   render.options.memory.reset();
   render.reading = a.reading;
-  render.changes = {shown.look, shown.light_factors};
+  // A scene that was saved has the camera of the window.
+  const bool is_saved = shown.scene != a.scene;
+  render.changes = moved(a.changes, shown.look || is_saved ? shown.look : a.changes.look, shown.light_factors);
+  if (is_saved) render.changes.lens.orbit.reset();
   render.output = shown_as(shown.display, shown.measures_exposure, film_measures);
   render.outputs = {shown.picture};
   return render_command_line(render);
@@ -115,7 +119,7 @@ std::string command_of(const ViewCommand& a, const ShownRender& shown, bool film
 
 void show(const ViewCommand& a, const SharedScene& original, const ViewerOptions& options) {
   const SharedScene scene = scale_lights(original, a.changes.lights);
-  const ViewDescription view = view_of(*scene, a.changes);
+  const ViewDescription view = view_of(*scene, a.changes, options.render);
   if (!a.headless) {
     const ViewerReport report = run_viewer(original, view, options);
     if (!a.json.empty()) write_json(a.json, report);
@@ -148,7 +152,7 @@ void run_view(const ViewCommand& a) {
   options.command = [&a, film_measures](const ShownRender& shown) { return command_of(a, shown, film_measures); };
   check_view(description.view, options.render);
   std::vector<OutputFile> outputs;
-  if (!a.output.empty()) outputs.push_back({a.output, "-o", {".exr", ".png"}});
+  if (!a.output.empty()) outputs.push_back({a.output, "-o", picture_extensions()});
   if (!a.json.empty()) outputs.push_back({a.json, "--json"});
   check_outputs(files_of(description.files, a.scene), outputs);
   if (!a.headless) make_nodes_movable(description);
@@ -163,20 +167,20 @@ void run_view(const ViewCommand& a) {
 
 OptionTable view_options(ViewCommand& a) {
   constexpr std::uint64_t most_frames = 1'000'000;
-  OptionTable own{{.names = "-m,--method",
-                   .value = into(a.method, text_type("METHOD")),
+  OptionTable own{{.names = "-i,--integrator",
+                   .value = into(a.method, text_type("INTEGRATOR")),
                    .brief = "What is shown first",
                    .details = method_help(),
                    .otherwise = a.method},
                   {.names = "--headless",
                    .value = flag(a.headless),
-                   .brief = "Draw without window or display; needs --frames and -o"},
-                  {.names = "--frames",
+                   .brief = "Draw without window or display; needs --passes and -o"},
+                  {.names = "-p,--passes",
                    .value = into(a.frames, count_type({1, most_frames})),
-                   .brief = "With --headless: frames whose mean is the picture. Else: close after so many"},
+                   .brief = "With --headless: passes (frames) whose mean is the picture. Else: close after so many"},
                   {.names = "-o,--output",
                    .value = into(a.output, text_type("FILE")),
-                   .brief = "With --headless: the picture (.png, or .exr with all layers)"},
+                   .brief = "With --headless: the picture (.png, .jpg, .tif, or .exr with all layers)"},
                   {.names = "--json",
                    .value = into(a.json, text_type("FILE")),
                    .brief = "Write the times of the stages of a frame and the photons of each bounce as JSON"}};
@@ -195,8 +199,8 @@ void add_view(CLI::App& app) {
       "a\n"
       "light or an object, and drag it. docs/viewer.md has the rest.\n\nExamples:\n"
       "  lanthorn view scene.pbrt\n"
-      "  lanthorn view scene.pbrt --method vcm -r 640x360\n"
-      "  lanthorn view scene.pbrt --headless --frames 16 -o picture.png";
+      "  lanthorn view scene.pbrt -i vcm -r 640x360\n"
+      "  lanthorn view scene.pbrt --headless -p 16 -o picture.png";
   add_command(app, {"view", "Show a scene in a window, with light that bounces while it is dragged", view_options(*a),
                     footer, [a] { run_view(*a); }});
 }

@@ -14,6 +14,10 @@ namespace lanthorn {
 /// The extension of `path` with its dot, in lower case; empty if it has none.
 std::string lower_extension(const std::filesystem::path& path);
 
+/// Names of the files in the folder of `path`, each with that folder as `path` has it, sorted: one of them may have
+/// been meant by a name that is not there. Those of the first thousand entries.
+std::vector<std::string> file_names_beside(const std::filesystem::path& path);
+
 /// Resolves the symbolic links of `path`; the final file need not exist. Throws Error for cyclic links.
 std::filesystem::path follow_links(const std::filesystem::path& path);
 

@@ -15,11 +15,27 @@
 #include <vector>
 
 #include "lanthorn/file_access.h"
+#include "lanthorn/render_options.h"
 #include "lanthorn/scene_description.h"
 
 namespace lanthorn {
 
-/// How far a scene file is trusted.
+enum class UpAxis : std::uint8_t { y, z };
+
+/// An environment in place of a scene's own.
+struct EnvironmentChoice {
+  /// One of `environment_names`, or an image file in any layout that `read_environment` (ibl.h) reads, wherever it
+  /// lies.
+  std::string source{};
+  float rotation = 0;  ///< degrees around the axis upwards, counter-clockwise as seen from above
+  float scale = 1;     ///< factor of radiance
+  /// None: +y. Of pbrt files, whose worlds have no direction upwards, +y or +z, whichever is nearer to the camera's;
+  /// a warning says which.
+  std::optional<UpAxis> up{};
+  friend bool operator==(const EnvironmentChoice&, const EnvironmentChoice&) = default;
+};
+
+/// How a scene is read, and how far its file is trusted.
 struct ReadOptions {
   /// Reads only files in the tree of the scene file's folder; error messages show no content of files.
   bool sandbox = false;
@@ -28,8 +44,10 @@ struct ReadOptions {
   /// (colours are grey, emission and transmission 0, metalness and roughness as their factors say), measured materials
   /// are grey, spectra 1, included files empty, lenses of 50 mm; a warning names each.
   bool skip_missing = false;
-  bool window_glass = false;   ///< calls `replace_window_glass`
-  std::optional<double> at{};  ///< seconds into the first animation of a glTF file; none: everything is at rest
+  bool window_glass = false;        ///< calls `replace_window_glass`
+  std::optional<double> at{};       ///< seconds into the first animation of a glTF file; none: everything is at rest
+  std::string camera{};             ///< of a glTF file: name, or number from 1 on; empty: the first one
+  EnvironmentChoice environment{};  ///< without source: the scene's own; else calls `replace_environment`
 };
 
 /// Reads a scene file by its extension: .pbrt (pbrt-v4 and v3), .gltf and .glb (glTF 2.0), .obj (Wavefront), each also
@@ -37,6 +55,14 @@ struct ReadOptions {
 /// Throws Error with its place (file, line and column; in glTF files file and JSON pointer) if the file, or one that it
 /// names, is wrong.
 SceneDescription read_scene(const std::filesystem::path& path, const ReadOptions& options = {});
+
+/// True if the name ends as those of files that `read_scene` reads.
+bool is_scene_file(const std::filesystem::path& path);
+
+/// The mesh of a PLY file (.ply, .ply.gz) as shapes with the default material: one of its triangles, one of its quads,
+/// which are bilinear patches; without those that it has not. Larger polygons become triangles. For the shapes of OBJ
+/// and glTF files, `read_scene`. Throws Error with its place if the file is wrong.
+std::vector<description::Shape> read_mesh(const std::filesystem::path& path);
 
 /// Lets all rays pass straight through clear panes, so that next-event estimation finds the light behind them: shapes
 /// of thin dielectric, exactly, and flat slabs of smooth dielectric, closed or as two faces, whose small displacement
@@ -47,6 +73,13 @@ std::size_t replace_window_glass(SceneDescription& scene);
 /// the way to `SceneDescription::origin`. Rays are traced in single precision, whose steps grow with the coordinates:
 /// .5 mm at 5 km. `read_scene` and `read_pbrt_string` call this. `LookAt` and `Photons` keep the file's coordinates.
 void move_origin(SceneDescription& scene);
+/// Names of environments that need no file.
+std::vector<std::string> environment_names();
+/// Puts an environment in the place of all infinite lights of a scene. +y of a picture is up; the middle of an
+/// equirectangular one is in the direction +x, and what is to its right in +z. Its camera sees it as it is, not
+/// mirrored. Throws Error if the file cannot be read, or has another shape or more pixels.
+void replace_environment(SceneDescription& scene, const EnvironmentChoice& choice,
+                         std::uint64_t max_pixels = FileAccess::default_max_pixels);
 
 /// Reads the text of a pbrt file. Relative file names start in `folder`; messages call the text `name`.
 SceneDescription read_pbrt_string(std::string_view text, const std::filesystem::path& folder, const std::string& name);
@@ -133,6 +166,10 @@ struct SceneModel {
 /// All surfaces of a scene. Meshes are exact. Quadrics have 64 segments around, patches that are not flat 8 x 8
 /// squares; curves become tubes. Displacement is applied. Does not need the scene's file.
 SceneModel model_of(const Scene& scene);
+
+/// How far before the camera the nearest surface lies that the middle of the picture sees, in the units of the camera's
+/// space, for `focal_distance`. nullopt if it sees none. Throws Error as `check_view` does.
+std::optional<float> depth_in_middle(const Scene& scene, const ViewDescription& view, const ViewOptions& options = {});
 
 /// What a scene, seen like this, asks for and does not get: warnings of reading and of building, and media that
 /// contradict each other along rays from the camera and to the lights.

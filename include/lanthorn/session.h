@@ -3,6 +3,7 @@
 // A render under way.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <functional>
@@ -54,6 +55,9 @@ struct Observer {
 
 /// Checks camera, film and crop window without a scene. Throws Error.
 void check_view(const ViewDescription& view, const ViewOptions& options = {});
+/// Width and height of the full film in pixels. A resolution whose height is 0 has that of the scene's shape. Throws
+/// Error as `check_view` does.
+std::array<int, 2> film_size(const ViewDescription& view, const ViewOptions& options = {});
 /// Camera to world when the shutter opens, of a camera that frames a subject (`description::Camera::subject`) too.
 /// Throws Error as `check_view` does.
 Transform camera_placement(const ViewDescription& view, const ViewOptions& options = {});
@@ -97,8 +101,10 @@ class Session {
   /// belongs to another render; `name` is that of its file, for the message.
   void resume(const std::shared_ptr<RenderState>& state, const std::string& name);
 
-  /// Starts anew with another scene, or another view of the same scene, which is not built again. Options are kept.
+  /// Starts anew with another scene. The options and the view are kept: of a file's new scene, `set_view` takes its
+  /// camera and film over. Passes, picture and sums of before are gone; states that were saved of them are not.
   void set_scene(SharedScene scene);
+  /// Starts anew with another view of the same scene, which is not built again. The options are kept.
   void set_view(const ViewDescription& view);
 
  private:

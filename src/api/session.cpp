@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lanthorn/session.h"
 
+#include <array>
 #include <atomic>
 #include <condition_variable>
 #include <cstdint>
@@ -133,6 +134,10 @@ struct Session::Impl {
 };
 
 void check_view(const ViewDescription& view, const ViewOptions& options) { make_view(view, options); }
+std::array<int, 2> film_size(const ViewDescription& view, const ViewOptions& options) {
+  const View made = make_view(view, options);
+  return {made.camera.width(), made.camera.height()};
+}
 Transform camera_placement(const ViewDescription& view, const ViewOptions& options) {
   const View made = make_view(view, options);
   return framing(view.camera, made.camera.width(), made.camera.height()).start;

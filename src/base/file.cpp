@@ -20,6 +20,7 @@
 
 #include "base/memory.h"
 #include "lanthorn/error.h"
+#include "lanthorn/text.h"
 
 namespace lanthorn {
 namespace fs = std::filesystem;
@@ -269,10 +270,24 @@ fs::path write_private_file(const fs::path& folder, const std::string& prefix, c
   return path;
 }
 
+std::vector<std::string> file_names_beside(const fs::path& path) {
+  constexpr int most = 1000;
+  const fs::path folder = path.parent_path();
+  std::vector<std::string> names;
+  std::error_code code;
+  fs::directory_iterator entry(folder.empty() ? "." : folder, code);
+  for (int i = 0; i < most && !code && entry != fs::directory_iterator(); ++i, entry.increment(code))
+    if (std::error_code ignored; !entry->is_directory(ignored))
+      names.push_back((folder / entry->path().filename()).string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
 OpenedFile read_opened_file(const fs::path& path) {
   const SourceLocation place{path.string()};
   std::error_code code;
-  if (!fs::exists(path, code)) throw Error(place, "no such file");
+  if (!fs::exists(path, code))
+    throw Error(place, "no such file" + printable(did_you_mean(path.string(), file_names_beside(path))));
   // Checked before opening, because opening some devices triggers an action; checked again on the descriptor, because
   // the name may lead elsewhere by then.
   if (!fs::is_regular_file(path, code)) throw Error(place, "not a regular file");

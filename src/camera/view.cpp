@@ -29,11 +29,16 @@ std::string too_large_for_memory(int width, int height) {
 
 std::array<int, 2> choose_resolution(const description::Film& film, const ViewOptions& options) {
   if (!options.resolution) return {film.width, film.height};
-  const auto& [width, height] = *options.resolution;
+  const int width = options.resolution->front();
+  int height = options.resolution->back();
+  if (height == 0 && film.width > 0) {
+    const double exact = static_cast<double>(width) * film.height / film.width;
+    height = static_cast<int>(std::lround(std::clamp(exact, 1.0, 1e9)));
+  }
   if (width < 1 || height < 1 || width > largest_side || height > largest_side)
     throw Error(fmt::format("--resolution {}x{}: expected WIDTHxHEIGHT, each from 1 to {}{}", width, height,
                             largest_side, too_large_for_memory(width, height)));
-  return *options.resolution;
+  return {width, height};
 }
 
 PixelWindow choose_window(const description::Film& film, const std::array<int, 2>& resolution,

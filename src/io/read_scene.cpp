@@ -40,8 +40,19 @@ std::optional<std::uint64_t> hash_file(const std::filesystem::path& path, const 
 void hash_files(std::map<std::string, description::File>& files, const FileAccess& access) {
   std::vector<description::File*> all;
   all.reserve(files.size());
-  for (auto& entry : files) all.push_back(&entry.second);
+  for (auto& entry : files)
+    if (!entry.second.hash) all.push_back(&entry.second);
   parallel_for(std::size_t{0}, all.size(), [&](std::size_t i) { all[i]->hash = hash_file(all[i]->path, access); });
+}
+
+SceneDescription lit(SceneDescription scene, const ReadOptions& options) {
+  if (!options.environment.source.empty()) replace_environment(scene, options.environment, options.max_pixels);
+  return scene;
+}
+SceneDescription completed(ModelFile model, const ReadOptions& options) {
+  model.scene = lit(std::move(model.scene), options);
+  if (!options.environment.source.empty()) model.lacking.light = false;
+  return with_stand_ins(std::move(model));
 }
 
 // In lower case, without that of gzipped files.
@@ -103,29 +114,38 @@ auto discreet(const FileAccess& access, const std::string& name, Read&& read) {
 
 }  // namespace
 
+bool is_scene_file(const std::filesystem::path& path) {
+  const std::string extension = scene_extension(path);
+  return extension == ".pbrt" || extension == ".gltf" || extension == ".glb" || extension == ".obj";
+}
+
 SceneDescription read_scene_file(const std::filesystem::path& path, const ReadOptions& options,
                                  const FindMethod& methods) {
   const std::string name = path.string();
   const std::string extension = scene_extension(path);
   const bool is_gltf = extension == ".gltf" || extension == ".glb";
-  if (extension != ".pbrt" && extension != ".obj" && !is_gltf)
+  if (!is_scene_file(path))
     throw Error(name +
                 ": not a kind of scene file that Lanthorn reads (.pbrt, .gltf, .glb, .obj, all of them also as .gz)");
   const std::filesystem::path folder = path.parent_path();
-  if (options.at && !is_gltf) throw Error(name + ": --at: only glTF files have animations");
+  if (options.at && !is_gltf) throw Error(name + ": --at, --frames: only glTF files have animations");
+  if (!options.camera.empty() && !is_gltf) throw Error(name + ": --camera: only glTF files have several cameras");
   const FileAccess access = access_for(folder, options);
   return discreet(access, name, [&] {
     const std::string bytes = decompressed(access.read(path), name);
     refuse_utf16(bytes, name);
     if (is_gltf) {
-      SceneDescription model =
-          finished(with_stand_ins(gltf::read(bytes, folder, name, reader(access), options.at, &access)), bytes, access);
+      SceneDescription model = finished(
+          completed(gltf::read(bytes, folder, name, reader(access), {options.at, options.camera}, &access), options),
+          bytes, access);
+      if (!options.camera.empty())
+        model.hash = hash_words({model.hash, hash_bytes(std::as_bytes(std::span(options.camera)))});
       if (options.at) model.hash = hash_words({model.hash, std::bit_cast<std::uint64_t>(*options.at)});
       return model;
     }
     const FileReader read = decompressing_reader(access);
-    return finished(extension == ".obj" ? with_stand_ins(obj::read(bytes, folder, name, read, &access))
-                                        : pbrt::read(bytes, folder, name, methods, read, &access),
+    return finished(extension == ".obj" ? completed(obj::read(bytes, folder, name, read, &access), options)
+                                        : lit(pbrt::read(bytes, folder, name, methods, read, &access), options),
                     bytes, access);
   });
 }

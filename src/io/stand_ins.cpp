@@ -2,13 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/stand_ins.h"
 
-#include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 #include <variant>
 
 #include "io/lit_sides.h"
+#include "io/own_environments.h"
 #include "io/surfaces.h"
 #include "math/vec.h"
 #include "spectrum/spectrum.h"
@@ -54,33 +53,6 @@ void add_lamp(SceneDescription& scene, const StandInView::Inside& room) {
   ball.area_light = static_cast<Index>(scene.area_lights.size() - 1);
   ball.alpha = {0, {}};
   ball.location.file = scene.filename;
-}
-
-// A lamp of the studio. Degrees: from the camera towards the picture's right, above the horizon, and half its width.
-struct SoftLamp {
-  float azimuth, elevation, half_width;
-  float radiance;
-};
-// Key, fill and rim light. A white wall that faces the camera has about radiance 1.
-constexpr std::array<SoftLamp, 3> soft_lamps{{{-45, 45, 30, 2.2f}, {65, 20, 38, 0.6f}, {160, 50, 26, 2.0f}}};
-
-float smooth_step(float low, float high, float x) {
-  const float t = std::clamp((x - low) / (high - low), 0.0f, 1.0f);
-  return t * t * (3 - 2 * t);
-}
-
-// Space of the studio: x towards the camera, y to the right of the picture, z up.
-float studio_radiance(const Direction& d) {
-  constexpr float below = 0.12f, horizon = 0.34f, above = 0.25f;
-  float radiance = lerp(std::sqrt(std::fabs(d.z)), horizon, d.z > 0 ? above : below);
-  for (const SoftLamp& lamp : soft_lamps) {
-    const float a = to_radians(lamp.azimuth), e = to_radians(lamp.elevation);
-    const Direction axis(std::cos(a) * std::cos(e), std::sin(a) * std::cos(e), std::sin(e));
-    const float inner = std::cos(to_radians(0.6f * lamp.half_width)),
-                outer = std::cos(to_radians(1.2f * lamp.half_width));
-    radiance += lamp.radiance * smooth_step(outer, inner, dot(d, axis));
-  }
-  return radiance;
 }
 
 void add_studio(SceneDescription& scene) {

@@ -21,7 +21,8 @@ struct ToneSettings {
   enum class Curve : std::uint8_t {
     clipped = gpu::curve_clipped,
     reinhard = gpu::curve_reinhard,
-    filmic = gpu::curve_filmic
+    filmic = gpu::curve_filmic,
+    agx = gpu::curve_agx
   };
   float exposure = 1;  ///< factor of radiance
   Curve curve = Curve::clipped;

@@ -51,7 +51,7 @@ struct Panel {
   RealtimeSettings settings;
   float exposure = 0;  ///< stops
   bool measures_exposure = false;
-  bool filmic = false;
+  ToneCurve curve = ToneCurve::none;
   int layer = 0;  ///< 0: all of them; else 1 + index of emission, direct, indirect, caustic
   std::vector<LightRow> lights;
   std::optional<std::size_t> selected_light;

@@ -85,6 +85,11 @@ CameraPose first_pose(const ViewDescription& description, const View& view, floa
   return framing;
 }
 
+ToneSettings::Curve window_curve(ToneCurve curve) {
+  if (curve == ToneCurve::filmic) return ToneSettings::Curve::filmic;
+  return curve == ToneCurve::agx ? ToneSettings::Curve::agx : ToneSettings::Curve::clipped;
+}
+
 // The first name of the form STEM-N.EXTENSION that no file has.
 fs::path free_name(const fs::path& folder, const std::string& stem, const std::string& extension) {
   for (int n = 1;; ++n) {
@@ -196,7 +201,7 @@ void Viewer::make_panel() {
   panel_.scene_radius = original_->bounding_sphere().radius;
   panel_.exposure = options_.display.exposure;
   panel_.measures_exposure = options_.measures_exposure;
-  panel_.filmic = options_.display.curve == ToneCurve::filmic;
+  panel_.curve = options_.display.curve;
   panel_.lights = scene_.lights();
   panel_.scene = options_.scene_file.filename().string();
   panel_.driver = driver_.renderer;
@@ -382,7 +387,7 @@ void Viewer::draw() {
 void Viewer::present() {
   ToneSettings tone;
   tone.exposure = std::exp2(panel_.exposure);
-  tone.curve = panel_.filmic ? ToneSettings::Curve::filmic : ToneSettings::Curve::clipped;
+  tone.curve = window_curve(panel_.curve);
   if (panel_.layer > 0) {
     tone.shown = glm::vec4(0);
     tone.shown[panel_.layer - 1] = 1;
@@ -411,7 +416,7 @@ void Viewer::save_picture(const std::string& extension) {
     layer.channels = {"R", "G", "B"};
     image = std::move(layer);
   }
-  const DisplaySettings display{panel_.exposure, panel_.filmic ? ToneCurve::filmic : ToneCurve::none};
+  const DisplaySettings display{panel_.exposure, panel_.curve};
   const fs::path path = free_name(".", stem_of(options_.scene_file), extension);
   write_image(path, image, display);
   panel_.message = "Saved " + path.lexically_normal().string();
@@ -440,7 +445,7 @@ std::string Viewer::command() const {
       offline_render({saved_file_,
                       panel_.methods[panel_.method],
                       panel_.settings,
-                      {panel_.exposure, panel_.filmic ? ToneCurve::filmic : ToneCurve::none},
+                      {panel_.exposure, panel_.curve},
                       panel_.measures_exposure,
                       stands_there ? std::nullopt : std::optional(interaction_.pose()),
                       needs_strengths ? strengths_of(panel_.lights) : std::map<std::string, float>(),

@@ -100,9 +100,9 @@ async function useControls() {
   await shot('exposed');
   await page.locator('#exposure').fill('0');
   before = await mean();
-  await page.locator('#filmic').check();
+  await page.locator('#curve').selectOption('filmic');
   expect(JSON.stringify(await mean()) !== JSON.stringify(before), 'the filmic curve changes the picture');
-  await page.locator('#filmic').uncheck();
+  await page.locator('#curve').selectOption('none');
   for (const layer of ['normal', 'depth', 'caustic', 'color']) {
     before = await page.locator('#picture').getAttribute('aria-label');
     await page.locator('#layer').selectOption(layer);

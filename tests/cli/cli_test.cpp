@@ -31,17 +31,17 @@ TEST_F(Cli, HelpNamesSubcommandsAndOptions) {
   for (const std::string& name : subcommands) EXPECT_TRUE(contains(program.out, name)) << name;
   const std::map<std::string, Words> options{
       {"render",
-       {"--output", "--integrator", "--passes",   "--time",    "--pass-range", "--threads",     "--seed",
-        "--color",  "--resolution", "--crop",     "--photons", "--max-depth",  "--set",         "--checkpoint",
-        "--resume", "--json",       "--exposure", "--filmic",  "--quiet",      "--reproducible"}},
+       {"--output", "--integrator", "--passes",   "--time",           "--pass-range", "--threads",     "--seed",
+        "--color",  "--resolution", "--crop",     "--photons",        "--max-depth",  "--set",         "--checkpoint",
+        "--resume", "--json",       "--exposure", "--view-transform", "--quiet",      "--reproducible"}},
       {"info", {"--json"}},
       {"compare", {"--layer", "--sem", "--runs", "--diff", "--json", "--max-mse", "--require-agreement", "Exit code"}},
       {"photons", {"--output", "--photons", "--pass", "--direct"}},
       {"converge", {"--integrator", "--passes", "--runs", "--reference", "--fit-from", "--plot", "--json"}},
       {"ibl", {"ENV", "--output", "--maps", "--formats", "--texels", "--mapping", "--size", "--samples", "--check"}},
       {"convert", {"scene", "output", "--sandbox", "pbrt-v3"}},
-      {"develop", {"picture", "output", "--layer", "--exposure", "--filmic"}},
-      {"merge", {"--output", "--exposure", "--filmic", "--reproducible"}},
+      {"develop", {"picture", "output", "--layer", "--exposure", "--view-transform"}},
+      {"merge", {"--output", "--exposure", "--view-transform", "--reproducible"}},
       {"list", {"integrator"}}};
   for (const std::string& name : subcommands) {
     const Ending help = succeed({name, "--help"});
@@ -94,12 +94,12 @@ TEST_F(Cli, RenderSaysWhatTheDepthLimitCutsOff) {
 }
 
 TEST_F(Cli, DevelopMakesThePngThatRenderWrites) {
-  succeed(render({"-p", "2", "-o", "a.exr", "-o", "a.png", "--exposure", "1.5", "--filmic"}));
-  const Ending ending = succeed({"develop", "a.exr", "b.png", "--exposure", "1.5", "--filmic"});
+  succeed(render({"-p", "2", "-o", "a.exr", "-o", "a.png", "--exposure", "1.5", "--view-transform", "filmic"}));
+  const Ending ending = succeed({"develop", "a.exr", "b.png", "--exposure", "1.5", "--view-transform", "filmic"});
   EXPECT_EQ(ending.out, "b.png: layer color of a.exr\n");
   expect_equal_files("b.png", "a.png");
   EXPECT_TRUE(contains(succeed({"develop", "a.exr", "c.png", "--exposure", "auto"}).out, "measured from the picture"));
-  succeed({"develop", "a.exr", "direct.png", "--layer", "direct", "--exposure", "1.5", "--filmic"});
+  succeed({"develop", "a.exr", "direct.png", "--layer", "direct", "--exposure", "1.5", "--view-transform", "filmic"});
   EXPECT_FALSE(bytes("direct.png") == bytes("a.png"));
   succeed({"develop", "a.exr", "depth.png", "--layer", "depth"});
   refuse({"develop", "a.exr", "x.png", "--layer", "sparkle"}, "a.exr: has no layer sparkle; it has color, ");

@@ -60,7 +60,8 @@ TEST_F(FirstSight, PicturesThatAreTooBrightSayHowToSeeThem) {
   const Words words{"render", "tiny.pbrt", "-i", "path", "-r", "16x16", "-p", "4", "-o", "a.png"};
   EXPECT_TRUE(contains(run(words + Words{"--exposure", "8"}).err, "are brighter than white: --exposure "));
   EXPECT_FALSE(contains(run(words + Words{"--exposure", "-8"}).err, "brighter than white"));
-  EXPECT_FALSE(contains(run(words + Words{"--exposure", "8", "--filmic"}).err, "brighter than white"));
+  EXPECT_FALSE(
+      contains(run(words + Words{"--exposure", "8", "--view-transform", "filmic"}).err, "brighter than white"));
 }
 
 TEST_F(FirstSight, PicturesThatAreTooDarkSayHowToSeeThem) {
@@ -186,7 +187,7 @@ TEST_F(FirstSight, AnimationsAreShownAtATime) {
   for (const Words& frame : {Words{"--at", "frame=36@24"}, Words{"--at", "frame=45@30"}})
     EXPECT_TRUE(contains(succeed(Words{"info", "moves.gltf"} + frame).out, "bounds     (6, 0, 0) to (7, 1, 0)"));
   refuse({"info", "moves.gltf", "--at", "frame=24"}, "--at frame=24: expected seconds such as 1.5, or a frame such as");
-  refuse({"info", "tiny.pbrt", "--at", "1"}, "tiny.pbrt: --at: only glTF files have animations");
+  refuse({"info", "tiny.pbrt", "--at", "1"}, "tiny.pbrt: --at, --frames: only glTF files have animations");
   // Another time is another scene.
   const Words words{"render", "moves.gltf", "-i", "path", "-r", "8x8", "-p", "1", "--at"};
   succeed(words + Words{"0", "-o", "a.state"});

@@ -20,7 +20,7 @@ class View : public Cli {
 };
 
 TEST_F(View, HeadlessFramesAreTheSameBytesOnEveryRun) {
-  const Words words{"--frames", "3", "--json", "a.json"};
+  const Words words{"--passes", "3", "--json", "a.json"};
   if (!draws(words, "a.exr")) GTEST_SKIP() << "SKIPPED, NOT TESTED: no OpenGL 4.5";
   draws(words, "b.exr");
   const auto report = json("a.json");
@@ -29,14 +29,14 @@ TEST_F(View, HeadlessFramesAreTheSameBytesOnEveryRun) {
   EXPECT_FALSE(report["photons_per_bounce"].empty());
   if (!report["software"]) GTEST_SKIP() << "SKIPPED, NOT TESTED: equal bytes are promised for OpenGL in software";
   EXPECT_EQ(bytes("a.exr"), bytes("b.exr"));
-  draws({"--frames", "3", "--seed", "1"}, "c.exr");
+  draws({"--passes", "3", "--seed", "1"}, "c.exr");
   EXPECT_NE(bytes("a.exr"), bytes("c.exr"));
 }
 
 TEST_F(View, MethodsDifferAndOfflineOnesAreThoseOfRender) {
-  if (!draws({"--frames", "1", "-m", "direct"}, "direct.exr")) GTEST_SKIP() << "SKIPPED, NOT TESTED: no OpenGL 4.5";
-  draws({"--frames", "1", "-m", "ambient"}, "ambient.exr");
-  draws({"--frames", "2", "-m", "path"}, "path.exr");
+  if (!draws({"--passes", "1", "-i", "direct"}, "direct.exr")) GTEST_SKIP() << "SKIPPED, NOT TESTED: no OpenGL 4.5";
+  draws({"--passes", "1", "-i", "ambient"}, "ambient.exr");
+  draws({"--passes", "2", "-i", "path"}, "path.exr");
   EXPECT_EQ(run({"render", "tiny.pbrt", "-i", "path", "-p", "2", "-n", "500", "-o", "render.exr"}).exit_code, 0);
   const Image direct = read_image(path("direct.exr")), ambient = read_image(path("ambient.exr"));
   EXPECT_NE(direct.pixels, ambient.pixels);
@@ -49,7 +49,7 @@ TEST_F(View, WithoutDisplayItNamesTheBrowser) {
   EXPECT_TRUE(contains(window.err, "no window can be opened")) << window.err;
   EXPECT_TRUE(contains(window.err, "lanthorn serve tiny.pbrt")) << window.err;
   const Ending headless =
-      run_shell("export __EGL_VENDOR_LIBRARY_DIRS=/nonexistent; L view tiny.pbrt --headless --frames 1 -o a.png");
+      run_shell("export __EGL_VENDOR_LIBRARY_DIRS=/nonexistent; L view tiny.pbrt --headless --passes 1 -o a.png");
   EXPECT_EQ(*headless.exit_code, 2);
   const auto render = run_shell("export __EGL_VENDOR_LIBRARY_DIRS=/nonexistent; L render tiny.pbrt -i ispm -o a.png");
   EXPECT_EQ(*render.exit_code, 2);
@@ -64,7 +64,7 @@ TEST_F(View, DarkPicturesAreExplained) {
     std::ofstream(path("dark.pbrt")) << "LookAt 0 0 3  0 0 0  0 1 0\nCamera \"perspective\"\nFilm \"rgb\" \"integer "
                                         "xresolution\" [8] \"integer yresolution\" [8]\nWorldBegin\n"
                                      << content << "Shape \"sphere\"\n";
-    return run({"view", "dark.pbrt", "--headless", "--frames", "1", "-n", "500", "-o", "dark.png"}).err;
+    return run({"view", "dark.pbrt", "--headless", "--passes", "1", "-n", "500", "-o", "dark.png"}).err;
   };
   const std::string unlit = warnings("");
   if (contains(unlit, "OpenGL 4.5 core is needed")) GTEST_SKIP() << "SKIPPED, NOT TESTED: no OpenGL 4.5";
@@ -84,13 +84,13 @@ TEST_F(View, BadOptionsSayWhatWasExpected) {
   const auto refuses = [&](const Words& words, const std::string& part) {
     refuse(Words{"view", "tiny.pbrt"} + words, part);
   };
-  refuses({"--headless", "--frames", "1"}, "expected -o FILE");
-  refuses({"--headless", "-o", "a.png"}, "expected --frames N");
+  refuses({"--headless", "--passes", "1"}, "expected -o FILE");
+  refuses({"--headless", "-o", "a.png"}, "expected --passes N");
   refuses({"-o", "a.png"}, "goes with --headless");
-  refuses({"-m", "photons"}, "expected direct, ambient, ispm, splitsum, voxelcones, or an offline method");
+  refuses({"-i", "photons"}, "expected direct, ambient, ispm, splitsum, voxelcones, or an offline method");
   refuses({"--look-at", "0,0,0,0,0,0,0,1,0"}, "must not lie on one line");
   refuses({"--look-at", "0,0,1"}, "expected nine numbers");
-  refuses({"--headless", "--frames", "1", "-o", "a.png", "--set", "gather=sieve"}, "expected auto, splat or tiles");
+  refuses({"--headless", "--passes", "1", "-o", "a.png", "--set", "gather=sieve"}, "expected auto, splat or tiles");
   EXPECT_FALSE(fs::exists(path("a.png")));
 }
 

@@ -17,7 +17,7 @@ namespace lanthorn::test {
 inline std::string no_files(const std::filesystem::path& path) { throw Error({path.string()}, "no such file"); }
 
 inline SceneDescription read_gltf(const std::string& bytes, std::optional<double> seconds = {}) {
-  return with_stand_ins(gltf::read(bytes, "", "t.gltf", no_files, seconds));
+  return with_stand_ins(gltf::read(bytes, "", "t.gltf", no_files, {seconds}));
 }
 inline SceneDescription read_gltf(const GltfWriter& file, std::optional<double> seconds = {}) {
   return read_gltf(file.text(), seconds);

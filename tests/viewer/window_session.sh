@@ -173,7 +173,7 @@ grep -q '"photons_per_bounce"' report.json || fail "no report"
 grep -q '"method": "ispm"' report.json || fail "the last method was not ispm"
 # What was saved is what was shown: the same scene again, without a window, is as bright up to noise.
 check_brightness() { # picture of the window, method
-  "$program" view room-view-1.pbrt --headless --method "$2" --frames 8 -n 5000 -o again.png
+  "$program" view room-view-1.pbrt --headless -i "$2" -p 8 -n 5000 -o again.png
   local ratio
   ratio=$("$program" compare "$1" again.png | awk '/mean ratio/ { print $3 }')
   awk -v r="$ratio" 'BEGIN { exit !(r > 0.97 && r < 1.03) }' || fail "$1 is $ratio times as bright as $2 without a window"

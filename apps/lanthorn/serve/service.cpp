@@ -140,7 +140,7 @@ HttpResponse ViewService::scene() const {
   for (const description::Warning& warning : viewer_.warnings()) warnings.push_back(warning.message);
   for (const MethodInfo& method : methods())
     known_methods.push_back({{"name", method.name}, {"description", method.summary}});
-  const ViewDescription& view = description_of(viewer_.scene()).view;
+  const ViewDescription view = viewer_.first_view();
   const auto* perspective = std::get_if<description::PerspectiveCamera>(&view.camera.node);
   return {HttpStatus::ok, json_type,
           share(json_text({{"title", title_},
@@ -150,7 +150,7 @@ HttpResponse ViewService::scene() const {
                            {"field_of_view", perspective != nullptr ? perspective->fov : 40},
                            {"exposure", display_.display.exposure},
                            {"measures_exposure", display_.measures_exposure.value_or(view.film.measures_exposure)},
-                           {"filmic", display_.display.curve == ToneCurve::filmic}},
+                           {"curve", view_transform_type().print(display_.display.curve)}},
                           one_line))};
 }
 
@@ -174,7 +174,7 @@ HttpResponse ViewService::png(const HttpRequest& request) const {
   if (!colors || std::abs(exposure) > DisplaySettings::largest_exposure)
     return plain_response(frame ? HttpStatus::bad_request : HttpStatus::unavailable);
   const DisplaySettings display{static_cast<float>(exposure),
-                                request.parameter("curve") == "filmic" ? ToneCurve::filmic : ToneCurve::none};
+                                view_transform_type().parse(request.parameter("curve")).value_or(ToneCurve::none)};
   const std::lock_guard lock(encoding_);
   return attachment("image/png", encode_png(*colors, display, frame->metadata()), title_ + ".png");
 }

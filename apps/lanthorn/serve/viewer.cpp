@@ -48,7 +48,7 @@ Viewer::Viewer(const SharedScene& scene, ViewerSettings settings)
       settings_(std::move(settings)),
       lights_(lights_of(*scene)),
       is_mirrored_(description_of(*scene).view.camera.camera_to_world.start.swaps_handedness()),
-      render_(scale_lights(scene_, settings_.start.changes.lights), view_of(*scene_, settings_.start.changes),
+      render_(scale_lights(scene_, settings_.start.changes.lights), view_of(*scene_, settings_.start.changes, settings_.start.options),
               endless(settings_.start.options), {.keeps_sums = settings_.keeps_sums}),
       wanted_(settings_.start),
       scenes_{{render_.snapshot().status.revision, wanted_}},
@@ -99,7 +99,7 @@ void Viewer::apply(const ViewerEdit& edit) {
   ViewerScene next{edit.home ? settings_.start.changes : wanted_.changes, edited_options(edit)};
   if (edit.look) next.changes.look = edit.look;
   if (edit.lights) next.changes.lights = *edit.lights;
-  if (edit.size) check_view(view_of(*scene_, next.changes), next.options);
+  if (edit.size) check_view(view_of(*scene_, next.changes, next.options), next.options);
   submit(std::move(next), edit.moving);
   problem_.clear();
   if (edit.paused) is_paused_ = *edit.paused;
@@ -108,7 +108,7 @@ void Viewer::apply(const ViewerEdit& edit) {
 
 void Viewer::submit(ViewerScene next, bool is_moving) {
   RenderEdit edit{.is_moving = is_moving};
-  if (next.changes.look != wanted_.changes.look) edit.view = view_of(*scene_, next.changes);
+  if (next.changes.look != wanted_.changes.look) edit.view = view_of(*scene_, next.changes, next.options);
   if (next.changes.lights != wanted_.changes.lights)
     edit.scene = [scene = scale_lights(scene_, next.changes.lights)] { return scene; };
   const RenderOptions &before = wanted_.options, &now = next.options;
@@ -153,8 +153,8 @@ std::shared_ptr<const PageFrame> Viewer::frame_of(const InteractiveSnapshot& sna
 
 const LookAt& Viewer::home(const Image& image) {
   if (!home_) {
-    const ViewDescription own = view_of(*scene_, {});
     const RenderOptions& options = settings_.start.options;
+    const ViewDescription own = view_of(*scene_, moved(settings_.start.changes, {}, {}), options);
     const DVec3& origin = description_of(*scene_).origin;
     const DVec3 eye = look_of(own, options, 1, origin).eye;
     home_ = look_of(own, options, distance_to_middle(image, *scene_, eye), origin);

@@ -71,6 +71,8 @@ class Viewer {
   const std::vector<description::Warning>& warnings() const { return render_.warnings(); }
   const std::vector<NamedLight>& lights() const { return lights_; }
   const Scene& scene() const { return *scene_; }
+  /// What is seen at the start.
+  ViewDescription first_view() const { return view_of(*scene_, settings_.start.changes, settings_.start.options); }
 
  private:
   using Clock = std::chrono::steady_clock;

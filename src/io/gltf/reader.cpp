@@ -3,6 +3,8 @@
 // glTF 2.0 §3.10 (cameras), KHR_lights_punctual.
 #include "io/gltf/reader.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -77,22 +79,24 @@ class SceneReader {
   explicit SceneReader(Document& document) : document_(document), materials_(document) {}
 
   /// What the scene in the document lacks.
-  StandIns read(std::optional<double> seconds) {
+  StandIns read(const Choice& choice) {
     SceneDescription& scene = document_.scene;
-    const Pose pose(document_, seconds);
+    const Pose pose(document_, choice.seconds);
     const std::vector<PlacedNode> nodes = placed_nodes(document_, pose);
     for (const PlacedNode& placed : nodes) to_world_[placed.node] = placed.to_world;
     for (const PlacedNode& placed : nodes) {
       const Value node = document_.element("nodes", placed.node);
       if (node.find("mesh")) use_mesh(node, placed, pose);
-      if (const auto camera = node.find("camera")) add_camera(document_.follow("cameras", *camera), placed.to_world);
+      if (const auto camera = node.find("camera"))
+        cameras_.push_back({node, document_.follow("cameras", *camera), placed.to_world});
       if (const auto light = node.extension("KHR_lights_punctual")) add_light(light->at("light"), placed.to_world);
     }
     for (const auto& [mesh, places] : mesh_uses_) add_mesh(document_.element("meshes", mesh), places, {});
     add_strokes();
+    choose_camera(choice.camera);
     const bool has_light = !scene.lights.empty() || is_lit_by(scene, materials_.lamps());
-    const bool has_blind_camera = has_camera_ && is_blind(scene.view.camera);
-    return {!has_camera_ || has_blind_camera, !has_light, {materials_.one_sided(), true}, has_blind_camera};
+    const bool has_blind_camera = !cameras_.empty() && choice.camera.empty() && is_blind(scene.view.camera);
+    return {cameras_.empty() || has_blind_camera, !has_light, {materials_.one_sided(), true}, has_blind_camera};
   }
 
  private:
@@ -119,6 +123,11 @@ class SceneReader {
                                   return b.max.x < 0 || b.max.y < 0;
                                 }));
   }
+
+  struct PlacedCamera {
+    Value node, source;
+    glm::dmat4 to_world;
+  };
 
   /// Points and lines, until the size of the scene is known.
   struct PendingStrokes {
@@ -259,11 +268,44 @@ class SceneReader {
                             " triangles");
   }
 
-  void add_camera(const Value& source, const glm::dmat4& to_world) {
-    if (std::exchange(has_camera_, true)) {
-      document_.warn("cameras", source, "the file has several cameras: the first one is used");
-      return;
+  // What users call the cameras: by the names of their nodes, or else of their own, or else by their numbers.
+  std::vector<std::string> camera_names() const {
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < cameras_.size(); ++i)
+      names.push_back(cameras_[i].node.text("name", cameras_[i].source.text("name", std::to_string(i + 1))));
+    return names;
+  }
+  std::string list_of_cameras() const {
+    constexpr std::size_t most = 8;
+    std::vector<std::string> names = camera_names();
+    for (std::string& name : names) name = in_quotes(name);
+    if (names.size() > most) {
+      names.resize(most);
+      names.emplace_back("...");
     }
+    return fmt::format("{}", fmt::join(names, ", "));
+  }
+  const PlacedCamera& find_camera(const std::string& wanted) const {
+    for (std::size_t i = 0; i < cameras_.size(); ++i)
+      if (wanted == cameras_[i].node.text("name", "") || wanted == cameras_[i].source.text("name", "") ||
+          wanted == std::to_string(i + 1))
+        return cameras_[i];
+    if (cameras_.empty()) throw Error({document_.name()}, "--camera " + printable(wanted) + ": the file has no camera");
+    throw Error({document_.name()}, fmt::format("--camera {}: the file has {}{}", printable(wanted), list_of_cameras(),
+                                                printable(did_you_mean(wanted, camera_names()))));
+  }
+  void choose_camera(const std::string& wanted) {
+    if (!wanted.empty()) return use_camera(find_camera(wanted));
+    if (cameras_.empty()) return;
+    use_camera(cameras_.front());
+    if (cameras_.size() > 1)
+      document_.warn(
+          "cameras", cameras_[1].source,
+          "the file has several cameras: the first one is used; --camera takes another of " + list_of_cameras());
+  }
+
+  void use_camera(const PlacedCamera& placed) {
+    const auto& [node, source, to_world] = placed;
     Camera& camera = document_.scene.view.camera;
     camera.location = source.location();
     const std::string type = source.at("type").text();
@@ -375,7 +417,7 @@ class SceneReader {
   std::map<std::size_t, glm::dmat4> to_world_;  // of the nodes in the scene
   std::map<std::size_t, std::vector<Transform>> mesh_uses_;
   std::vector<PendingStrokes> strokes_;
-  bool has_camera_ = false;
+  std::vector<PlacedCamera> cameras_;
   float near_ = 0;  ///< of the camera, metres: viewers show nothing that is nearer
   std::map<std::size_t, std::vector<glm::dmat4>> skins_;
   std::size_t triangles_ = 0, made_triangles_ = 0, shapes_ = 0, instances_ = 0;
@@ -384,11 +426,11 @@ class SceneReader {
 }  // namespace
 
 ModelFile read(std::string_view bytes, std::filesystem::path folder, const std::string& name, FileReader read_file,
-               std::optional<double> seconds, const FileAccess* access) {
+               const Choice& choice, const FileAccess* access) {
   Document document(bytes, std::move(folder), name, std::move(read_file), access);
   check_version(document);
   check_extensions(document);
-  StandIns lacking = SceneReader(document).read(seconds);
+  StandIns lacking = SceneReader(document).read(choice);
   if (access != nullptr) report_missing_files(document.scene, *access);
   return {std::move(document.scene), std::move(lacking)};
 }

@@ -12,11 +12,17 @@
 
 namespace lanthorn::gltf {
 
+/// What of a file is read.
+struct Choice {
+  std::optional<double> seconds{};  ///< into the first animation; none: at rest
+  std::string camera{};             ///< its name, or that of its node, or its number from 1 on; empty: the first one
+};
+
 /// Reads a glTF 2.0 file, text or binary (distinguished by content). Relative URIs start at `folder`. Messages call the
 /// file `name`. Other files are read through `read_file` only. If they are on disk, `access` tells which are missing:
-/// these are named together, or left out if it says so. `seconds`: into the first animation; at rest without. Throws
-/// Error at FILE#POINTER (a JSON pointer), for JSON syntax errors with line and column.
+/// these are named together, or left out if it says so. Throws Error at FILE#POINTER (a JSON pointer), for JSON syntax
+/// errors with line and column.
 ModelFile read(std::string_view bytes, std::filesystem::path folder, const std::string& name, FileReader read_file,
-               std::optional<double> seconds = {}, const FileAccess* access = nullptr);
+               const Choice& choice = {}, const FileAccess* access = nullptr);
 
 }  // namespace lanthorn::gltf

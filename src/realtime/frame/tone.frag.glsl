@@ -18,6 +18,23 @@ vec3 encode_srgb(vec3 x) {
 // Narkowicz 2015, "ACES filmic tone mapping curve".
 vec3 filmic(vec3 x) { return (x * (2.51 * x + 0.03)) / (x * (2.43 * x + 0.59) + 0.14); }
 
+// AgX, as in film/display.h, to display values.
+vec3 agx_sigmoid(vec3 x) {
+  const float pivot = 10 / 16.5;
+  vec3 toe = vec3(lessThan(x, vec3(pivot)));
+  vec3 power = mix(vec3(3.25), vec3(3), toe), end = 2 * mix(vec3(1 - pivot), vec3(pivot), toe);
+  vec3 size = pow((pow(2 * end, power) - 1) * pow(end, -power), -1 / power);
+  vec3 t = 2 * abs(x - pivot) / size;
+  vec3 y = size * t / pow(1 + pow(t, power), 1 / power);
+  return 0.5 + mix(y, -y, toe);
+}
+vec3 agx(vec3 x) {
+  const vec3 white = 0.2 * vec3(0.2120, 0.3921, 0.3959);
+  x = log2(max(0.8 * x + dot(white, x), vec3(1e-9)) / 0.18);
+  x = agx_sigmoid(clamp((x + 10) / 16.5, vec3(0), vec3(1)));
+  return clamp((x - dot(white, x)) / 0.8, vec3(0), vec3(1));
+}
+
 void main() {
   ivec2 pixel = ivec2(gl_FragCoord.xy);
   if (height > 0) pixel.y = height - 1 - pixel.y;
@@ -26,5 +43,5 @@ void main() {
   x = max(x, vec3(0));
   if (curve == curve_reinhard) x = x / (1 + x);
   if (curve == curve_filmic) x = filmic(x);
-  colour = vec4(encode_srgb(clamp(x, vec3(0), vec3(1))), 1);
+  colour = curve == curve_agx ? vec4(agx(x), 1) : vec4(encode_srgb(clamp(x, vec3(0), vec3(1))), 1);
 }

@@ -142,8 +142,8 @@ void draw_tone(Panel& panel) {
   tip("Right click: 0");
   ImGui::Checkbox("Measure the exposure", &panel.measures_exposure);
   tip("A white surface in the light of the picture becomes white");
-  int curve = panel.filmic ? 1 : 0;
-  if (ImGui::Combo("Curve", &curve, "Clipped\0Filmic\0")) panel.filmic = curve == 1;
+  int curve = static_cast<int>(panel.curve);
+  if (ImGui::Combo("View", &curve, "Clipped\0Filmic\0AgX\0")) panel.curve = static_cast<ToneCurve>(curve);
   ImGui::Combo("Layer", &panel.layer, "All light\0Emission\0Direct\0Indirect\0Caustic\0");
 }
 

@@ -82,6 +82,40 @@ TEST(Api, ASandboxedSceneReadsItsOwnFolderAlone) {
   EXPECT_THROW(lanthorn::read_scene(dir.path() / "upload/scene.pbrt", {.sandbox = true}), lanthorn::Error);
 }
 
+TEST(Api, MeshesAreReadFromPlyFiles) {
+  const lanthorn::test::TemporaryDir dir;
+  dir.write(
+      "a.ply",
+      "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+      "element face 2\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n4 0 1 "
+      "2 3\n");
+  const auto shapes = lanthorn::read_mesh(dir.path() / "a.ply");
+  ASSERT_EQ(shapes.size(), 2u);
+  EXPECT_EQ(std::get<lanthorn::description::TriangleMesh>(shapes[0].geometry).triangles.size(), 1u);
+  EXPECT_TRUE(std::holds_alternative<lanthorn::description::BilinearMesh>(shapes[1].geometry));
+  lanthorn::SceneDescription scene;
+  scene.materials.emplace_back();
+  scene.shapes = shapes;
+  EXPECT_EQ(lanthorn::summarize(*lanthorn::build_scene(scene)).triangles, 1u);
+  EXPECT_THROW(lanthorn::read_mesh(dir.path() / "b.ply"), lanthorn::Error);
+}
+
+// The view of the session stays: the film of 24 x 16 pixels, and not that of the new scene.
+TEST(Api, AnotherSceneIsSeenThroughTheSameView) {
+  Session session(load(box), small());
+  session.render_pass();
+  const lanthorn::SceneDescription other = lanthorn::read_pbrt_string(
+      "Film \"rgb\" \"integer xresolution\" [7]\nCamera \"orthographic\"\nWorldBegin\nLightSource \"infinite\"\n", ".",
+      "t");
+  const lanthorn::ViewDescription view = lanthorn::description_of(*load(box)).view;
+  session.set_scene(lanthorn::build_scene(other));
+  EXPECT_EQ(session.pass_count(), 0u);
+  ASSERT_TRUE(session.render_pass());
+  Session expected(lanthorn::build_scene(other), view, small());
+  expected.render_pass();
+  EXPECT_EQ(session.picture().pixels, expected.picture().pixels);
+}
+
 TEST(Api, APictureThatDoesNotFitIntoMemoryIsRefused) {
   RenderOptions options = small();
   options.memory = 1000;

@@ -36,13 +36,14 @@ TEST(TechniqueDocs, NameAllParametersWithTheirDefaults) {
     for (const TechniqueParameter& p : technique.description.parameters) add(p, '`' + technique.description.name + '`');
   for (const TechniqueParameter& p : light_parameters()) add(p, "all but `splitsum`");
   const std::string text = read_file(LANTHORN_SOURCE_DIR "/docs/viewer.md");
-  EXPECT_EQ(rows_after(text, "| `--method` | `--set` |"), expected);
+  EXPECT_EQ(rows_after(text, "| `--integrator` | `--set` |"), expected);
 }
 
 TEST(TechniqueDocs, NameAllTechniques) {
   std::set<std::string> names, documented;
   for (const TechniqueInfo& technique : built_in_techniques()) names.insert(technique.description.name);
-  for (const std::string& row : rows_after(read_file(LANTHORN_SOURCE_DIR "/docs/viewer.md"), "| `--method` | light |"))
+  for (const std::string& row :
+       rows_after(read_file(LANTHORN_SOURCE_DIR "/docs/viewer.md"), "| `--integrator` | light |"))
     if (row.starts_with("| `")) documented.insert(row.substr(3, row.find('`', 3) - 3));
   EXPECT_EQ(documented, names);
 }

@@ -5,7 +5,7 @@ const byId = (id) => document.getElementById(id);
 const canvas = byId('picture'), stage = byId('stage'), context = canvas.getContext('2d', {alpha: false});
 
 // What is shown: the last frame {about, halves}, how it is shown, and the camera as the page moves it.
-let frame = null, layer = 'color', display = {exposure: 0, filmic: false, auto: false}, camera = null, upward = null;
+let frame = null, layer = 'color', display = {exposure: 0, curve: 'none', auto: false}, camera = null, upward = null;
 let fieldOfView = 45, lights = {}, moving = false, frameTimes = [];
 
 // Numbers
@@ -32,7 +32,8 @@ function rotate(v, axis, angle) {
 
 // Display
 
-/// A linear value as a display value from 0 to 255: as `lanthorn render --exposure E [--filmic]` writes it.
+/// A linear value as a display value from 0 to 255: as `lanthorn render --exposure E --view-transform none|filmic`
+/// writes it.
 function displayed(value, gain, filmic) {
   let x = Math.min(value * gain, 1e4);
   if (!(x > 0)) return 0;
@@ -50,6 +51,38 @@ function makeTable(exposure, filmic, isVector, range) {
   const gain = 2 ** exposure;
   const shown = isVector ? (x) => 0.5 + 0.5 * x : range ? (x) => x > 0 ? (x - range.black) / (range.white - range.black) : 0 : (x) => x;
   for (let bits = 0; bits < 65536; bits++) table[bits] = displayed(shown(numbers[bits]), gain, filmic);
+}
+
+/// AgX, as in src/film/display.h: the sigmoid of 4096 places between 10 stops below middle grey and 6.5 above.
+const agxSigmoid = Float32Array.from({length: 4096}, (_, i) => {
+  const x = i / 4095, pivot = 10 / 16.5, power = x < pivot ? 3 : 3.25, end = 2 * (x < pivot ? pivot : 1 - pivot);
+  const size = (((2 * end) ** power - 1) * end ** -power) ** (-1 / power), t = 2 * Math.abs(x - pivot) / size;
+  const y = size * t / (1 + t ** power) ** (1 / power);
+  return x < pivot ? 0.5 - y : 0.5 + y;
+});
+const agxCurve = (x) => agxSigmoid[Math.round(4095 * Math.min(1, Math.max(0, (Math.log2(x / 0.18) + 10) / 16.5)))];
+const agxWhite = (r, g, b) => 0.2 * (0.2120 * r + 0.3921 * g + 0.3959 * b);
+function drawAgx(pixels, halves, count, gain) {
+  const linear = (half) => Math.min(Math.max(numbers[half] * gain, 0), 1e4) || 0;
+  const green = Math.min(1, count - 1), blue = Math.min(2, count - 1);
+  for (let from = 0, to = 0; to < pixels.length; from += count, to += 4) {
+    let r = linear(halves[from]), g = linear(halves[from + green]), b = linear(halves[from + blue]);
+    const white = agxWhite(r, g, b);
+    r = agxCurve(0.8 * r + white);
+    g = agxCurve(0.8 * g + white);
+    b = agxCurve(0.8 * b + white);
+    const inside = agxWhite(r, g, b);  // the array clamps
+    pixels[to] = 255 * (r - inside) / 0.8;
+    pixels[to + 1] = 255 * (g - inside) / 0.8;
+    pixels[to + 2] = 255 * (b - inside) / 0.8;
+    pixels[to + 3] = 255;
+  }
+}
+
+/// Directions have no curve, and layers of one channel no colours that AgX could change.
+function curveOfFrame() {
+  if (frame.about.layer === 'normal') return 'none';
+  return display.curve === 'agx' && frame.range ? 'none' : display.curve;
 }
 
 /// The values of a layer of one channel that are black and white: nothing and the largest value. Of depth far and near,
@@ -73,14 +106,16 @@ function showRange() {
 function draw() {
   if (!frame) return;
   const {width, height, channels} = frame.about, count = channels.length, isVector = frame.about.layer === 'normal';
-  makeTable(display.exposure, display.filmic && !isVector, isVector, frame.range);
+  const curve = curveOfFrame();
+  makeTable(display.exposure, curve === 'filmic', isVector, frame.range);
   if (canvas.width !== width || canvas.height !== height) {
     canvas.width = width;
     canvas.height = height;
   }
   const image = context.createImageData(width, height), pixels = image.data, halves = frame.halves;
   const green = Math.min(1, count - 1), blue = Math.min(2, count - 1);
-  for (let from = 0, to = 0; to < pixels.length; from += count, to += 4) {
+  if (curve === 'agx') drawAgx(pixels, halves, count, 2 ** display.exposure);
+  else for (let from = 0, to = 0; to < pixels.length; from += count, to += 4) {
     pixels[to] = table[halves[from]];
     pixels[to + 1] = table[halves[from + green]];
     pixels[to + 2] = table[halves[from + blue]];
@@ -400,8 +435,8 @@ byId('auto').addEventListener('change', (event) => {
   display.auto = event.target.checked;
   request?.abort();
 });
-byId('filmic').addEventListener('change', (event) => {
-  display.filmic = event.target.checked;
+byId('curve').addEventListener('change', (event) => {
+  display.curve = event.target.value;
   draw();
 });
 byId('layer').addEventListener('change', (event) => chooseLayer(event.target.value));
@@ -440,9 +475,8 @@ async function save(button, address) {
   button.disabled = frame.about.coarse;
 }
 byId('save-png').addEventListener('click', (event) => {
-  const curve = display.filmic && frame.about.layer !== 'normal' ? 'filmic' : 'none';
   const range = frame.range ? `&black=${frame.range.black}&white=${frame.range.white}` : '';
-  save(event.target, `picture.png?exposure=${display.exposure}&curve=${curve}&layer=${encodeURIComponent(layer)}${range}`);
+  save(event.target, `picture.png?exposure=${display.exposure}&curve=${curveOfFrame()}&layer=${encodeURIComponent(layer)}${range}`);
 });
 byId('save-exr').addEventListener('click', (event) => save(event.target, 'picture.exr'));
 
@@ -514,7 +548,7 @@ function showScene(scene) {
     return option;
   }));
   if (scene.lights.length > 0) byId('light-list').replaceChildren(...scene.lights.map(lightRow));
-  display.filmic = byId('filmic').checked = scene.filmic;
+  display.curve = byId('curve').value = scene.curve;
   display.auto = byId('auto').checked = scene.measures_exposure;
   setExposure(scene.exposure);
   const warnings = byId('warnings');

@@ -1,0 +1,205 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "lens.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <numbers>
+#include <string_view>
+#include <variant>
+
+#include "lanthorn/error.h"
+#include "lanthorn/session.h"
+#include "quantities.h"
+
+namespace lanthorn::program {
+
+namespace {
+
+using namespace description;
+
+constexpr float degree = std::numbers::pi_v<float> / 180;
+
+ValueType<Orbit> orbit_type() {
+  const auto parse = [](std::string_view text) -> std::optional<Orbit> {
+    constexpr double most = 1e6;
+    const std::size_t comma = text.find(',');
+    if (comma == text.npos) return std::nullopt;
+    const auto yaw = parse_number(text.substr(0, comma)), pitch = parse_number(text.substr(comma + 1));
+    if (!yaw || !pitch || std::abs(*yaw) > most || std::abs(*pitch) > most) return std::nullopt;
+    return Orbit{static_cast<float>(*yaw), static_cast<float>(*pitch)};
+  };
+  return {"YAW,PITCH", "two numbers of degrees with a comma between them, e.g. 30,10", parse,
+          [](const Orbit& orbit) { return fmt::format("{},{}", orbit.yaw, orbit.pitch); }};
+}
+
+// What the axes of a camera are in the world, when the shutter opens.
+struct CameraAxes {
+  Vec3 right, up, forward;  ///< unit
+  float scale;              ///< metres in the world of a unit in the camera's space
+
+  explicit CameraAxes(const Camera& camera) {
+    const Transform& to_world = camera.camera_to_world.start;
+    const Vec3 z = to_world.vector({0, 0, 1});
+    scale = glm::length(z);
+    forward = z / scale;
+    right = glm::normalize(to_world.vector({1, 0, 0}));
+    up = glm::normalize(to_world.vector({0, 1, 0}));
+  }
+  // The axis of the world that is upwards.
+  Vec3 upwards() const {
+    const Vec3 axis = std::fabs(up.z) > std::fabs(up.y) ? Vec3(0, 0, 1) : Vec3(0, 1, 0);
+    return glm::dot(axis, up) < 0 ? -axis : axis;
+  }
+};
+
+// The rotation about an axis that moves what stands in direction `from` towards `to`.
+Transform turn_towards(float degrees, const Vec3& axis, const Vec3& from, const Vec3& to) {
+  return rotate(glm::dot(glm::cross(axis, from), to) < 0 ? -degrees : degrees, axis);
+}
+
+// Of a camera around its pivot; not quite up to the poles.
+Transform rotation(const CameraAxes& axes, const Orbit& orbit) {
+  constexpr float steepest = 89;
+  const Vec3 upwards = axes.upwards(), back = -axes.forward;
+  const float elevation = std::asin(std::clamp(glm::dot(back, upwards), -1.0f, 1.0f)) / degree;
+  const float pitch = std::clamp(elevation + orbit.pitch, -steepest, steepest) - elevation;
+  const Transform tilt = orbit.pitch == 0 ? Transform() : turn_towards(pitch, axes.right, back, upwards);
+  return turn_towards(orbit.yaw, upwards, back, axes.right) * tilt;
+}
+
+// The point of the camera's axis that is nearest to the middle of the scene.
+Point pivot_of(const Camera& camera, const CameraAxes& axes, const Scene& scene) {
+  const Point eye = camera.camera_to_world.start.point(Point(0));
+  const Bounds bounds = summarize(scene).bounds;
+  const float distance = bounds.empty() ? 0 : glm::dot(bounds.centre() - eye, axes.forward);
+  return eye + (distance > 0 ? distance : axes.scale) * axes.forward;
+}
+
+void rotate_camera(Camera& camera, const Transform& rotation, const Point& pivot) {
+  const Transform map = translate(pivot) * rotation * translate(-pivot);
+  AnimatedTransform& to_world = camera.camera_to_world;
+  to_world = {map * to_world.start, map * to_world.end, to_world.start_time, to_world.end_time};
+}
+
+Bounds bounds_of(const SceneModel& model, const Transform& from_world) {
+  Bounds bounds;
+  for (const SceneModel::Instance& instance : model.instances) {
+    const Transform map = from_world * instance.to_world;
+    for (std::size_t m = instance.first_mesh; m < instance.first_mesh + instance.mesh_count; ++m)
+      for (const Point& p : model.meshes[m].positions) bounds.extend(map.point(p));
+  }
+  return bounds;
+}
+
+void orbit_camera(ViewDescription& view, const Orbit& orbit, const Scene& scene) {
+  Camera& camera = view.camera;
+  const CameraAxes axes(camera);
+  rotate_camera(camera, rotation(axes, orbit), pivot_of(camera, axes, scene));
+  if (camera.subject) camera.subject = bounds_of(model_of(scene), camera.camera_to_world.start.inverted());
+}
+
+PerspectiveCamera& perspective(Camera& camera, const char* option) {
+  auto* const lens = std::get_if<PerspectiveCamera>(&camera.node);
+  if (lens == nullptr)
+    throw Error(camera.location, fmt::format("{}: the scene's camera is no perspective camera, which this is about",
+                                             option));
+  return *lens;
+}
+
+// A film whose shorter side is 24 mm, as that of 35 mm film: the focal length follows from the angle of view.
+void set_aperture(Camera& camera, float f_number) {
+  constexpr float half_film = 0.012f;
+  PerspectiveCamera& lens = perspective(camera, "--aperture");
+  const float focal_length = half_film / std::tan(0.5f * lens.fov * degree);
+  lens.lens_radius = focal_length / (2 * f_number) / CameraAxes(camera).scale;
+}
+
+// In units of the camera's space. Where nothing is seen, what the camera turns around is sharp.
+float depth_of_focus(const ViewDescription& view, const LensChanges::Focus& focus, const Scene& scene,
+                     const ViewOptions& options) {
+  ViewDescription placed = view;
+  placed.camera.camera_to_world = AnimatedTransform(camera_placement(view, options));
+  placed.camera.subject.reset();
+  const CameraAxes axes(placed.camera);
+  if (focus) return *focus / axes.scale;
+  if (const auto depth = depth_in_middle(scene, placed, options)) return *depth;
+  return glm::length(pivot_of(placed.camera, axes, scene) -
+                     placed.camera.camera_to_world.start.point(Point(0))) /
+         axes.scale;
+}
+
+}  // namespace
+
+void focus(ViewDescription& view, const LensChanges& lens, const Scene& scene, const ViewOptions& options) {
+  if (!lens.focus && !lens.aperture) return;
+  Camera& camera = view.camera;
+  const auto set = [&](float radius, float& distance) {
+    if (!(radius > 0))
+      throw Error("--focus: the camera has no aperture, so that all is sharp; expected --aperture, too");
+    distance = depth_of_focus(view, lens.focus.value_or(LensChanges::Focus()), scene, options);
+  };
+  if (auto* const thin = std::get_if<PerspectiveCamera>(&camera.node)) return set(thin->lens_radius, thin->focal_distance);
+  if (auto* const parallel = std::get_if<OrthographicCamera>(&camera.node))
+    return set(parallel->lens_radius, parallel->focal_distance);
+  if (auto* const real = std::get_if<RealisticCamera>(&camera.node)) return set(1, real->focus_distance);
+  throw Error(camera.location, "--focus: the scene's camera has no lens");
+}
+
+void change_lens(ViewDescription& view, const LensChanges& lens, const Scene& scene, const ViewOptions& options) {
+  if (lens.fov) perspective(view.camera, "--fov").fov = *lens.fov;
+  if (lens.orbit) orbit_camera(view, *lens.orbit, scene);
+  if (lens.aperture) set_aperture(view.camera, *lens.aperture);
+  focus(view, lens, scene, options);
+}
+
+std::vector<ViewDescription> turntable(const ViewDescription& view, const Scene& scene, std::size_t count) {
+  const CameraAxes axes(view.camera);
+  const Point pivot = pivot_of(view.camera, axes, scene), centre = summarize(scene).bounds.centre();
+  std::vector<ViewDescription> views(count, view);
+  for (std::size_t i = 0; i < count; ++i) {
+    const float yaw = 360 * static_cast<float>(i) / static_cast<float>(count);
+    rotate_camera(views[i].camera, rotation(axes, {yaw, 0}), view.camera.subject ? Point(0) : pivot);
+  }
+  if (!view.camera.subject) return views;
+  // One box for all places, around the middle of the scene.
+  const SceneModel model = model_of(scene);
+  Vec3 half(0);
+  for (const ViewDescription& placed : views) {
+    const Transform to_camera = placed.camera.camera_to_world.start.inverted();
+    const Bounds box = bounds_of(model, to_camera);
+    half = glm::max(half, glm::max(box.max - to_camera.point(centre), to_camera.point(centre) - box.min));
+  }
+  for (ViewDescription& placed : views) {
+    const Point middle = placed.camera.camera_to_world.start.inverted().point(centre);
+    placed.camera.subject = Bounds{middle - half, middle + half};
+  }
+  return views;
+}
+
+OptionTable lens_options(LensChanges& lens) {
+  constexpr double narrowest = 0.01, widest = 179, largest_aperture = 0.1, farthest = 1e12;
+  return {{.names = "--orbit",
+           .value = into(lens.orbit, orbit_type()),
+           .brief = "Turn the camera around what it looks at: degrees to the right, and upwards",
+           .details = "A model without a camera is framed from there.",
+           .excludes = "--look-at"},
+          {.names = "--fov",
+           .value = into(lens.fov, number_type<float>({narrowest, widest})),
+           .brief = "Angle of view over the shorter side of the picture, degrees",
+           .otherwise = "the scene file's"},
+          {.names = "--aperture",
+           .value = into(lens.aperture, number_type<float>({largest_aperture, farthest})),
+           .brief = "f-number of the lens, such as 2.8; what is out of focus is blurred",
+           .details = "The scene counts in metres, and the film is 24 mm along its shorter side.",
+           .otherwise = "the scene file's, else a pinhole"},
+          {.names = "--focus",
+           .value = into(lens.focus, number_or_word_type({1e-9, farthest}, "auto")),
+           .brief = "Distance that is sharp, metres, or auto: what is seen in the middle of the picture",
+           .otherwise = "with --aperture auto, else the scene file's"}};
+}
+
+}  // namespace lanthorn::program

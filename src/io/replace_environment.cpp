@@ -1,0 +1,159 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <utility>
+#include <variant>
+
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "ibl/cube_map.h"
+#include "io/own_environments.h"
+#include "lanthorn/error.h"
+#include "lanthorn/file.h"
+#include "lanthorn/ibl.h"
+#include "lanthorn/scene.h"
+#include "lanthorn/text.h"
+#include "math/hash.h"
+#include "math/vec.h"
+
+namespace lanthorn {
+
+namespace {
+
+using namespace description;
+
+// The layouts of `Environment` (lanthorn/ibl.h), whose y is up, are those of a light turned: an equirectangular picture
+// and a cube by half a turn, and both mirrored, because pbrt's worlds are left-handed.
+const Mat4 equirectangular_to_y_up(-1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1);
+const Mat4 octahedral_to_y_up(1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1);
+const Mat4 y_up_to_z_up(1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1);
+
+std::vector<Rgb> colours_of(const Image& image) {
+  const auto r = image.find_channel("R"), g = image.find_channel("G"), b = image.find_channel("B"),
+             y = image.find_channel("Y");
+  const std::size_t red = y ? *y : *r, green = y ? *y : *g, blue = y ? *y : *b;
+  std::vector<Rgb> colours;
+  colours.reserve(image.pixels.size() / image.channel_count());
+  for (std::size_t i = 0; i < image.pixels.size(); i += image.channel_count())
+    colours.push_back({image.pixels[i + red], image.pixels[i + green], image.pixels[i + blue]});
+  return colours;
+}
+
+// Means of four points of each texel.
+SphericalTexels unrolled(const Image& strip) {
+  const CubeMap cube = cube_of(strip);
+  SphericalTexels texels{4 * cube.size(), 2 * cube.size(), {}};
+  texels.rows.resize(static_cast<std::size_t>(texels.width) * static_cast<std::size_t>(texels.height));
+  const auto radiance = [&](float x, float y) {
+    const float azimuth = 2 * pi * x / static_cast<float>(texels.width) - pi;
+    const float polar = pi * y / static_cast<float>(texels.height);
+    return cube.lookup(
+        {std::sin(polar) * std::cos(azimuth), std::cos(polar), std::sin(polar) * std::sin(azimuth)});
+  };
+  parallel_for(0, texels.height, [&](int row) {
+    for (int column = 0; column < texels.width; ++column) {
+      Spectrum sum;
+      for (const float dx : {0.25f, 0.75f})
+        for (const float dy : {0.25f, 0.75f})
+          sum += radiance(static_cast<float>(column) + dx, static_cast<float>(row) + dy) * 0.25f;
+      texels.rows[static_cast<std::size_t>(row) * static_cast<std::size_t>(texels.width) +
+                  static_cast<std::size_t>(column)] = {sum[0], sum[1], sum[2]};
+    }
+  });
+  return texels;
+}
+
+struct LightImage {
+  SphericalTexels texels;
+  bool is_octahedral = false;
+};
+
+LightImage light_image(const Image& image) {
+  const EnvironmentLayout layout = *layout_of(image);
+  if (layout == EnvironmentLayout::cube) return {unrolled(image)};
+  return {{image.width, image.height, colours_of(image)}, layout == EnvironmentLayout::octahedral};
+}
+
+// The camera's direction upwards tells more of a pbrt file's world than anything else in it.
+UpAxis axis_upwards(const Camera& camera) {
+  const Vec3 up = camera.camera_to_world.start.vector({0, 1, 0});
+  return std::fabs(up.z) > std::fabs(up.y) ? UpAxis::z : UpAxis::y;
+}
+
+std::string extension_of(const SceneDescription& scene) {
+  const std::filesystem::path path = scene.filename;
+  return lower_extension(lower_extension(path) == ".gz" ? path.stem() : path);
+}
+
+// Worlds of glTF and OBJ files are right-handed, and may not have their camera yet. Of others the camera, whose own space
+// is left-handed, tells.
+bool is_left_handed(const SceneDescription& scene) {
+  const std::string extension = extension_of(scene);
+  const bool is_model = extension == ".gltf" || extension == ".glb" || extension == ".obj";
+  return !is_model && !scene.view.camera.camera_to_world.start.swaps_handedness();
+}
+
+// In a left-handed world, pictures are mirrored, so that the camera sees them as they are.
+Transform placement(const SceneDescription& scene, const EnvironmentChoice& choice, UpAxis up, bool is_octahedral) {
+  const Transform base(is_octahedral ? octahedral_to_y_up : equirectangular_to_y_up);
+  const bool left_handed = is_left_handed(scene);
+  const Transform handed = scale({1, 1, left_handed && !is_octahedral ? -1 : 1});
+  const Transform turned = rotate(left_handed ? -choice.rotation : choice.rotation, {0, 1, 0});
+  const Transform upright = up == UpAxis::z ? Transform(y_up_to_z_up) : Transform();
+  return upright * turned * handed * base;
+}
+
+bool is_environment(const Light& light) { return std::holds_alternative<InfiniteLight>(light.node); }
+
+// The first environment's place in the list of lights is kept, so that the names of the others stay what they were.
+void replace_lights(std::vector<Light>& lights, Light light) {
+  const auto first = std::find_if(lights.begin(), lights.end(), is_environment);
+  if (first == lights.end()) {
+    lights.push_back(std::move(light));
+    return;
+  }
+  *first = std::move(light);
+  lights.erase(std::remove_if(first + 1, lights.end(), is_environment), lights.end());
+}
+
+// A file of its own, whatever the scene calls its files.
+std::string name_of_file(const EnvironmentChoice& choice) { return "--environment " + choice.source; }
+
+}  // namespace
+
+void replace_environment(SceneDescription& scene, const EnvironmentChoice& choice, std::uint64_t max_pixels) {
+  if (!(choice.scale >= 0 && std::isfinite(choice.scale) && std::isfinite(choice.rotation)))
+    throw Error("--environment-rotate, --environment-scale: expected finite numbers, and a scale of 0 or more");
+  std::optional<Image> own = own_environment(choice.source);
+  if (!own) {
+    const std::string bytes = read_file(choice.source);
+    File& file = scene.files[name_of_file(choice)];
+    file.path = choice.source;
+    file.hash = hash_bytes(std::as_bytes(std::span(bytes)));
+  }
+  LightImage image = light_image(own ? std::move(*own) : read_environment({choice.source}, max_pixels));
+  const bool is_pbrt = choice.up == std::nullopt && extension_of(scene) == ".pbrt";
+  const UpAxis up = choice.up.value_or(is_pbrt ? axis_upwards(scene.view.camera) : UpAxis::y);
+  if (is_pbrt)
+    scene.warnings.push_back({{scene.filename},
+                              fmt::format("--environment: +{} is up, because the camera's upward direction is nearer to "
+                                          "it than to {}; --environment-up {} says otherwise",
+                                          up == UpAxis::z ? 'z' : 'y', up == UpAxis::z ? 'y' : 'z',
+                                          up == UpAxis::z ? 'y' : 'z')});
+  Light light;
+  light.light_to_world = placement(scene, choice, up, image.is_octahedral);
+  light.location.file = scene.filename;
+  InfiniteLight& environment = light.node.emplace<InfiniteLight>();
+  environment.texels = std::move(image.texels);
+  environment.radiance.scale = choice.scale;
+  replace_lights(scene.lights, std::move(light));
+}
+
+}  // namespace lanthorn
