@@ -137,18 +137,19 @@ std::vector<double> meshes_seen(const SceneDescription& scene, const ModelSample
   return numbers;
 }
 
-// Of an open room from whose front few of its meshes are seen, the candidates that show nearly all that can be seen;
-// else all but those from above and below.
+// Of an open room the candidates that do not show far fewer of its meshes than the best one; if the front does, those
+// that show nearly all that can be seen. From above and below only then.
 std::vector<const Candidate*> with_most_meshes(const SceneDescription& scene, const ModelSamples& model,
                                                const std::vector<Candidate>& candidates, bool is_open_room) {
   constexpr double many_more = 1.6, nearly_all = 0.9;
   const std::vector<double> numbers =
       is_open_room ? meshes_seen(scene, model, candidates) : std::vector<double>(candidates.size(), 1);
   const double most = *std::max_element(numbers.begin(), numbers.end());
-  const bool decide = most >= many_more * numbers[0];
+  const bool front_shows_few = most >= many_more * numbers[0];
+  const double least = front_shows_few ? nearly_all * most : most / many_more;
   std::vector<const Candidate*> result;
   for (std::size_t i = 0; i < candidates.size(); ++i)
-    if (decide ? numbers[i] >= nearly_all * most : i < viewpoints.size()) result.push_back(&candidates[i]);
+    if (numbers[i] >= least && (front_shows_few || i < viewpoints.size())) result.push_back(&candidates[i]);
   return result;
 }
 

@@ -39,10 +39,10 @@ float roughness_of(float exponent) { return std::sqrt(std::sqrt(2 / (std::max(ex
 // Blender, from 3.1 on, writes the exponent 1000 (1 - roughness)^2, and in map_Ns the roughness itself, in map_refl the
 // metalness.
 float roughness_by_blender(float exponent) { return 1 - std::sqrt(std::clamp(exponent / 1000, 0.0f, 1.0f)); }
-bool is_by_blender(std::string_view text) {
-  constexpr std::string_view start = "# Blender ";
-  return text.starts_with(start) && text.size() > start.size() && text[start.size()] >= '0' &&
-         text[start.size()] <= '9';
+constexpr std::string_view start_by_blender = "# Blender ";
+bool has_blender_version(std::string_view text) {
+  return text.starts_with(start_by_blender) && text.size() > start_by_blender.size() &&
+         text[start_by_blender.size()] >= '0' && text[start_by_blender.size()] <= '9';
 }
 
 std::string lower(std::string_view text) {
@@ -57,7 +57,8 @@ class MaterialFile {
   MaterialFile(std::string_view text, const std::filesystem::path& folder, const std::string& name,
                const FileAccess* access, SceneDescription& scene, Materials& materials, const Warn& warn)
       : words_(text, name),
-        by_blender_(is_by_blender(text)),
+        names_alpha_(text.starts_with(start_by_blender)),
+        by_blender_(has_blender_version(text)),
         folder_(folder),
         access_(access),
         scene_(scene),
@@ -322,9 +323,10 @@ class MaterialFile {
     return static_cast<Index>(scene_.materials.size() - 1);
   }
 
-  // Without map_d, the alpha of map_Kd, by which most programs cut out leaves and fences.
+  // Without map_d, the alpha of map_Kd, by which most programs cut out leaves and fences. Blender's files name it as
+  // map_d, too, where it counts; elsewhere it often is another mask, such as that of a glow.
   FloatParameter alpha_of(const Source& m, float opacity) {
-    if (!m.map_kd) return {opacity, {}};
+    if (!m.map_kd || names_alpha_) return {opacity, {}};
     ImageTexture image = *m.map_kd;
     image.channel = 3;
     image.scale = opacity;
@@ -356,7 +358,8 @@ class MaterialFile {
   }
 
   Words words_;
-  bool by_blender_;
+  bool names_alpha_;  // by map_d, where the alpha of a picture counts: Blender does
+  bool by_blender_;   // from 3.1 on
   const std::filesystem::path& folder_;
   const FileAccess* access_;
   SceneDescription& scene_;

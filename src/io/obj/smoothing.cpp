@@ -44,7 +44,9 @@ class Smoother {
     bool is_outgoing = false;
   };
 
-  std::span<Corner> corners_of(const BareFace& face) const { return std::span(corners_).subspan(face.first, face.count); }
+  std::span<Corner> corners_of(const BareFace& face) const {
+    return std::span(corners_).subspan(face.first, face.count);
+  }
 
   // Unit, or 0 for a face without area.
   glm::dvec3 normal_of(const BareFace& face) {

@@ -17,8 +17,9 @@ namespace fs = std::filesystem;
 namespace {
 
 // What follows the model's name, the likeliest first.
-constexpr std::array<std::string_view, 12> endings{"_diffuse", "_basecolor", "_base_color", "_albedo", "_color", "_diff",
-                                                   "_col",     "_d",         "_texture",    "_tex",    "-diffuse", ""};
+constexpr std::array<std::string_view, 12> endings{"_diffuse", "_basecolor", "_base_color", "_albedo",
+                                                   "_color",   "_diff",      "_col",        "_d",
+                                                   "_texture", "_tex",       "-diffuse",    ""};
 constexpr std::array<std::string_view, 8> kinds{".png", ".jpg", ".jpeg", ".tga", ".bmp", ".tif", ".tiff", ".webp"};
 
 std::string lower(std::string text) {
@@ -38,8 +39,7 @@ std::optional<std::string> texture_beside(const fs::path& model) {
   for (fs::directory_iterator entry(folder, code), end; !code && entry != end; entry.increment(code)) {
     const fs::path& file = entry->path();
     const std::string name = lower(file.stem().string());
-    if (!name.starts_with(stem) ||
-        std::find(kinds.begin(), kinds.end(), lower_extension(file)) == kinds.end())
+    if (!name.starts_with(stem) || std::find(kinds.begin(), kinds.end(), lower_extension(file)) == kinds.end())
       continue;
     const auto* ending = std::find(endings.begin(), endings.end(), std::string_view(name).substr(stem.size()));
     if (ending == endings.end()) continue;

@@ -283,7 +283,7 @@ TEST(Obj, APictureCalledAfterTheModelIsSuggested) {
 TEST(Obj, TransparentTexelsOfColoursAreHoles) {
   const Scene scene(read_scene(models + "leaf.obj"));
   const auto is_hit = [&](float u, float v) {
-    return scene.intersect(Ray({2 * u - 1, 2 * v, 1}, {0, 0, -1})).has_value();
+    return scene.intersect(Ray({2 * u - 1, 2 * v, 1}, {0, 0, -1}), Wavelengths::rgb(0.5f)).has_value();
   };
   const Image leaf = read_image(models + "leaf.png");
   ASSERT_EQ(leaf.channel_count(), 4u);
@@ -373,6 +373,11 @@ TEST(Mtl, TheAlphaOfColoursCountsWhereNoMapOfAlphaIsGiven) {
   EXPECT_EQ(alpha_of(with_mtl("map_Kd leaf.png\nd 0\n")).scale, 1) << "by mistake";
   EXPECT_EQ(alpha_of(with_mtl("map_Kd leaf.png\nmap_d holes.png\n")).filename, "dir/holes.png");
   EXPECT_FALSE(with_mtl("illum 7\nmap_Kd leaf.png\n").shapes.at(0).alpha.texture);
+  for (const char* blender : {"# Blender MTL File: 'a.blend'\n", "# Blender 3.6.4 MTL File: 'None'\n"}) {
+    const SceneDescription scene = read(triangle + "mtllib m.mtl\nusemtl m\nf 1 2 3\n",
+                                        {{"dir/m.mtl", blender + std::string("newmtl m\nmap_Kd leaf.png\n")}});
+    EXPECT_FALSE(scene.shapes.at(0).alpha.texture) << "Blender names a map_d where alpha counts";
+  }
 }
 
 TEST(Mtl, AlphaAndEmission) {
