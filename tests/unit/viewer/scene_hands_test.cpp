@@ -63,7 +63,7 @@ TEST(Picking, TrianglesWithoutAreaAreNotHit) {
     const float x = 0.05f * std::cos(0.1f * static_cast<float>(i)), y = 0.05f * std::sin(0.1f * static_cast<float>(i));
     const Point beside(pole.x + 1e-7f * y, pole.y - 1e-7f * x, pole.z), rim(pole.x + x, pole.y + y, 2.49f);
     const auto hit = hit_triangle({0, 0, 8}, normalize(pole - Point(0, 0, 8)), pole, beside, rim);
-    if (hit) EXPECT_NEAR(*hit, std::sqrt(32.25f), 0.01f) << i;
+    EXPECT_NEAR(hit.value_or(std::sqrt(32.25f)), std::sqrt(32.25f), 0.01f) << i;
   }
 }
 
