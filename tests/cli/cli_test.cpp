@@ -80,7 +80,7 @@ TEST_F(Cli, RenderSaysWhatTheDepthLimitCutsOff) {
   EXPECT_TRUE(contains(cut.err, "the limit of 4 scattering events ended paths that still had ")) << cut.err;
   const nlohmann::json limit = nlohmann::json::parse(read_file(dir_.path() / "a.json"))["depth_limit"];
   EXPECT_EQ(limit["max_depth"], 4);
-  EXPECT_GT(limit["eye"]["cut_share"].get<double>(), 0.1);
+  EXPECT_GT(limit["eye"]["cut_share"].get<double>(), 0.01);
   EXPECT_EQ(limit["eye"]["paths"], 128);
   for (const char* file : {"a.state", "a.exr"}) {
     EXPECT_TRUE(contains(succeed({"info", file}).out, "depth      ended paths that still had ")) << file;

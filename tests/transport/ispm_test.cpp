@@ -152,29 +152,20 @@ std::vector<Image> renders(const Scene& scene, const std::string& method, std::u
   return test::independent_renders(scene, options_for(method, passes), runs, first_seed);
 }
 
-// A ball of dispersive glass in a white world is white, in the middle of which a white plate shows what photons bring
-// through the glass. One wavelength for all paths made it green.
+// A ball of dispersive glass in a white world is white. One wavelength for all paths made it green.
 TEST_F(Ispm, DispersiveGlassIsClear) {
-  const std::string ball =
+  const Scene scene = test::scene_from_text(
       "LookAt 0 0 -8  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [8]\nPixelFilter \"box\"\n"
       "Film \"rgb\" \"integer xresolution\" [16] \"integer yresolution\" [16]\nWorldBegin\n"
-      "LightSource \"infinite\" \"rgb L\" [1 1 1]\n";
-  const std::string glass = "Material \"dielectric\" \"spectrum eta\" \"glass-F11\"\nShape \"sphere\"\n";
-  const std::string plate =
-      "Material \"diffuse\" \"rgb reflectance\" [.8 .8 .8]\n"
-      "Shape \"disk\" \"float radius\" [.6] \"float height\" [0]\n";
-  for (const char* method : {"ispm", "voxelcones"})
-    for (const bool has_plate : {false, true}) {
-      const Scene scene = test::scene_from_text(ball + (has_plate ? plate : "") + glass);
-      const Image image = *select_layer(test::render_image(scene, options_for(method, 16)), "color");
-      std::array<double, 3> mean{};
-      for (std::size_t i = 0; i < image.pixels.size(); ++i)
-        mean[i % 3] += static_cast<double>(image.pixels[i]) / (16 * 16);
-      for (const double channel : mean) {
-        if (!has_plate) EXPECT_NEAR(channel, 1, 0.02) << method;
-        EXPECT_NEAR(channel / mean[1], 1, 0.03) << method << has_plate;
-      }
-    }
+      "LightSource \"infinite\" \"rgb L\" [1 1 1]\n"
+      "Material \"dielectric\" \"spectrum eta\" \"glass-F11\"\nShape \"sphere\"\n");
+  for (const char* method : {"ispm", "voxelcones"}) {
+    const Image image = *select_layer(test::render_image(scene, options_for(method, 16)), "color");
+    std::array<double, 3> mean{};
+    for (std::size_t i = 0; i < image.pixels.size(); ++i)
+      mean[i % 3] += static_cast<double>(image.pixels[i]) / (16 * 16);
+    for (const double channel : mean) EXPECT_NEAR(channel, 1, 0.02) << method;
+  }
 }
 
 // Emission is left out: all pixels of a frame have their samples at the same place, so that a small bright lamp makes

@@ -43,8 +43,9 @@ Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-1 0 -1  1 0 -1
 TEST(FrameSettings, FirstFramesAreWithoutDispersion) {
   const Scene scene = test::scene_from_text("WorldBegin\nShape \"sphere\"\n");
   const View view = make_view(scene.description().view);
-  EXPECT_FALSE(frame_settings({}, view, 0).disperses);
-  EXPECT_TRUE(frame_settings({}, view, 100).disperses);
+  const RealtimeSettings settings = realtime_settings(scene, view, {});
+  EXPECT_FALSE(frame_settings(settings, view, 0).disperses);
+  EXPECT_TRUE(frame_settings(settings, view, 100).disperses);
 }
 
 // A processor that takes 900 ms for a path in each pixel: the spacing is found in a frame, stays, and goes back when
