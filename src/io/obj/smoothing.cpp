@@ -72,20 +72,42 @@ class Smoother {
     return corners_[face.first + (i + (is_outgoing ? 1 : face.count - 1)) % face.count].v;
   }
 
-  bool is_smooth(const Spoke& a, const Spoke& b, std::span<const std::size_t> corners) const {
+  double agreement(std::size_t first_corner, std::size_t second_corner) const {
+    return glm::dot(face_normals_[face_of_[first_corner]], face_normals_[face_of_[second_corner]]);
+  }
+
+  bool is_smooth(std::size_t first_corner, std::size_t second_corner) const {
     constexpr double cosine = 0.8660254037844387;  // of 30 degrees
-    // Faces that run along the edge in the same direction show different sides.
-    if (a.neighbour != b.neighbour || a.is_outgoing == b.is_outgoing) return false;
-    const std::size_t first = face_of_[corners[a.corner]], second = face_of_[corners[b.corner]];
-    const std::uint32_t group = faces_[first].group;
-    return group == faces_[second].group && group != flat_group &&
-           (group != group_by_angle || glm::dot(face_normals_[first], face_normals_[second]) > cosine);
+    const std::uint32_t group = faces_[face_of_[first_corner]].group;
+    return group == faces_[face_of_[second_corner]].group && group != flat_group &&
+           (group != group_by_angle || agreement(first_corner, second_corner) > cosine);
   }
 
   // Disjoint sets of corners.
   std::size_t root(std::size_t i) {
     while (joined_[i] != i) i = joined_[i] = joined_[joined_[i]];
     return i;
+  }
+
+  // Joins each face that runs along the edge in one direction to the face in the other whose normal is nearest: sheets
+  // with a back of their own have two of each. Faces back to back show different sides.
+  void join_across(std::span<const Spoke> edge, std::span<const std::size_t> corners) {
+    constexpr std::size_t most_faces = 16;  // more are no surface
+    constexpr double back_to_back = -0.996;
+    if (edge.size() > most_faces) return;
+    for (const Spoke& a : edge) {
+      const Spoke* nearest = nullptr;
+      double most = back_to_back;
+      for (const Spoke& b : edge) {
+        if (!a.is_outgoing || b.is_outgoing) continue;
+        const double agrees = agreement(corners[a.corner], corners[b.corner]);
+        if (agrees <= most) continue;
+        most = agrees;
+        nearest = &b;
+      }
+      if (nearest != nullptr && is_smooth(corners[a.corner], corners[nearest->corner]))
+        joined_[root(nearest->corner)] = root(a.corner);
+    }
   }
 
   void join_corners(std::span<const std::size_t> corners) {
@@ -98,9 +120,12 @@ class Smoother {
     std::sort(spokes_.begin(), spokes_.end(), [](const Spoke& a, const Spoke& b) {
       return std::tie(a.neighbour, a.corner, a.is_outgoing) < std::tie(b.neighbour, b.corner, b.is_outgoing);
     });
-    for (std::size_t i = 0; i + 1 < spokes_.size(); ++i)
-      if (is_smooth(spokes_[i], spokes_[i + 1], corners))
-        joined_[root(spokes_[i + 1].corner)] = root(spokes_[i].corner);
+    for (auto first = spokes_.begin(); first != spokes_.end();) {
+      const auto last =
+          std::find_if(first, spokes_.end(), [&](const Spoke& s) { return s.neighbour != first->neighbour; });
+      join_across({first, last}, corners);
+      first = last;
+    }
   }
 
   double angle_at(std::size_t corner) const {

