@@ -105,8 +105,8 @@ void orbit_camera(ViewDescription& view, const Orbit& orbit, const Scene& scene)
 PerspectiveCamera& perspective(Camera& camera, const char* option) {
   auto* const lens = std::get_if<PerspectiveCamera>(&camera.node);
   if (lens == nullptr)
-    throw Error(camera.location, fmt::format("{}: the scene's camera is no perspective camera, which this is about",
-                                             option));
+    throw Error(camera.location,
+                fmt::format("{}: the scene's camera is no perspective camera, which this is about", option));
   return *lens;
 }
 
@@ -127,8 +127,7 @@ float depth_of_focus(const ViewDescription& view, const LensChanges::Focus& focu
   const CameraAxes axes(placed.camera);
   if (focus) return *focus / axes.scale;
   if (const auto depth = depth_in_middle(scene, placed, options)) return *depth;
-  return glm::length(pivot_of(placed.camera, axes, scene) -
-                     placed.camera.camera_to_world.start.point(Point(0))) /
+  return glm::length(pivot_of(placed.camera, axes, scene) - placed.camera.camera_to_world.start.point(Point(0))) /
          axes.scale;
 }
 
@@ -142,7 +141,8 @@ void focus(ViewDescription& view, const LensChanges& lens, const Scene& scene, c
       throw Error("--focus: the camera has no aperture, so that all is sharp; expected --aperture, too");
     distance = depth_of_focus(view, lens.focus.value_or(LensChanges::Focus()), scene, options);
   };
-  if (auto* const thin = std::get_if<PerspectiveCamera>(&camera.node)) return set(thin->lens_radius, thin->focal_distance);
+  if (auto* const thin = std::get_if<PerspectiveCamera>(&camera.node))
+    return set(thin->lens_radius, thin->focal_distance);
   if (auto* const parallel = std::get_if<OrthographicCamera>(&camera.node))
     return set(parallel->lens_radius, parallel->focal_distance);
   if (auto* const real = std::get_if<RealisticCamera>(&camera.node)) return set(1, real->focus_distance);

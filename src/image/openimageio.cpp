@@ -131,6 +131,7 @@ std::vector<unsigned char> encode(const char* format, const CodecColors& colors,
   OIIO::ImageSpec spec(colors.width, colors.height, 3, type);
   const bool is_tiff = std::string_view(format) == "tiff";
   spec.attribute("compression", is_tiff ? "zip" : "jpeg:95");
+  spec.attribute("jpeg:subsampling", "4:4:4");
   // A colour space makes a directory of Exif, for which OpenImageIO's TIFF writer would read what it has written.
   if (!is_tiff) spec.attribute("oiio:ColorSpace", "sRGB");
   spec.attribute("ImageDescription", text);

@@ -118,8 +118,8 @@ class PreethamSky {
     const float mass = 1 / (sun_.y + 0.15f * std::pow(93.885f - degrees, -1.253f));
     const float haze = 0.04608f * turbidity_ - 0.04586f;  // Ångström's beta
     const auto left = [&](float micrometres) {
-      return above_atmosphere * std::exp(-mass * (0.008735f * std::pow(micrometres, -4.08f) +
-                                                  haze * std::pow(micrometres, -1.3f)));
+      return above_atmosphere *
+             std::exp(-mass * (0.008735f * std::pow(micrometres, -4.08f) + haze * std::pow(micrometres, -1.3f)));
     };
     return {left(0.610f), left(0.550f), left(0.465f)};
   }
@@ -176,8 +176,7 @@ float level_illuminance(const EquirectangularMap& map, const Image& image) {
   for (int y = 0; 2 * y < map.height; ++y)
     for (int x = 0; x < map.width; ++x) {
       const Rgb c{image.at(x, y, 0), image.at(x, y, 1), image.at(x, y, 2)};
-      sum += static_cast<double>(luminance(c) * map.solid_angle_of_texel(y) *
-                                 map.direction_of_texel(x, y).y);
+      sum += static_cast<double>(luminance(c) * map.solid_angle_of_texel(y) * map.direction_of_texel(x, y).y);
     }
   return static_cast<float>(sum);
 }

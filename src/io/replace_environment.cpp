@@ -54,8 +54,7 @@ SphericalTexels unrolled(const Image& strip) {
   const auto radiance = [&](float x, float y) {
     const float azimuth = 2 * pi * x / static_cast<float>(texels.width) - pi;
     const float polar = pi * y / static_cast<float>(texels.height);
-    return cube.lookup(
-        {std::sin(polar) * std::cos(azimuth), std::cos(polar), std::sin(polar) * std::sin(azimuth)});
+    return cube.lookup({std::sin(polar) * std::cos(azimuth), std::cos(polar), std::sin(polar) * std::sin(azimuth)});
   };
   parallel_for(0, texels.height, [&](int row) {
     for (int column = 0; column < texels.width; ++column) {
@@ -92,8 +91,8 @@ std::string extension_of(const SceneDescription& scene) {
   return lower_extension(lower_extension(path) == ".gz" ? path.stem() : path);
 }
 
-// Worlds of glTF and OBJ files are right-handed, and may not have their camera yet. Of others the camera, whose own space
-// is left-handed, tells.
+// Worlds of glTF and OBJ files are right-handed, and may not have their camera yet. Of others the camera, whose own
+// space is left-handed, tells.
 bool is_left_handed(const SceneDescription& scene) {
   const std::string extension = extension_of(scene);
   const bool is_model = extension == ".gltf" || extension == ".glb" || extension == ".obj";
@@ -142,11 +141,11 @@ void replace_environment(SceneDescription& scene, const EnvironmentChoice& choic
   const bool is_pbrt = choice.up == std::nullopt && extension_of(scene) == ".pbrt";
   const UpAxis up = choice.up.value_or(is_pbrt ? axis_upwards(scene.view.camera) : UpAxis::y);
   if (is_pbrt)
-    scene.warnings.push_back({{scene.filename},
-                              fmt::format("--environment: +{} is up, because the camera's upward direction is nearer to "
-                                          "it than to {}; --environment-up {} says otherwise",
-                                          up == UpAxis::z ? 'z' : 'y', up == UpAxis::z ? 'y' : 'z',
-                                          up == UpAxis::z ? 'y' : 'z')});
+    scene.warnings.push_back(
+        {{scene.filename},
+         fmt::format("--environment: +{} is up, because the camera's upward direction is nearer to "
+                     "it than to {}; --environment-up {} says otherwise",
+                     up == UpAxis::z ? 'z' : 'y', up == UpAxis::z ? 'y' : 'z', up == UpAxis::z ? 'y' : 'z')});
   Light light;
   light.light_to_world = placement(scene, choice, up, image.is_octahedral);
   light.location.file = scene.filename;

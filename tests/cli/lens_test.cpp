@@ -31,8 +31,9 @@ class Lens : public Cli {
     file.add("animations", {{"samplers", {sampler}},
                             {"channels", {{{"sampler", 0}, {"target", {{"node", node}, {"path", "translation"}}}}}}});
     for (const auto& [name, z] : {std::pair{"Wide", 4}, std::pair{"Close-up", 2}}) {
-      const auto camera = file.add(
-          "cameras", {{"type", "perspective"}, {"name", std::string(name) + ".lens"}, {"perspective", {{"yfov", 1.0}, {"znear", .01}}}});
+      const auto camera = file.add("cameras", {{"type", "perspective"},
+                                               {"name", std::string(name) + ".lens"},
+                                               {"perspective", {{"yfov", 1.0}, {"znear", .01}}}});
       file.node({{"camera", camera}, {"name", name}, {"translation", {0, 0, z}}});
     }
     dir_.write("moves.gltf", file.text());
@@ -96,7 +97,8 @@ TEST_F(Lens, OrbitsAroundTheMiddleOfTheScene) {
   EXPECT_GT(eye_of(changed(*tiny, {.orbit = Orbit{0, 200}})).z, 0);
   // A model that is framed, in the right-handed world of OBJ files.
   const SharedScene bar = scene("bar.obj");
-  const Point before = eye_of(description_of(*bar).view) - Point(5, 0, 0), after = eye_of(changed(*bar, {.orbit = Orbit{90, 0}})) - Point(5, 0, 0);
+  const Point before = eye_of(description_of(*bar).view) - Point(5, 0, 0),
+              after = eye_of(changed(*bar, {.orbit = Orbit{90, 0}})) - Point(5, 0, 0);
   EXPECT_NEAR(std::atan2(after.x, after.z) - std::atan2(before.x, before.z), 1.5708f, 0.05f);
   EXPECT_NEAR(after.y / glm::length(after), before.y / glm::length(before), 0.02f) << "as high above the horizon";
 }
@@ -170,7 +172,8 @@ TEST_F(Lens, FramesThatCannotBeSayWhy) {
   refuse(quick("tiny.pbrt", {"--turntable", "4", "-o", "t.exr"}), "-o t.exr: expected #### in the name");
   refuse(quick("tiny.pbrt", {"--turntable", "4"}), "--turntable: expected -o NAME.####.png");
   refuse(quick("tiny.pbrt", {"--turntable", "4", "-o", "t.#.exr", "--json", "t.json"}), "--json t.json: expected ####");
-  refuse(quick("tiny.pbrt", {"--turntable", "4", "--frames", "2:5", "-o", "t.#.exr"}), "--turntable 4 has the frames 0:4");
+  refuse(quick("tiny.pbrt", {"--turntable", "4", "--frames", "2:5", "-o", "t.#.exr"}),
+         "--turntable 4 has the frames 0:4");
   refuse(quick("moves.gltf", {"--frames", "0:2", "--at", "1", "-o", "t.#.exr"}), "have their own times");
   refuse(quick("tiny.pbrt", {"--frames", "0:2", "-o", "t.#.exr"}), "only glTF files have animations");
 }
@@ -215,8 +218,9 @@ TEST_F(Lens, PicturesForADisplayHaveManyFormats) {
 }
 
 TEST_F(Lens, AWidthHasItsHeightByTheShape) {
-  dir_.write("wide.pbrt", "Film \"rgb\" \"integer xresolution\" [300] \"integer yresolution\" [200]\nWorldBegin\n"
-                          "LightSource \"infinite\"\nShape \"sphere\"\n");
+  dir_.write("wide.pbrt",
+             "Film \"rgb\" \"integer xresolution\" [300] \"integer yresolution\" [200]\nWorldBegin\n"
+             "LightSource \"infinite\"\nShape \"sphere\"\n");
   succeed({"render", "wide.pbrt", "-i", "path", "-p", "1", "-r", "30", "-q", "-o", "a.exr"});
   const Image image = read_image(path("a.exr"));
   EXPECT_EQ(image.width, 30);

@@ -151,8 +151,8 @@ TEST_F(ImageFormats, JpegAndTiffShowWhatPngDoes) {
   Image image(64, 32, {"R", "G", "B"});
   for (int y = 0; y < image.height; ++y)
     for (int x = 0; x < image.width; ++x) {
-      image.at(x, y, 0) = static_cast<float>(x) / 80;
-      image.at(x, y, 1) = static_cast<float>(y) / 40;
+      image.at(x, y, 0) = 0.1f + static_cast<float>(x) / 80;
+      image.at(x, y, 1) = 0.1f + static_cast<float>(y) / 40;
       image.at(x, y, 2) = 0.2f;
     }
   const DisplaySettings display{.exposure = 1, .curve = ToneCurve::agx};

@@ -65,7 +65,8 @@ class Environment : public testing::Test {
     model.node({{"mesh", 0}});
     dir_.write("model.gltf", model.text());
     dir_.write("zup.pbrt", "LookAt 0 -4 1  0 0 1  0 0 1\nCamera \"perspective\"\nWorldBegin\n" + lights_);
-    dir_.write("mirrored.pbrt", "Scale -1 1 1\nLookAt 0 1 4  0 1 0  0 1 0\nCamera \"perspective\"\nWorldBegin\n" + lights_);
+    dir_.write("mirrored.pbrt",
+               "Scale -1 1 1\nLookAt 0 1 4  0 1 0  0 1 0\nCamera \"perspective\"\nWorldBegin\n" + lights_);
   }
   std::string file(const Image& image) const {
     write_exr(dir_.path() / "sky.exr", image);
@@ -116,8 +117,7 @@ TEST_F(Environment, IsTurnedAndScaled) {
       build_scene(read("model.gltf", {.source = file(equirectangular()), .rotation = 90, .scale = 3}));
   // Counter-clockwise from above: +x comes to -z, +z to +x.
   for (const Vec3& d : directions) expect(scene, {d.z, d.y, -d.x}, d, 3);
-  const SharedScene upright =
-      build_scene(read("model.gltf", {.source = file(equirectangular()), .up = UpAxis::z}));
+  const SharedScene upright = build_scene(read("model.gltf", {.source = file(equirectangular()), .up = UpAxis::z}));
   for (const Vec3& d : directions) expect(upright, {d.x, -d.z, d.y}, d);
 }
 
