@@ -22,20 +22,21 @@ namespace lanthorn {
 
 /// A change of what an `InteractiveRender` shows. Empty members leave their part as it is. A new view or new options
 /// need another film, and nothing of the scene is built again. A new scene costs what its function costs: `edit_scene`
-/// replaces lights, materials and places in a fraction of a millisecond; `build_scene` builds geometry, and takes as long
-/// as the first time.
+/// replaces lights, materials and places in a fraction of a millisecond; `build_scene` builds geometry, and takes as
+/// long as the first time.
 struct RenderEdit {
-  /// Makes the scene, on the render's thread. If it throws, the next edit calls it again, unless that edit brings another
-  /// function. It must not return null.
+  /// Makes the scene, on the render's thread. If it throws, the next edit calls it again, unless that edit brings
+  /// another function. It must not return null.
   std::function<SharedScene()> scene{};
-  std::optional<ViewDescription> view{};    ///< camera, film, filter
-  std::optional<RenderOptions> options{};   ///< method and parameters, resolution, passes, time
-  bool is_moving = false;  ///< another edit will follow soon, as while a camera is dragged: full passes wait for a moment
+  std::optional<ViewDescription> view{};   ///< camera, film, filter
+  std::optional<RenderOptions> options{};  ///< method and parameters, resolution, passes, time
+  /// Another edit will follow soon, as while a camera is dragged: full passes wait for .3 s.
+  bool is_moving = false;
 };
 
 struct InteractiveSettings {
-  /// Each edit first shows one pass at a resolution that takes about 60 ms, then finer ones while a full pass would take
-  /// long. Otherwise the first picture of an edit is that of its first full pass.
+  /// Each edit first shows one pass at a resolution that takes about 60 ms, then finer ones while a full pass would
+  /// take long. Otherwise the first picture of an edit is that of its first full pass.
   bool coarse_first = true;
   /// Passes that are given up leave no trace in the sums, so that `state` can be saved. Costs a copy of the film before
   /// each pass.
@@ -59,9 +60,9 @@ struct InteractiveStatus {
 
 /// A picture with what belongs to it.
 struct InteractivePicture {
-  Image image{};               ///< all layers
-  std::uint64_t revision = 0;  ///< of the edit that it shows
-  bool is_coarse = false;      ///< one pass at a low resolution
+  Image image{};                   ///< all layers
+  std::uint64_t revision = 0;      ///< of the edit that it shows
+  bool is_coarse = false;          ///< one pass at a low resolution
   std::array<int, 2> full_size{};  ///< width, height of the picture that is not coarse
   StateSummary state{};            ///< passes, seconds, size, settings
   RenderStatistics statistics{};
@@ -119,8 +120,8 @@ class InteractiveRender {
   /// Gives up the running pass within milliseconds (a scene's function runs to its end) and ends the thread. Edits have
   /// no effect after it.
   void stop();
-  /// The sums of the last edit, to be saved. Null before `stop`, without `keeps_sums`, and before the first full pass of
-  /// the last edit.
+  /// The sums of the last edit, to be saved. Null before `stop`, without `keeps_sums`, and before the first full pass
+  /// of the last edit.
   const RenderState* state() const;
 
  private:

@@ -11,8 +11,9 @@
 namespace lanthorn {
 
 struct NamedLight {
-  std::string id;     ///< `name_of_light` or `name_of_area_light`, as options have it
-  std::string words;  ///< kind or material and place, as the scene's camera sees it: "Lamp 2, ceiling", "Point light, left"
+  std::string id;  ///< `name_of_light` or `name_of_area_light`, as options have it
+  std::string
+      words;  ///< kind or material and place, as the scene's camera sees it: "Lamp 2, ceiling", "Point light, left"
 };
 
 /// The area lights that shapes have, then the lights, in the order of the description. Those that would have the same

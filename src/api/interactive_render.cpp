@@ -32,8 +32,8 @@ constexpr double patient_seconds = 1.5;  // longer full passes have pictures bet
 constexpr double largest_growth = 6;     // of the pixels from one of those pictures to the next
 constexpr double fewest_coarse_photons = 8000;
 constexpr Clock::duration moving_time = 300ms;      // that full passes wait for the next edit
-constexpr Clock::duration picture_interval = 40ms;   // between pictures of full passes
-constexpr int picture_share = 8;  // making pictures takes this part of the time at most
+constexpr Clock::duration picture_interval = 40ms;  // between pictures of full passes
+constexpr int picture_share = 8;                    // making pictures takes this part of the time at most
 
 double seconds(Clock::duration time) { return std::chrono::duration<double>(time).count(); }
 
@@ -53,9 +53,9 @@ RenderOptions coarse_options(RenderOptions options, const description::Film& fil
 
 }  // namespace
 
-// One thread runs `run`. `wanted_` is what all edits add up to; the thread copies it, renders without the lock, and looks
-// again. An edit changes `wanted_` and sets `drop_` under the lock, under which the thread clears `drop_` and copies, so
-// that no edit is missed.
+// One thread runs `run`. `wanted_` is what all edits add up to; the thread copies it, renders without the lock, and
+// looks again. An edit changes `wanted_` and sets `drop_` under the lock, under which the thread clears `drop_` and
+// copies, so that no edit is missed.
 class InteractiveRender::Worker {
  public:
   Worker(SharedScene scene, const ViewDescription& view, const RenderOptions& options,
@@ -76,7 +76,7 @@ class InteractiveRender::Worker {
   using Lock = std::unique_lock<std::mutex>;
   struct Wanted {
     std::shared_ptr<const std::function<SharedScene()>> make_scene;  // null once it has made the scene
-    std::uint64_t scene_revision = 0, revision = 0;
+    std::uint64_t scene_revision = 0, options_revision = 0, revision = 0;
     ViewDescription view;
     RenderOptions options;
   };
@@ -104,7 +104,7 @@ class InteractiveRender::Worker {
 
   // Of the thread, and of those who wait for its end.
   SharedScene scene_;
-  std::uint64_t scene_revision_ = 0, plan_revision_ = 0;
+  std::uint64_t scene_revision_ = 0, options_revision_ = 0, plan_revision_ = 0;
   std::optional<RenderPlan> plan_;
   std::vector<description::Warning> warnings_;
   double photons_per_pixel_ = 0;
@@ -134,7 +134,7 @@ class InteractiveRender::Worker {
 
 InteractiveRender::Worker::Worker(SharedScene scene, const ViewDescription& view, const RenderOptions& options,
                                   const InteractiveSettings& settings)
-    : settings_(settings), scene_(std::move(scene)), wanted_{{}, 0, 1, view, options} {
+    : settings_(settings), scene_(std::move(scene)), wanted_{{}, 0, 1, 1, view, options} {
   make_plan(wanted_);
   warnings_ = warnings_of(*scene_, view);
   if (std::string limitation = plan_->integrator->limitation(*scene_); !limitation.empty())
@@ -182,6 +182,8 @@ void InteractiveRender::Worker::rest(Lock& lock) {
 void InteractiveRender::Worker::render(Step step, Wanted& wanted) {
   try {
     if (scene_revision_ != wanted.scene_revision) make_scene(wanted);
+    // Options that do not fit are refused before a coarse picture by them is shown.
+    if (options_revision_ != wanted.options_revision) make_plan(wanted);
     step == Step::coarse ? render_coarse(wanted) : refine(wanted);
   } catch (const std::bad_alloc&) {
     fail(wanted, "not enough memory for this picture");
@@ -203,9 +205,10 @@ void InteractiveRender::Worker::make_scene(Wanted& wanted) {
 
 void InteractiveRender::Worker::make_plan(const Wanted& wanted) {
   plan_.reset();  // two films may not fit into memory
-  plan_revision_ = 0;
+  plan_revision_ = options_revision_ = 0;
   plan_.emplace(plan_render(*scene_, wanted.view, wanted.options));
   plan_revision_ = wanted.revision;
+  options_revision_ = wanted.options_revision;
   const RenderSettings& settings = plan_->settings;
   photons_per_pixel_ = static_cast<double>(settings.photons * settings.parts) / pixels_of(plan_->view.window);
 }
@@ -283,15 +286,19 @@ void InteractiveRender::Worker::note_end(const Wanted& wanted, const PassRange& 
   const std::lock_guard lock(mutex_);
   over_revision_ = wanted.revision;
   over_ = plan_->state.pass_count() < passes.end - passes.begin ? InteractivePhase::out_of_time
-                                                                 : InteractivePhase::finished;
+                                                                : InteractivePhase::finished;
 }
 
 void InteractiveRender::Worker::show(const Wanted& wanted, const RenderPlan& plan, const RenderStatistics& statistics,
                                      bool is_coarse) {
   const PixelWindow full = window_of(wanted.view, wanted.options);
-  auto picture = std::make_shared<const InteractivePicture>(
-      InteractivePicture{picture_of(plan.state), wanted.revision, is_coarse, {full.width(), full.height()},
-                         summarize(plan.state), statistics, plan.integrator->limitation(*scene_)});
+  auto picture = std::make_shared<const InteractivePicture>(InteractivePicture{picture_of(plan.state),
+                                                                               wanted.revision,
+                                                                               is_coarse,
+                                                                               {full.width(), full.height()},
+                                                                               summarize(plan.state),
+                                                                               statistics,
+                                                                               plan.integrator->limitation(*scene_)});
   const std::lock_guard lock(mutex_);
   picture_ = std::move(picture);
   told_ = phase();
@@ -335,7 +342,10 @@ std::uint64_t InteractiveRender::Worker::edit(RenderEdit edit) {
       wanted_.scene_revision = wanted_.revision;
     }
     if (edit.view) wanted_.view = std::move(*edit.view);
-    if (edit.options) wanted_.options = std::move(*edit.options);
+    if (edit.options) {
+      wanted_.options = std::move(*edit.options);
+      wanted_.options_revision = wanted_.revision;
+    }
     if (!settings_.coarse_first) coarse_revision_ = wanted_.revision;
     drop_ = true;
   }
@@ -381,8 +391,8 @@ void InteractiveRender::Worker::stop() {
 
 const RenderState* InteractiveRender::Worker::state() const {
   const std::lock_guard lock(mutex_);
-  const bool is_there = is_over_ && settings_.keeps_sums && plan_ && plan_revision_ == wanted_.revision &&
-                        plan_->state.pass_count() > 0;
+  const bool is_there =
+      is_over_ && settings_.keeps_sums && plan_ && plan_revision_ == wanted_.revision && plan_->state.pass_count() > 0;
   return is_there ? &plan_->state : nullptr;
 }
 

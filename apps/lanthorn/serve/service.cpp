@@ -135,8 +135,7 @@ HttpResponse ViewService::page() const {
 HttpResponse ViewService::scene() const {
   nlohmann::json lights = nlohmann::json::array(), warnings = nlohmann::json::array(),
                  known_methods = nlohmann::json::array();
-  for (const NamedLight& light : viewer_.lights())
-    lights.push_back({{"name", light.id}, {"description", light.words}});
+  for (const NamedLight& light : viewer_.lights()) lights.push_back({{"name", light.id}, {"description", light.words}});
   for (const description::Warning& warning : viewer_.warnings()) warnings.push_back(warning.message);
   for (const MethodInfo& method : methods())
     known_methods.push_back({{"name", method.name}, {"description", method.summary}});

@@ -79,7 +79,7 @@ InteractiveSnapshot await(const InteractiveRender& render, InteractivePhase phas
 RenderOptions endless_pass() {
   RenderOptions options = small();
   options.integrator = "light";
-  options.photons = 1'000'000'000'000;
+  options.photons = 4'000'000'000;
   return options;
 }
 
@@ -136,7 +136,7 @@ TEST(InteractiveRender, TheLatestOfManyEditsWins) {
 // An edit that comes while the thread looks whether there is one.
 TEST(InteractiveRender, NoEditIsMissed) {
   InteractiveRender render(box(), view_of_angle(40), small(1), {.coarse_first = false});
-  for (int i = 0; i < 300; ++i) {
+  for (int i = 0; i < 60; ++i) {
     const std::uint64_t revision = render.edit({.view = view_of_angle(40 + static_cast<float>(i % 7))});
     const auto is_done = [&](const InteractiveSnapshot& now) {
       return now.status.phase == finished && now.picture->revision == revision;
@@ -183,12 +183,14 @@ TEST(InteractiveRender, AnErrorIsKeptAndThePictureStays) {
 }
 
 TEST(InteractiveRender, OptionsThatDoNotFitAreAnError) {
-  RenderOptions unknown = small(), large = small();
+  RenderOptions unknown = small(), large = small(), wide = small();
   unknown.integrator = "moonlight";
   large.memory = 1000;
+  wide.memory = 64 << 20;  // enough for a coarse picture
+  wide.resolution = {8000, 8000};
   EXPECT_THROW(InteractiveRender(box(), view_of_angle(40), unknown), Error);
   InteractiveRender render(box(), view_of_angle(40), small());
-  for (const RenderOptions& wrong : {unknown, large}) {
+  for (const RenderOptions& wrong : {unknown, large, wide}) {
     const auto before = await(render, finished).picture;
     render.edit({.options = wrong});
     const InteractiveSnapshot now = await(render, failed);

@@ -23,7 +23,8 @@ Shape "trianglemesh" "integer indices" [0 1 2] "point3 P" [-2 -2 -2  2 -2 -2  2 
 }
 
 std::string lamp(const std::string& points) {
-  return "AttributeBegin AreaLightSource \"diffuse\" Shape \"trianglemesh\" \"integer indices\" [0 1 2] \"point3 P\" [" +
+  return "AttributeBegin AreaLightSource \"diffuse\" Shape \"trianglemesh\" \"integer indices\" [0 1 2] \"point3 P\" "
+         "[" +
          points + "] AttributeEnd\n";
 }
 
@@ -32,13 +33,13 @@ using Words = std::vector<std::string>;
 const std::string y_up = "LookAt 0 0 9  0 0 0  0 1 0\nCamera \"perspective\"\n";
 
 TEST(LightNames, SayWhereALightIs) {
-  const std::string lights = lamp("0 1.9 0  1 1.9 0  0 1.9 1") + lamp("0 -1.9 0  1 -1.9 0  0 -1.9 1") +
-                             lamp("-1.9 0 0  -1.9 1 0  -1.9 0 1") + "LightSource \"point\" \"point3 from\" [1.5 0 0]\n" +
-                             "LightSource \"point\" \"point3 from\" [0 0 -1.5]\n" +
-                             "LightSource \"spot\" \"point3 from\" [.1 .1 .1]\nLightSource \"infinite\"\n";
-  EXPECT_EQ(words_of(lights, y_up),
-            (Words{"area1: Lamp 1, ceiling", "area2: Lamp 2, floor", "area3: Lamp 3, right", "light1: Point light 1, left",
-                   "light2: Point light 2, back", "light3: Spot light, middle", "light4: Environment"}));
+  const std::string lights =
+      lamp("0 1.9 0  1 1.9 0  0 1.9 1") + lamp("0 -1.9 0  1 -1.9 0  0 -1.9 1") + lamp("-1.9 0 0  -1.9 1 0  -1.9 0 1") +
+      "LightSource \"point\" \"point3 from\" [1.5 0 0]\n" + "LightSource \"point\" \"point3 from\" [0 0 -1.5]\n" +
+      "LightSource \"spot\" \"point3 from\" [.1 .1 .1]\nLightSource \"infinite\"\n";
+  EXPECT_EQ(words_of(lights, y_up), (Words{"area1: Lamp 1, ceiling", "area2: Lamp 2, floor", "area3: Lamp 3, right",
+                                           "light1: Point light 1, left", "light2: Point light 2, back",
+                                           "light3: Spot light, middle", "light4: Environment"}));
 }
 
 TEST(LightNames, UpIsWhereTheCameraHasIt) {
