@@ -124,6 +124,7 @@ class Viewer {
 
   static constexpr double rest_seconds = 0.3;  // before an offline method or exact frames begin
   static constexpr std::uint64_t most_frames = 4096;
+  static constexpr std::uint32_t soft_frames = 8;  // whose mean would show the texels of shadow maps
 
   ViewerOptions options_;
   ViewDescription description_;
@@ -136,8 +137,8 @@ class Viewer {
   gl::Driver driver_;
   Renderer renderer_;
   Accumulation picture_;
-  std::optional<Accumulation> small_;  // while things move, if frames in full would take long
-  bool is_small_ = false;              // the frame that is shown
+  std::optional<Accumulation> small_;        // while things move, if frames in full would take long
+  bool is_small_ = false;                    // the frame that is shown
   std::optional<InteractiveRender> render_;  // of the offline method, if one is chosen
   bool render_is_stale_ = false;             // camera or scene have changed since its last edit
   Panel panel_, before_;
@@ -150,7 +151,7 @@ class Viewer {
   fs::path saved_file_;
   Transform saved_camera_;
   SharedScene saved_scene_;
-  bool is_black_ = false;             // the picture that was measured last
+  bool is_black_ = false;               // the picture that was measured last
   std::uint64_t next_measurement_ = 1;  // frames in the mean
   ViewerClock::time_point started_ = ViewerClock::now(), last_change_ = ViewerClock::now();
   std::uint64_t frames_ = 0;
@@ -292,6 +293,7 @@ void Viewer::draw_frame() {
   FrameSettings settings = frame_settings(panel_.settings, view, frame);
   settings.eye_path_spacing = spacing;
   settings.has_stand_ins = !is_exact;
+  settings.has_soft_edges = frame < soft_frames;
   shown_is_exact_ = is_exact || (share == 1 && spacing == 1 && !renderer_.gpu_scene().has_stand_ins());
   renderer_.draw(view, settings);
   picture.add(renderer_, view.imaging_ratio);

@@ -138,6 +138,7 @@ void Renderer::draw_direct(const FrameContext& frame, float least_sky_alpha) {
   p.set("shadows", static_cast<int>(frame.settings.shadows));
   set_eye_paths(p, frame.eye_paths);
   p.set("least_sky_alpha", least_sky_alpha);
+  p.set("soft_edges", frame.settings.has_soft_edges ? 1 : 0);
   p.set("eye", frame.rays.eye);
   p.set("axis", glm::vec4(frame.rays.axis, frame.rays.parallel ? 1 : 0));
   light_maps_.bind();

@@ -20,16 +20,10 @@ vec3 place_in_map(int view, vec3 point) {
 const uint no_triangle = ~0u;
 
 // A surface in the map shadows the point if its tangent plane lies before the point on the way to the light, by more
-// than `least_slack` metres and a thousandth of the map's width there; unless both may be points of one convex surface,
-// however large the texels: then each lies behind the tangent plane of the other, about as far. The point's own triangle
-// does not count. What the surface lets pass arrives.
-float share_lit(int view, vec3 point, vec3 facing, uint triangle, vec3 towards, float least_slack) {
-  vec3 place = place_in_map(view, point);
-  if (place.z < 0) return 1;
-  ivec3 texel = ivec3(place);
-  float width = length(views[view].right[uint(texel.z) - views[view].maps.x].xyz);
-  if (views[view].origin.a != view_parallel) width *= length(views[view].origin.xyz - point);
-  float slack = max(least_slack, 0.001 * width);
+// than `slack` metres; unless both may be points of one convex surface, however large the texels: then each lies behind
+// the tangent plane of the other, about as far. The point's own triangle does not count. What the surface lets pass
+// arrives.
+float share_past(ivec3 texel, vec3 point, vec3 facing, uint triangle, vec3 towards, float slack) {
   vec4 seen = texelFetch(l_position, texel, 0);
   if (seen.a == 0) return 1;
   uvec4 surface = texelFetch(l_surface, texel, 0);
@@ -42,4 +36,26 @@ float share_lit(int view, vec3 point, vec3 facing, uint triangle, vec3 towards, 
   if (way < slack) return 1;
   float below_point = -dot(between, facing) * sign(dot(towards, facing));
   return below_point > max(0, 0.25 * behind_seen - slack) ? 1 : 1 - seen.a;
+}
+
+uniform int soft_edges;  // 1: between the four nearest texels
+
+// `least_slack`: m; a thousandth of the map's width at the point is allowed in any case.
+float share_lit(int view, vec3 point, vec3 facing, uint triangle, vec3 towards, float least_slack) {
+  vec3 place = place_in_map(view, point);
+  if (place.z < 0) return 1;
+  int layer = int(place.z);
+  float width = length(views[view].right[uint(layer) - views[view].maps.x].xyz);
+  if (views[view].origin.a != view_parallel) width *= length(views[view].origin.xyz - point);
+  float slack = max(least_slack, 0.001 * width);
+  if (soft_edges == 0) return share_past(ivec3(place), point, facing, triangle, towards, slack);
+  vec2 corner = floor(place.xy - 0.5), f = place.xy - 0.5 - corner;
+  float share = 0;
+  for (int i = 0; i < 4; ++i) {
+    ivec2 step = ivec2(i & 1, i >> 1), last = textureSize(l_position, 0).xy - 1;
+    float weight = (step.x == 1 ? f.x : 1 - f.x) * (step.y == 1 ? f.y : 1 - f.y);
+    ivec3 texel = ivec3(clamp(ivec2(corner) + step, ivec2(0), last), layer);
+    share += weight * share_past(texel, point, facing, triangle, towards, slack);
+  }
+  return share;
 }

@@ -50,6 +50,8 @@ struct FrameSettings {
   /// Parallel light has finer maps, and half of its photons, around what is seen of a large scene. Photons from beyond
   /// are few and heavy.
   bool has_light_focus = false;
+  /// Shadows of maps are blurred by a texel: for the first frames of a view, whose mean shows the texels.
+  bool has_soft_edges = false;
   LightViewSettings views;
 };
 
