@@ -56,6 +56,18 @@ TEST(Picking, ATriangleIsHitFromBothSidesAndMissedBesideIt) {
   EXPECT_FALSE(hit_triangle({0.2f, 0.2f, 3}, {0, 0, 1}, a, b, c)) << "behind the origin";
 }
 
+// Two corners as far apart as rounding puts those at the pole of a sphere: the ray through the pole meets it nowhere
+// else.
+TEST(Picking, TrianglesWithoutAreaAreNotHit) {
+  const Point pole(-1, -1, 2.5f);
+  for (int i = 0; i < 64; ++i) {
+    const float x = 0.05f * std::cos(0.1f * static_cast<float>(i)), y = 0.05f * std::sin(0.1f * static_cast<float>(i));
+    const Point beside(pole.x + 1e-7f * y, pole.y - 1e-7f * x, pole.z), rim(pole.x + x, pole.y + y, 2.49f);
+    const auto hit = hit_triangle({0, 0, 8}, normalize(pole - Point(0, 0, 8)), pole, beside, rim);
+    EXPECT_NEAR(hit.value_or(std::sqrt(32.25f)), std::sqrt(32.25f), 0.01f) << i;
+  }
+}
+
 TEST(Picking, FindsWallLampAndBall) {
   const SharedScene scene = scene_of(text);
   const Picker picker(*scene);
