@@ -51,8 +51,7 @@ class ProbabilisticProgressivePhotonMapper final : public Integrator {
 PassReport ProbabilisticProgressivePhotonMapper::render_pass(const RenderJob& job, std::uint32_t pass, Film& film,
                                                              const PhaseObserver& begin) {
   const PassRadii radii(first_radius_, RadiusSchedule{1, alpha_}.radius(pass));
-  const PassPhotons photons =
-      photon_source_.trace(job, pass, radii.classes(), kernel_.support(radii.largest()), begin);
+  const PassPhotons photons = photon_source_.trace(job, pass, radii.classes(), kernel_.support(radii.largest()), begin);
   PassReport report = photons.report;
   report.radius = radii.typical();
   report.rays += trace_eye_paths(

@@ -129,9 +129,9 @@ PassReport StochasticProgressivePhotonMapper<Radius>::render_pass(const RenderJo
       const GatheredLight light = photons.gather([&](const PhotonMap<HashGrid>& map, int flux_class) {
         const float factor = first_radius_.class_factor(flux_class, place.index, radius.radius());
         const GatherSettings how{schedule_.kernel, radius.radius() * factor, split};
-        return gather_photons(
-            map, vertex, how, draw.w, radius.reach(schedule_) * factor,
-            [&](const MetPhoton& photon) { tally.see(in_disc_of_first_class(photon, factor), vertex.at.shading); });
+        return gather_photons(map, vertex, how, draw.w, radius.reach(schedule_) * factor, [&](const MetPhoton& photon) {
+          tally.see(in_disc_of_first_class(photon, factor), vertex.at.shading);
+        });
       });
       radius.update(tally, schedule_);
       return light;

@@ -14,10 +14,10 @@ namespace lanthorn {
 namespace {
 
 // A mesh in a place. Nodes may deform one mesh each in its own way.
-using Place = std::pair<std::string, std::array<float, 16>>;
+using MeshPlace = std::pair<std::string, std::array<float, 16>>;
 
-Place place_of(const std::string& mesh, const AnimatedTransform& to_world) {
-  Place place{mesh, {}};
+MeshPlace mesh_place(const std::string& mesh, const AnimatedTransform& to_world) {
+  MeshPlace place{mesh, {}};
   std::copy_n(&to_world.start.matrix[0][0], 16, place.second.begin());
   return place;
 }
@@ -27,14 +27,14 @@ Place place_of(const std::string& mesh, const AnimatedTransform& to_world) {
 void make_nodes_movable(SceneDescription& scene) {
   using namespace description;
   constexpr std::size_t most = 4096;  // each gets an acceleration structure of its own
-  std::map<Place, std::vector<Shape>> meshes;
+  std::map<MeshPlace, std::vector<Shape>> meshes;
   std::vector<Shape> others;
   for (Shape& shape : scene.shapes) {
     const std::size_t end = shape.location.file.find("/primitives/");
     if (end == std::string::npos || shape.displacement)
       others.push_back(std::move(shape));
     else
-      meshes[place_of(shape.location.file.substr(0, end), shape.object_to_world)].push_back(std::move(shape));
+      meshes[mesh_place(shape.location.file.substr(0, end), shape.object_to_world)].push_back(std::move(shape));
   }
   const bool are_too_many = meshes.size() > most;
   for (auto& [mesh, shapes] : meshes) {

@@ -72,8 +72,13 @@ std::map<std::string, float> strengths_of(const std::vector<LightRow>& lights) {
 }
 
 ShownRender offline_render(const ShownPicture& shown, const ViewerOptions& options) {
-  ShownRender render{shown.scene,   options.render,          {}, shown.strengths,
-                     shown.display, shown.measures_exposure, stem_of(shown.scene) + ".png"};
+  ShownRender render{shown.scene,
+                     options.render,
+                     {},
+                     shown.strengths,
+                     shown.display,
+                     shown.measures_exposure,
+                     stem_of(shown.scene) + ".png"};
   if (shown.camera) render.look = look_of(*shown.camera);
   render.options.resolution = {shown.width, shown.height};
   set_method(render.options, shown, options.method);

@@ -40,9 +40,7 @@ class MergeRadii {
 
   const FluxClasses& classes() const { return radii_.classes(); }
   /// Of all merges of eye paths through this place on the film with photons of a class.
-  float at(const Vec2& raster, int flux_class = 0) const {
-    return radii_.at(window_.pixel_at(raster), flux_class);
-  }
+  float at(const Vec2& raster, int flux_class = 0) const { return radii_.at(window_.pixel_at(raster), flux_class); }
   float largest(int flux_class) const { return radii_.largest(flux_class); }
   float typical() const { return radii_.typical(); }
 

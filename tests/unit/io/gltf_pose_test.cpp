@@ -124,7 +124,8 @@ TEST(GltfMorph, WeightsOfMeshNodeAndAnimation) {
   const json sampler = {{"input", file.accessor<float>({0, 1}, 1)}, {"output", file.accessor<float>({0, 0, 1, 1}, 1)}};
   file.add("animations",
            {{"samplers", {sampler}}, {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "weights"}}}}}}});
-  EXPECT_EQ(mesh_of(read_gltf(file, 0.5).shapes.at(0)).positions, (std::vector<Point>{{0, 0, 1}, {3, 0, 1}, {0, 1, 1}}));
+  EXPECT_EQ(mesh_of(read_gltf(file, 0.5).shapes.at(0)).positions,
+            (std::vector<Point>{{0, 0, 1}, {3, 0, 1}, {0, 1, 1}}));
 }
 
 TEST(GltfMorph, TwoNodesOfAMeshMayDiffer) {

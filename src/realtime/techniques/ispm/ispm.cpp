@@ -129,8 +129,7 @@ ParameterValues pilot_radius(const RenderJob& job) {
 }
 
 std::vector<TechniqueParameter> parameters() {
-  return {{.info = radius_reduction_info("0.6667"),
-           .numbers = NumberRange{1e-3, 1}},
+  return {{.info = radius_reduction_info("0.6667"), .numbers = NumberRange{1e-3, 1}},
           {.info = {"radius", "auto", "first radius: auto (one for the scene), or a length in metres"},
            .words = {"auto"},
            .numbers = NumberRange{.kind = NumberRange::Kind::above_least},
