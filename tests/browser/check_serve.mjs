@@ -23,7 +23,7 @@ const expect = (good, text) => {
   if (!good) failures++;
 };
 
-const server = spawn(program, ['serve', scene, '--port', '0', '-r', '256x256', '-q'], {stdio: ['ignore', 'pipe', 'inherit']});
+const server = spawn(program, ['serve', scene, '--port', '0', '-r', '256x256', '--memory', '256M', '-q'], {stdio: ['ignore', 'pipe', 'inherit']});
 const address = await new Promise((resolve, reject) => {
   server.stdout.once('data', (text) => resolve(String(text).trim()));
   server.once('exit', () => reject(new Error('the server ended')));
@@ -148,7 +148,6 @@ async function changeMethodAndSize() {
   await command('-r 192x256');
   expect(await page.evaluate(() => document.getElementById('picture').width === 192), 'the width can be changed');
   await shot('resized');
-  await page.locator('#height').fill('30000');
   await page.locator('#width').fill('30000');
   await page.locator('#width').press('Tab');
   await page.waitForFunction(() => !document.getElementById('problem').hidden);

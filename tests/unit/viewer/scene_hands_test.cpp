@@ -56,7 +56,8 @@ TEST(Picking, ATriangleIsHitFromBothSidesAndMissedBesideIt) {
   EXPECT_FALSE(hit_triangle({0.2f, 0.2f, 3}, {0, 0, 1}, a, b, c)) << "behind the origin";
 }
 
-// Two corners as far apart as rounding puts those at the pole of a sphere: the ray through the pole meets it nowhere else.
+// Two corners as far apart as rounding puts those at the pole of a sphere: the ray through the pole meets it nowhere
+// else.
 TEST(Picking, TrianglesWithoutAreaAreNotHit) {
   const Point pole(-1, -1, 2.5f);
   for (int i = 0; i < 64; ++i) {
