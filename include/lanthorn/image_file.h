@@ -33,7 +33,7 @@ struct DisplaySettings {
   float exposure = 0;  ///< stops: colours are scaled by 2^exposure
   ToneCurve curve = ToneCurve::none;
   std::optional<OcioView> ocio{};  ///< instead of the curve
-  bool display_emission = false;  ///< the layer `emission` is shown as it is, without exposure, curve and view
+  bool display_emission = false;   ///< the layer `emission` is shown as it is, without exposure, curve and view
 };
 
 /// The layer `color` as a display wants it: R, G, B in [0,1], sRGB-encoded or as the OpenColorIO view has them. Throws

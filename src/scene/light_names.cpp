@@ -115,8 +115,8 @@ std::vector<NamedLight> lights_of(const Scene& scene) {
   std::vector<NamedLight> named;
   for (const Described& d : all) {
     std::string words = d.kind;
-    if (total[d.kind] > 1) words += " " + std::to_string(++so_far[d.kind]);
-    if (!d.place.empty()) words += ", " + d.place;
+    if (total[d.kind] > 1) words.append(" ").append(std::to_string(++so_far[d.kind]));
+    if (!d.place.empty()) words.append(", ").append(d.place);
     named.push_back({d.id, std::move(words)});
   }
   return named;

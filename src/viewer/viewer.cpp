@@ -443,18 +443,19 @@ std::string Viewer::command() const {
   const bool stands_there = interaction_.pose().camera_to_world == saved_camera_;
   // Colours and places go with a saved scene alone.
   const bool needs_strengths = !panel_.can_save_scene && scene_.scene() != saved_scene_;
-  return options_.command(
-      offline_render({saved_file_,
-                      panel_.methods[panel_.method],
-                      panel_.settings,
-                      {panel_.exposure, panel_.curve},
-                      panel_.measures_exposure,
-                      stands_there ? std::nullopt : std::optional(interaction_.pose()),
-                      needs_strengths ? strengths_of(panel_.lights) : std::map<std::string, float>(),
-                      view_.camera.width(),
-                      view_.camera.height(),
-                      scene_.scene()->description().origin},
-                     options_));
+  ShownPicture shown;
+  shown.scene = saved_file_;
+  shown.method = panel_.methods[panel_.method];
+  shown.settings = panel_.settings;
+  shown.display.exposure = panel_.exposure;
+  shown.display.curve = panel_.curve;
+  shown.measures_exposure = panel_.measures_exposure;
+  if (!stands_there) shown.camera = interaction_.pose();
+  if (needs_strengths) shown.strengths = strengths_of(panel_.lights);
+  shown.width = view_.camera.width();
+  shown.height = view_.camera.height();
+  shown.origin = scene_.scene()->description().origin;
+  return options_.command(offline_render(shown, options_));
 }
 
 void Viewer::copy_command() {

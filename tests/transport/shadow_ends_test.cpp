@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// What lies a fifth of a millimetre before a lamp, and lamps far from the origin: the light of a floor, by every kind of
-// method. Methods agree where all are wrong in the same way, so the values come from elsewhere.
+// What lies a fifth of a millimetre before a lamp, and lamps far from the origin: the light of a floor, by every kind
+// of method. Methods agree where all are wrong in the same way, so the values come from elsewhere.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -48,8 +48,9 @@ Viewer::Viewer(const SharedScene& scene, ViewerSettings settings)
       settings_(std::move(settings)),
       lights_(lights_of(*scene)),
       is_mirrored_(description_of(*scene).view.camera.camera_to_world.start.swaps_handedness()),
-      render_(scale_lights(scene_, settings_.start.changes.lights), view_of(*scene_, settings_.start.changes, settings_.start.options),
-              endless(settings_.start.options), {.keeps_sums = settings_.keeps_sums}),
+      render_(scale_lights(scene_, settings_.start.changes.lights),
+              view_of(*scene_, settings_.start.changes, settings_.start.options), endless(settings_.start.options),
+              {.keeps_sums = settings_.keeps_sums}),
       wanted_(settings_.start),
       scenes_{{render_.snapshot().status.revision, wanted_}},
       watched_until_(Clock::now() + watched_time) {}
