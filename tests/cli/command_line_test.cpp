@@ -148,7 +148,7 @@ TEST_F(CommandLine, IsQuotedForAShell) {
   render.options.integrator = "vcm";
   render.options.resolution = {64, 48};
   render.options.set = {{"radius", "0.1"}, {"emission", "$HOME"}};
-  render.changes.look = LookAt{{-1, 0.1f, 4}, {0, 1, 0}, {0, 1, 0}};
+  render.changes.look = LookAt{{-1, 0.1, 4}, {0, 1, 0}, {0, 1, 0}};
   render.changes.lights = {{"area1", 0.1f}};
   render.output.measures_exposure = false;
   render.output.display.exposure = -1.5f;

@@ -133,7 +133,7 @@ TEST_F(FirstSight, UnlitColoursAreShownAsTheyAre) {
   // So it is by every way to a PNG, and at any exposure.
   succeed({"develop", "a.exr", "developed.png", "--exposure", "auto"});
   succeed({"merge", "a.state", "-o", "merged.png"});
-  succeed({"merge", "a.state", "-o", "bright.png", "--exposure", "3", "--filmic"});
+  succeed({"merge", "a.state", "-o", "bright.png", "--exposure", "3", "--view-transform", "filmic"});
   const Image first = read_image(path("a.png")), bright = read_image(path("bright.png"));
   EXPECT_EQ(read_image(path("developed.png")).pixels, first.pixels);
   EXPECT_EQ(read_image(path("merged.png")).pixels, first.pixels);

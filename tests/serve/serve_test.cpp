@@ -307,7 +307,7 @@ TEST_F(Serve, BadInputIsRefused) {
   refuse({"serve", "tiny.pbrt", "--look-at", "0,0,0,0,0,1,0,0,1"}, "must not lie on one line");
   refuse({"serve", "tiny.pbrt", "--light", "moon=1"}, "the scene has area1 to light1");
   refuse({"serve", "tiny.pbrt", "--light", "area1"}, "expected NAME=FACTOR");
-  refuse({"serve", "tiny.pbrt", "-o", "a.jpg"}, ".exr");
+  refuse({"serve", "tiny.pbrt", "-o", "a.gif"}, ".exr");
 }
 
 }  // namespace lanthorn::serve_test

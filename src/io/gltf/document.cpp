@@ -253,14 +253,21 @@ std::string last_part(const std::string& name) {
   return slash == name.npos ? name : name.substr(slash + 1);
 }
 
+// With backslashes, too: files are looked for as if these were slashes.
+bool leaves_folder(const std::filesystem::path& name) {
+  std::string text = name.string();
+  std::replace(text.begin(), text.end(), '\\', '/');
+  const std::filesystem::path normal = std::filesystem::path(text).lexically_normal();
+  return normal.is_absolute() || (!normal.empty() && *normal.begin() == "..");
+}
+
 }  // namespace
 
 std::filesystem::path Document::add_file(const Value& uri) {
   const std::string& text = uri.text();
   const std::size_t colon = text.find(':');
   std::filesystem::path decoded = std::filesystem::path(percent_decoded(text)).lexically_normal();
-  const bool leaves = decoded.is_absolute() || (!decoded.empty() && *decoded.begin() == "..");
-  if (leaves || (colon != text.npos && text.find('/') > colon)) {
+  if (leaves_folder(decoded) || (colon != text.npos && text.find('/') > colon)) {
     decoded = last_part(decoded.string());
     if (access_ == nullptr || access_->is_missing(access_->find(folder_, decoded)))
       throw uri.error("only data URIs and relative URIs that stay in the file's folder are read, not " +
