@@ -223,9 +223,9 @@ TEST_F(RendererTest, FramesFollowObjectsAndLamps) {
                     lamp_there = "-.6 1.6 -.5";
   const Scene scene = test::scene_from_text(corner(block_here, lamp_here));
   SceneEdits block, lamp;
-  block.instances[0] = AnimatedTransform(translate({0.4f, 0.1f, -0.3f}));
+  block.instances[0] = AnimatedTransform(translate({0.4, 0.1, -0.3}));
   lamp.lights[0] = scene.description().lights[0];
-  lamp.lights[0].light_to_world = translate({-1, 0.1f, -0.3f}) * lamp.lights[0].light_to_world;
+  lamp.lights[0].light_to_world = translate({-1, 0.1, -0.3}) * lamp.lights[0].light_to_world;
   SceneEdits both = block;
   both.lights = lamp.lights;
   const std::array looks{Look{"direct", TechniqueChoice("direct", {{"shadows", "maps"}})},
