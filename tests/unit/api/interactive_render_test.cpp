@@ -56,17 +56,15 @@ std::vector<float> pixels_of(const SharedScene& scene, const ViewDescription& vi
   return session.picture().pixels;
 }
 
-// The first snapshot of which `is_right` holds.
+// The first snapshot of which `is_right` holds. Throws Error if there is none within a minute.
 template <class Condition>
 InteractiveSnapshot await(const InteractiveRender& render, Condition is_right) {
   const Clock::time_point deadline = Clock::now() + 60s;
   InteractiveSnapshot now = render.snapshot();
   while (!is_right(now)) {
-    if (Clock::now() > deadline) {
-      ADD_FAILURE() << "not within a minute; phase " << static_cast<int>(now.status.phase) << " of revision "
-                    << now.status.revision;
-      return now;
-    }
+    if (Clock::now() > deadline)
+      throw Error("not within a minute; phase " + std::to_string(static_cast<int>(now.status.phase)) + " of revision " +
+                  std::to_string(now.status.revision));
     now = render.wait(now.number, 1s);
   }
   return now;
@@ -224,6 +222,23 @@ TEST(InteractiveRender, CoarsePicturesComeFirstAndAloneWhileHandsMove) {
   EXPECT_GE(Clock::now() - start, 290ms) << "hands may still have moved";
   EXPECT_FALSE(end.picture->is_coarse);
   EXPECT_EQ(end.picture->image.width, 300);
+}
+
+// A pass takes a few milliseconds, and hands have .3 s to move on. The machine may be busy: a try may come too late.
+TEST(InteractiveRender, FullPassesWaitForHands) {
+  InteractiveRender render(box(), view_of_angle(40), small(1));
+  bool has_looked = false;
+  for (int i = 0; i < 20 && !has_looked; ++i) {
+    const Clock::time_point start = Clock::now();
+    const std::uint64_t revision = render.edit({.view = view_of_angle(30 + static_cast<float>(i)), .is_moving = true});
+    await(render, [&](const InteractiveSnapshot& now) { return now.picture && now.picture->revision == revision; });
+    std::this_thread::sleep_for(150ms);
+    const bool is_coarse = render.snapshot().picture->is_coarse;
+    if (Clock::now() - start > 290ms) continue;
+    EXPECT_TRUE(is_coarse);
+    has_looked = true;
+  }
+  if (!has_looked) GTEST_SKIP() << "SKIPPED, NOT TESTED: the machine is too busy";
 }
 
 TEST(InteractiveRender, WithoutCoarsePicturesAllAreWhole) {
