@@ -73,7 +73,8 @@ TEST_F(View, DarkPicturesAreExplained) {
   EXPECT_EQ(warnings(sky), "");
   const std::string metal = warnings(sky + "Material \"conductor\" \"float roughness\" [.1]\n");
   EXPECT_TRUE(contains(metal, "appears slowly")) << metal;
-  EXPECT_EQ(warnings(sky + "Material \"conductor\" \"float roughness\" [.01]\n"), "");
+  const std::string mirror = warnings(sky + "Material \"conductor\" \"float roughness\" [.01]\n");
+  EXPECT_FALSE(contains(mirror, "appears slowly")) << mirror;
   std::ofstream(path("slide.ppm")) << "P3 2 1 255  255 0 0  0 0 255\n";
   EXPECT_EQ(warnings("AreaLightSource \"diffuse\" \"string filename\" \"slide.ppm\"\n"), "");
   const std::string goniometric = warnings(sky + "LightSource \"goniometric\" \"string filename\" \"slide.ppm\"\n");
