@@ -48,7 +48,8 @@ constexpr Point middle{0.5f, 0.5f, 0};
 constexpr Normal up{0, 0, 1};
 
 TEST(GuidePhotons, LeadToWherePhotonsCameFrom) {
-  const Guidance guidance = find(guides_of(photons_from(left, {}, 1)), middle, up, up);
+  const GuidePhotons guides = guides_of(photons_from(left, {}, 1));
+  const Guidance guidance = find(guides, middle, up, up);
   ASSERT_NE(guidance.guide, nullptr);
   EXPECT_EQ(guidance.share, 0.5f);
   EXPECT_GT(guidance.guide->pdf(left), 8 * pdf_cosine_hemisphere(left.z));
@@ -61,7 +62,8 @@ TEST(GuidePhotons, KnowAcceptedPhotonsAlone) {
   EXPECT_EQ(find(guides_of(photons), middle, up, up).guide, nullptr);
   const std::vector<Photon> others = photons_from(right, {}, 2);
   photons.insert(photons.end(), others.begin(), others.end());
-  const Guidance guidance = find(guides_of(photons), middle, up, up);
+  const GuidePhotons guides = guides_of(photons);
+  const Guidance guidance = find(guides, middle, up, up);
   ASSERT_NE(guidance.guide, nullptr);
   EXPECT_GT(guidance.guide->pdf(right), 0);
   EXPECT_EQ(guidance.guide->pdf(left), 0);
