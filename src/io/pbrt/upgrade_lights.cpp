@@ -32,7 +32,7 @@ float upgrade_blackbody(Parameter& p) {
     throw Error(p.place.location(),
                 "blackbody " + in_quotes(p.name) + " needs a temperature above 0 kelvin and a factor");
   const float factor = values.size() == 2 ? values[1] : 1.0f;
-  values.resize(1);
+  if (values.size() == 2) values.pop_back();
   return factor * blackbody_luminance(values[0]);
 }
 
