@@ -328,7 +328,8 @@ TEST(Gltf, UrisThatLeaveTheFolderAreRefused) {
   const std::string outside = (dir.path() / "outside.bin").string();
   for (const std::string& uri :
        {std::string("../outside.bin"), std::string("%2e%2e/outside.bin"), std::string("..%2Foutside.bin"),
-        std::string("a/../../outside.bin"), std::string("..\\\\outside.bin"), outside, "file://" + outside, "%2F" + outside.substr(1)})
+        std::string("a/../../outside.bin"), std::string("..\\\\outside.bin"), outside, "file://" + outside,
+        "%2F" + outside.substr(1)})
     EXPECT_TRUE(contains(problem(uri), "relative URIs that stay in the file's folder")) << uri << ": " << problem(uri);
   EXPECT_TRUE(contains(problem("inside.bin%00"), "no such file")) << problem("inside.bin%00");
 }
