@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "material/parts.h"
 
+#include <cmath>
+
 #include "lanthorn/error.h"
 #include "surface/metal_rgb.h"
 #include "surface/microfacet.h"
@@ -21,8 +23,10 @@ Spectrum clamped_albedo(const Spectrum& s) {
 }
 
 float index_at_hero(const SpectrumCurve& eta, const Wavelengths& w) {
+  // Nearer to 1, the half vector of refraction, i + eta o, is lost in rounding where light goes straight on.
+  constexpr float nearest = 1e-5f;
   const float value = eta.at(w.lambda[0]);
-  return value > 0 ? value : 1.0f;
+  return value > 0 && std::fabs(value - 1) >= nearest ? value : 1.0f;
 }
 
 RoughnessAt::RoughnessAt(const description::Roughness& r, MaterialCompiler& c)

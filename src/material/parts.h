@@ -19,7 +19,7 @@ namespace lanthorn {
 inline constexpr float d_line = 587.6f;
 
 Spectrum clamped_albedo(const Spectrum& s);
-/// The path's index of refraction: the value at the hero wavelength if it varies.
+/// The path's index of refraction: the value at the hero wavelength if it varies; 1 if it is within 1e-5 of 1.
 float index_at_hero(const SpectrumCurve& eta, const Wavelengths& w);
 
 struct RoughnessAt {
