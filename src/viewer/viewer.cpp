@@ -260,7 +260,11 @@ void Viewer::apply(const Input& input) {
 }
 
 void Viewer::apply_wishes() {
-  const Wishes wishes = std::exchange(panel_.wishes, {});
+  Wishes wishes = std::exchange(panel_.wishes, {});
+  if (is_small_ && !offline_) {  // pictures in motion: they are saved once they rest and have their full size
+    panel_.wishes.save_png = std::exchange(wishes.save_png, false);
+    panel_.wishes.save_exr = std::exchange(wishes.save_exr, false);
+  }
   try {
     if (wishes.save_png) save_picture(".png");
     if (wishes.save_exr) save_picture(".exr");
@@ -411,7 +415,7 @@ void Viewer::update_information() {
 }
 
 void Viewer::save_picture(const std::string& extension) {
-  Image image = offline_ ? offline_->image : is_small_ ? small_->read() : picture_.read();
+  Image image = offline_ ? offline_->image : picture_.read();
   if (panel_.layer > 0 && extension == ".png") {
     constexpr std::array names{"emission", "direct", "indirect", "caustic"};
     Image layer = *select_layer(image, names[static_cast<std::size_t>(panel_.layer - 1)]);
