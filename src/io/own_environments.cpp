@@ -227,6 +227,7 @@ float studio_radiance(const Direction& d) {
 
 std::vector<std::string> environment_names() {
   std::vector<std::string> names;
+  names.reserve(own_environments.size());
   for (const OwnEnvironment& own : own_environments) names.emplace_back(own.name);
   return names;
 }

@@ -15,7 +15,8 @@ static ClosureAt closure_of(const description::DielectricMaterial& m, MaterialCo
   const SpectrumAt tint = c.albedo(m.tint);
   const FilmAt film(m.film, c);
   // Without refraction, rough surfaces are smooth, too.
-  c.traits.may_be_specular = c.traits.may_be_specular || eta.varies() || index_at_hero(eta, Wavelengths::rgb(0.5f)) == 1;
+  c.traits.may_be_specular =
+      c.traits.may_be_specular || eta.varies() || index_at_hero(eta, Wavelengths::rgb(0.5f)) == 1;
   return [=](const TexturePoint& at, const Wavelengths& w) -> Bsdf {
     const Vec2 a = roughness.alpha(at);
     const Spectrum both = clamped_albedo(tint(at, w));

@@ -35,7 +35,7 @@ bool is_enclosed(const Scene& scene, const Point& from) {
   for (int i = 0; i < rays_across; ++i)
     for (int k = 0; k < rays_across; ++k) {
       const Vec2 u((static_cast<float>(i) + 0.5f) / rays_across, (static_cast<float>(k) + 0.5f) / rays_across);
-      if (!meets_surface(scene, Ray(from, sample_uniform_sphere(u)))) return false;
+      if (!meets_surface(scene, {from, sample_uniform_sphere(u)})) return false;
     }
   return true;
 }

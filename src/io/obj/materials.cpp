@@ -281,6 +281,12 @@ class MaterialFile {
     return result;
   }
 
+  // Where the colours' picture is lost: half of the factor that it would have had, or grey.
+  SpectrumParameter add_base_color(const Source& m) {
+    const Rgb half = 0.5f * (is_black(m.kd) ? Rgb{1, 1, 1} : m.kd);
+    return add_colour(m, m.lost_colours ? half : m.kd, m.map_kd);
+  }
+
   Index add_material_of(const Source& m) {
     const bool physical = m.roughness || m.metallic || m.map_pr || m.map_pm;
     // Blender writes 9 for all that fades by `d`, with an index that every material has.
@@ -289,8 +295,7 @@ class MaterialFile {
                           ((m.illumination == 4 || m.illumination == 9) && !fades && m.index.value_or(1) > 1);
     const bool mirrors = m.illumination == 3 || m.illumination == 5 || m.illumination == 8;
     MetallicRoughness material;
-    const Rgb grey = 0.5f * (is_black(m.kd) ? Rgb{1, 1, 1} : m.kd);
-    material.base_color = add_colour(m, m.lost_colours ? grey : m.kd, m.map_kd);
+    material.base_color = add_base_color(m);
     add_relief(m, material);
     if (m.index && *m.index > 1) material.eta = *m.index;
     if (refracts && !physical) return add_node(m, material, glass(m, material.eta));
