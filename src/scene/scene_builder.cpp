@@ -182,7 +182,7 @@ std::uint32_t SceneBuilder::add_emitter(EmittingShape emitter) {
   emitter.first_light = first;
   data_.light_locations[first] = location;
   data_.light_media.insert(data_.light_media.end(), added.size(), emitter.shape->record.media);
-  data_.emitters.push_back(std::move(emitter));
+  data_.emitters.push_back(emitter);
   data_.lights.insert(data_.lights.end(), std::make_move_iterator(added.begin()), std::make_move_iterator(added.end()));
   return first;
 }
