@@ -193,12 +193,12 @@ OptionTable lens_options(LensChanges& lens) {
            .otherwise = "the scene file's"},
           {.names = "--aperture",
            .value = into(lens.aperture, number_type<float>({largest_aperture, farthest})),
-           .brief = "f-number of the lens, such as 2.8; what is out of focus is blurred",
+           .brief = "f-number of the lens, such as 2.8: smaller numbers blur more outside the focus",
            .details = "The scene counts in metres, and the film is 24 mm along its shorter side.",
            .otherwise = "the scene file's, else a pinhole"},
           {.names = "--focus",
            .value = into(lens.focus, number_or_word_type({1e-9, farthest}, "auto")),
-           .brief = "Distance that is sharp, metres, or auto: what is seen in the middle of the picture",
+           .brief = "Focus distance in metres, or auto: the surface in the middle of the picture",
            .otherwise = "with --aperture auto, else the scene file's"}};
 }
 

@@ -43,7 +43,7 @@ struct SceneChanges {
 };
 /// The scene's own view with the camera of `changes`. A camera that has moved does not orbit.
 ViewDescription view_of(const Scene& scene, const SceneChanges& changes, const ViewOptions& options = {});
-/// The changes with another camera and lights than those that the command line named.
+/// Replaces the camera and the lights in `changes` and keeps the lens. With a given camera, the orbit is dropped.
 SceneChanges moved(SceneChanges changes, const std::optional<LookAt>& look, LightFactors lights);
 /// --look-at, --light and those of the lens.
 OptionTable scene_change_options(SceneChanges& changes);

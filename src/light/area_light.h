@@ -45,8 +45,8 @@ struct AreaLight {
   const EmissionPattern* pattern = nullptr;  ///< null: the radiance is uniform
   float pattern_scale = 1;
   std::uint32_t primitive = 0;  ///< primitive of the pattern's shape
-  /// Bounds of the rounding errors of the points that it draws and of the surface that rays meet: metres, and metres
-  /// per metre of a ray's length. The scene, which maps the surface, knows them.
+  /// Bound of the distance between sampled points and the surface that rays meet: metres, and metres per metre of a
+  /// ray's length. The scene sets both, because they depend on how it maps the surface.
   float position_error = 0, tracing_error = 0;
   /// Density proportional to the pattern's brightness over the square that `sample_area` draws from, for shapes that
   /// support `invert_sample_area`. Must be positive wherever the pattern is. Null: points are drawn uniformly.

@@ -74,8 +74,8 @@ float error_of_plane(const GeometryRecord& r, std::uint32_t triangle) {
   return off_plane < t.most_off_plane ? off_plane : t.most_off_plane;
 }
 
-// Drawn points are rounded as their coordinates are, the surface as its extent and the ray's length are; mapping rays
-// to the space of an instance multiplies these errors.
+// Sampled points are rounded in proportion to their coordinates, the surface in proportion to its extent and the ray's
+// length. Mapping rays into an instance multiplies these errors by at most the condition number of the map.
 void set_errors(AreaLight& light, const EmittingShape& emitter) {
   const Bounds box = bounds(light.shape);
   const GeometryRecord& r = emitter.shape->record;

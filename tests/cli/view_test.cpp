@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 // `lanthorn view` without a window, and where there is none to be had.
+#include <algorithm>
 #include <fstream>
 
 #include "cli_fixture.h"
@@ -74,7 +75,9 @@ TEST_F(View, DarkPicturesAreExplained) {
   const std::string metal = warnings(sky + "Material \"conductor\" \"float roughness\" [.1]\n");
   EXPECT_TRUE(contains(metal, "appears slowly")) << metal;
   const std::string mirror = warnings(sky + "Material \"conductor\" \"float roughness\" [.01]\n");
-  EXPECT_FALSE(contains(mirror, "appears slowly")) << mirror;
+  // A single frame of a mirror may be too bright here and there, which is said, and nothing else.
+  EXPECT_TRUE(mirror.empty() || contains(mirror, "brighter than white")) << mirror;
+  EXPECT_LE(std::count(mirror.begin(), mirror.end(), '\n'), 1) << mirror;
   std::ofstream(path("slide.ppm")) << "P3 2 1 255  255 0 0  0 0 255\n";
   EXPECT_EQ(warnings("AreaLightSource \"diffuse\" \"string filename\" \"slide.ppm\"\n"), "");
   const std::string goniometric = warnings(sky + "LightSource \"goniometric\" \"string filename\" \"slide.ppm\"\n");

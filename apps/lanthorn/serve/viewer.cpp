@@ -19,7 +19,7 @@ using namespace std::chrono_literals;
 
 constexpr std::chrono::milliseconds watched_time = 30s, frame_patience = 10s;
 
-// The point that a camera turns around: what is seen in the middle of the picture, else the middle of the scene.
+// Distance to the point that the camera orbits: the surface in the middle of the picture, else the scene's centre.
 float distance_to_middle(const Image& image, const Scene& scene, const DVec3& eye) {
   const auto depth = image.find_channel("depth.Z");
   const float seen = depth ? image.at(image.width / 2, image.height / 2, *depth) : 0;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstring>
+#include <limits>
 
 namespace lanthorn::pbrt {
 
@@ -124,32 +125,27 @@ std::string string_value(const Token& token) {
   return value;
 }
 
-double double_value(const Token& token) {
+namespace {
+
+// No larger than a float can be.
+template <class Number>
+Number number_value(const Token& token) {
   const std::string_view text = bare_number(token.text);
   const char* last = text.data() + text.size();
-  double value = 0;
+  Number value = 0;
   auto [end, error] = std::from_chars(text.data(), last, value);
   if (token.kind != TokenKind::word || error == std::errc::invalid_argument || end != last || !looks_like_number(text))
     throw Error(token.place.location(), "expected a number, found " + describe(token));
   const bool is_out_of_range = error == std::errc::result_out_of_range;
-  if (is_out_of_range ? !is_tiny(text) : !(std::fabs(value) <= std::numeric_limits<float>::max()))
+  if (is_out_of_range ? !is_tiny(text) : std::fabs(value) > std::numeric_limits<float>::max())
     throw Error(token.place.location(), "the number " + in_quotes(text) + " is too large");
   return is_out_of_range ? 0 : value;
 }
 
-float float_value(const Token& token) {
-  const std::string_view text = bare_number(token.text);
-  const char* last = text.data() + text.size();
-  float value = 0;
-  auto [end, error] = std::from_chars(text.data(), last, value);
-  if (token.kind != TokenKind::word || error == std::errc::invalid_argument || end != last || !looks_like_number(text))
-    throw Error(token.place.location(), "expected a number, found " + describe(token));
-  if (error == std::errc::result_out_of_range) {
-    if (!is_tiny(text)) throw Error(token.place.location(), "the number " + in_quotes(text) + " is too large");
-    return 0;
-  }
-  return value;
-}
+}  // namespace
+
+double double_value(const Token& token) { return number_value<double>(token); }
+float float_value(const Token& token) { return number_value<float>(token); }
 
 std::int32_t integer_value(const Token& token) {
   const std::string_view text = bare_number(token.text);
