@@ -116,7 +116,7 @@ TEST_F(Serve, OtherSitesAreRefused) {
   EXPECT_EQ(client().ask("GET " + root_ + " HTTP/1.1\r\nHost: evil.example\r\n\r\n").status, 421);
   EXPECT_EQ(client().ask("GET " + root_ + " HTTP/1.1\r\n\r\n").status, 421);
   EXPECT_EQ(client().post(root_ + "edit", "{}", "http://evil.example").status, 403);
-  EXPECT_EQ(client().post(root_ + "edit", "{}").status, 204);
+  EXPECT_EQ(client().post(root_ + "edit", "{}").status, 200);
   const Answer page = get("");
   EXPECT_NE(page.head.find("Content-Security-Policy: default-src 'none'; script-src 'nonce-"), std::string::npos);
   EXPECT_EQ(page.body.find("{{"), page.body.find("{{no such placeholder"));
@@ -171,7 +171,7 @@ TEST_F(Serve, TheCommandLineRendersTheSamePicture) {
   start({"-p", "3"});
   ASSERT_EQ(edit({{"camera", {{"eye", {0.5, 1.25, 4}}, {"target", {0, 1, 0}}, {"up", {0.1, 1, 0}}}},
                   {"lights", {{"area1", 0.5}, {"light1", 2}}}}),
-            204);
+            200);
   const nlohmann::json shown = frame([](const nlohmann::json& f) { return f["finished"] && f["moved"]; });
   const Answer exr = get("picture.exr");
   ASSERT_EQ(exr.status, 200);
@@ -190,14 +190,14 @@ TEST_F(Serve, TheCommandLineRendersTheSamePicture) {
 TEST_F(Serve, MethodAndSizeCanBeChanged) {
   start({"-p", "2", "-i", "probppm", "--set", "radius=0.1"});
   const nlohmann::json first = frame(is_finished);
-  ASSERT_EQ(edit({{"method", "path"}, {"size", {24, 20}}}), 204);
+  ASSERT_EQ(edit({{"method", "path"}, {"size", {24, 20}}}), 200);
   const nlohmann::json shown =
       frame([](const nlohmann::json& f) { return f["finished"] && f["integrator"] == "path"; });
   EXPECT_EQ(shown["full_size"], (nlohmann::json{24, 20}));
   const std::string command = shown["command"];
   EXPECT_TRUE(contains(command, " -i path -r 24x20 ")) << command;
   EXPECT_FALSE(contains(command, "radius")) << "it is a parameter of the other method: " << command;
-  ASSERT_EQ(edit({{"method", "probppm"}, {"size", first["full_size"]}}), 204);
+  ASSERT_EQ(edit({{"method", "probppm"}, {"size", first["full_size"]}}), 200);
   const nlohmann::json again =
       frame([](const nlohmann::json& f) { return f["finished"] && f["integrator"] == "probppm"; });
   EXPECT_TRUE(contains(again["command"], "--set radius=0.1")) << again["command"];
@@ -207,12 +207,12 @@ TEST_F(Serve, MethodAndSizeCanBeChanged) {
 TEST_F(Serve, WhatDoesNotFitIntoMemoryIsTakenBack) {
   start({"-p", "2", "--memory", "64M"});
   const nlohmann::json first = frame(is_finished);
-  ASSERT_EQ(edit({{"size", {8000, 8000}}}), 204);
+  ASSERT_EQ(edit({{"size", {8000, 8000}}}), 200);
   const nlohmann::json refused = frame([](const nlohmann::json& f) { return f["problem"] != "" && f["finished"]; });
   EXPECT_TRUE(contains(refused["problem"], "memory")) << refused["problem"];
   EXPECT_EQ(refused["full_size"], first["full_size"]);
   EXPECT_EQ(refused["command"], first["command"]);
-  ASSERT_EQ(edit({{"lights", {{"area1", 0.5}}}}), 204);
+  ASSERT_EQ(edit({{"lights", {{"area1", 0.5}}}}), 200);
   const nlohmann::json next =
       frame([](const nlohmann::json& f) { return f["finished"] && f["lights"].contains("area1"); });
   EXPECT_EQ(next["problem"], "");

@@ -189,13 +189,13 @@ HttpResponse ViewService::edit(const HttpRequest& request) const {
   const nlohmann::json json = nlohmann::json::parse(request.body, nullptr, /*allow_exceptions=*/false);
   if (!json.is_object()) return plain_response(HttpStatus::bad_request);
   try {
-    viewer_.apply(edit_of(json));
+    const std::uint64_t revision = viewer_.apply(edit_of(json));
+    return {HttpStatus::ok, json_type, share(json_text({{"revision", revision}}, one_line))};
   } catch (const Error& problem) {
     return {HttpStatus::bad_request, "text/plain; charset=utf-8", share(printable(problem.message))};
   } catch (const nlohmann::json::exception&) {
     return plain_response(HttpStatus::bad_request);
   }
-  return {HttpStatus::no_content};
 }
 
 }  // namespace lanthorn::program

@@ -94,20 +94,21 @@ RenderOptions Viewer::edited_options(const ViewerEdit& edit) const {
   return options;
 }
 
-void Viewer::apply(const ViewerEdit& edit) {
+std::uint64_t Viewer::apply(const ViewerEdit& edit) {
   if (edit.look) check(*edit.look);
   const std::lock_guard lock(mutex_);
   ViewerScene next{edit.home ? settings_.start.changes : wanted_.changes, edited_options(edit)};
   if (edit.look) next.changes.look = edit.look;
   if (edit.lights) next.changes.lights = *edit.lights;
   if (edit.size) check_view(view_of(*scene_, next.changes, next.options), next.options);
-  submit(std::move(next), edit.moving);
+  const std::uint64_t revision = submit(std::move(next), edit.moving);
   problem_.clear();
   if (edit.paused) is_paused_ = *edit.paused;
   look();
+  return revision;
 }
 
-void Viewer::submit(ViewerScene next, bool is_moving) {
+std::uint64_t Viewer::submit(ViewerScene next, bool is_moving) {
   RenderEdit edit{.is_moving = is_moving};
   if (next.changes.look != wanted_.changes.look) edit.view = view_of(*scene_, next.changes, next.options);
   if (next.changes.lights != wanted_.changes.lights)
@@ -116,7 +117,9 @@ void Viewer::submit(ViewerScene next, bool is_moving) {
   if (now.integrator != before.integrator || now.set != before.set || now.resolution != before.resolution)
     edit.options = endless(now);
   wanted_ = std::move(next);
-  scenes_[render_.edit(std::move(edit))] = wanted_;
+  const std::uint64_t revision = render_.edit(std::move(edit));
+  scenes_[revision] = wanted_;
+  return revision;
 }
 
 std::shared_ptr<const PageFrame> Viewer::last_frame() { return frame_of(render_.snapshot()); }
@@ -173,7 +176,8 @@ nlohmann::json Viewer::about(const InteractiveSnapshot& snapshot) {
   const InteractivePhase phase = snapshot.status.phase;
   nlohmann::json lights = nlohmann::json::object();
   for (const auto& [name, factor] : changes.lights) lights[name] = factor;
-  return {{"coarse", picture.is_coarse},
+  return {{"revision", picture.revision},
+          {"coarse", picture.is_coarse},
           {"passes", state.pass_count},
           {"seconds", state.seconds},
           {"samples", static_cast<double>(state.pass_count) * state.width * state.height},

@@ -60,8 +60,9 @@ class Viewer {
   /// After `end`: the sums of what was seen last; null if there is no whole pass of it.
   const RenderState* state() const { return render_.state(); }
 
-  /// Throws Error for cameras, lights, methods and sizes that cannot be.
-  void apply(const ViewerEdit& edit);
+  /// Returns the revision of the pictures that will show the edit. Throws Error for cameras, lights, methods and sizes
+  /// that cannot be.
+  std::uint64_t apply(const ViewerEdit& edit);
   /// The first frame with another number than `after`; null if none comes for ten seconds, or `is_gone`.
   std::shared_ptr<const PageFrame> wait_for_frame(std::uint64_t after, const IsGone& is_gone);
   /// Null before the first.
@@ -78,7 +79,7 @@ class Viewer {
   using Clock = std::chrono::steady_clock;
 
   void look();
-  void submit(ViewerScene scene, bool is_moving);
+  std::uint64_t submit(ViewerScene scene, bool is_moving);
   RenderOptions edited_options(const ViewerEdit& edit) const;
   bool is_watched() const { return settings_.keeps_sums || Clock::now() < watched_until_; }
   std::shared_ptr<const PageFrame> frame_of(const InteractiveSnapshot& snapshot);

@@ -176,7 +176,7 @@ function receive(next) {
   const {about} = frame;
   frameTimes = [...frameTimes, performance.now()].slice(-20);
   if (display.auto && 'measured_exposure' in about) setExposure(about.measured_exposure);
-  if (!moving) takeChanges(about);
+  takeChanges(about);
   draw();
   readOut();
   showRange();
@@ -184,17 +184,17 @@ function receive(next) {
   showProgress(about);
 }
 
-/// Others may steer, too: what they did is taken over, unless it is this page that moves something.
+/// Others may steer, too: what they did is taken over. A picture from before this page's last edit says nothing new.
 function takeChanges(about) {
+  if (isSending || about.revision < knownRevision) return;
   camera = about.camera;
-  const take = (input, value) => { if (document.activeElement !== input || !input.dataset.held) input.value = value; };
+  const take = (input, value) => { if (document.activeElement !== input || !input.dataset.typed) input.value = value; };
   take(byId('method'), about.integrator);
   take(byId('width'), about.full_size[0]);
   take(byId('height'), about.full_size[1]);
   if (!upward) upward = nearestAxis(camera.up);
   for (const [name, {slider, show}] of Object.entries(sliders)) {
     const factor = about.lights[name] ?? 1;
-    if (document.activeElement === slider && slider.dataset.held) continue;
     lights[name] = factor;
     slider.value = stopsOf(factor);
     show(factor);
@@ -269,7 +269,7 @@ function showProgress(about) {
 
 // Edits: one on its way at a time; what comes meanwhile is joined and goes next.
 
-let pending = null, isSending = false;
+let pending = null, isSending = false, knownRevision = 0;
 async function edit(change) {
   pending = {...pending, ...change};
   if (isSending) return;
@@ -279,12 +279,14 @@ async function edit(change) {
     pending = null;
     try {
       const response = await fetch('edit', {method: 'POST', headers: {'Content-Type': 'application/json'}, body});
-      if (response.status === 400) showState('failed', await response.text());
+      if (response.ok) knownRevision = (await response.json()).revision;
+      else if (response.status === 400) showState('failed', await response.text());
     } catch {
       lost(true);
     }
   }
   isSending = false;
+  if (frame) takeChanges(frame.about);
 }
 
 let restTimer = 0;
@@ -507,10 +509,10 @@ function lightRow({name, description}) {
     lights[name] = factorOf(Number(slider.value));
     if (Math.abs(slider.value) < 0.05) lights[name] = 1;
     show(lights[name]);
-    edit({lights, moving: isMoving});
+    edit({lights: {...lights}, moving: isMoving});
   };
-  slider.addEventListener('input', () => { slider.dataset.held = '1'; change(true); });
-  slider.addEventListener('change', () => { delete slider.dataset.held; change(false); });
+  slider.addEventListener('input', () => change(true));
+  slider.addEventListener('change', () => change(false));
   show(1);
   head.append(label, shown);
   row.append(head, slider);
@@ -519,22 +521,17 @@ function lightRow({name, description}) {
 }
 byId('lights-reset').addEventListener('click', () => {
   lights = {};
-  edit({lights, moving: false});
+  edit({lights: {}, moving: false});
 });
 
 // Method and size: a refused one goes back to what the picture has.
 
-const restoreSoon = (input) => setTimeout(() => { delete input.dataset.held; }, 400);
-byId('method').addEventListener('change', (event) => {
-  edit({method: event.target.value});
-  restoreSoon(event.target);
-});
+byId('method').addEventListener('change', (event) => edit({method: event.target.value}));
 for (const id of ['width', 'height']) {
-  byId(id).addEventListener('input', (event) => { event.target.dataset.held = '1'; });
+  byId(id).addEventListener('input', (event) => { event.target.dataset.typed = '1'; });
   byId(id).addEventListener('change', (event) => {
-    const size = ['width', 'height'].map((side) => Math.round(Number(byId(side).value)));
-    if (size.every((pixels) => pixels >= 1)) edit({size});
-    restoreSoon(event.target);
+    delete event.target.dataset.typed;
+    edit({size: ['width', 'height'].map((side) => Math.round(Number(byId(side).value)))});
   });
 }
 
