@@ -96,8 +96,8 @@ Film::Film(int width, int height, float largest_radiance, const FilmContents& co
 std::size_t Film::stride(const FilmContents& contents) {
   const std::size_t count = contents.buckets ? contents.buckets->count : 0;
   const std::size_t light = 3 * contents.layer_count();
-  return light + surface_slots + (contents.splats ? light + count : 0) + 3 * contents.decomposition.parts.size() +
-         2 * count;
+  const std::size_t samples = light + (contents.bias ? 3 : 0) + surface_slots, splats = contents.splats ? light : 0;
+  return 2 * (samples + splats) + 3 * contents.decomposition.parts.size() + (contents.splats ? 3 : 2) * count;
 }
 
 Film Film::with_exponent(int width, int height, int step_exponent, const FilmContents& contents) {
@@ -111,17 +111,19 @@ Film Film::with_exponent(int width, int height, int step_exponent, const FilmCon
   film.contents_ = contents;
   film.radiance_steps_ = std::ldexp(1.0, -step_exponent);
   film.sample_steps_.fill(unit_steps);
-  std::fill_n(film.sample_steps_.begin(), film.splats_stride(), film.radiance_steps_);
-  double* steps = &film.sample_steps_[film.splats_stride()];
+  std::fill_n(film.sample_steps_.begin(), film.light_slots(), film.radiance_steps_);
+  double* steps = &film.sample_steps_[film.light_slots()];
   Features{}.for_each([&]<class Value>(const char*, const Value& value) {
     if (is_number<Value>) *steps = number_steps;
     steps += channels_of(value).size();
   });
   const std::size_t buckets = contents.buckets ? contents.buckets->count : 0;
-  film.samples_.resize(film.samples_stride() * film.pixel_count());
+  for (Half& half : film.halves_) {
+    half.samples.resize(film.samples_stride() * film.pixel_count());
+    if (contents.splats) half.splats.resize(film.splats_stride() * film.pixel_count());
+  }
   film.spectra_.resize(2 * buckets * film.pixel_count());
   film.parts_.resize(film.parts_stride() * film.pixel_count());
-  if (contents.splats) film.splats_.resize(film.splats_stride() * film.pixel_count());
   if (contents.splats) film.spectral_splats_.resize(buckets * film.pixel_count());
   return film;
 }
@@ -200,7 +202,9 @@ void Film::add(std::uint32_t pixel, const PixelSample& sample) {
     put(color.g);
     put(color.b);
   };
-  for (const Rgb& layer : layers) put_color(sensor_.balanced(factor == 1 ? layer : factor * layer));
+  const auto put_light = [&](const Rgb& value) { put_color(sensor_.balanced(factor == 1 ? value : factor * value)); };
+  for (const Rgb& layer : layers) put_light(layer);
+  if (contents_.bias) put_light(sample.bias);
   sample.features.for_each([&]<class Value>(const char*, const Value& value) {
     if constexpr (is_number<Value>)
       values[slot++] = static_cast<double>(value.value_or(0.0f)) * hit;
@@ -215,10 +219,15 @@ void Film::add(std::uint32_t pixel, const PixelSample& sample) {
   if (!parts_.empty()) add_parts(pixel, sample, static_cast<double>(factor) * weight);
   if (buckets() && sample.spectrum) add_spectrum(pixel, *sample.spectrum, weight, static_cast<double>(factor));
   const std::size_t stride = samples_stride();
-  std::int64_t* sums = &samples_[std::size_t{pixel} * stride];
-  // Most methods have four light layers; a stride known at compile time lets the loops vectorise.
+  std::int64_t* sums = &halves_[half_].samples[std::size_t{pixel} * stride];
+  // Most methods have four light layers, photon methods also a bias; strides known at compile time let the loops
+  // vectorise.
   constexpr std::integral_constant<std::size_t, 3 * 4 + surface_slots> usual;
-  if (stride == usual ? add_ordinary(sums, values, usual) : add_ordinary(sums, values, stride)) return;
+  constexpr std::integral_constant<std::size_t, 3 * 5 + surface_slots> with_bias;
+  if (stride == usual       ? add_ordinary(sums, values, usual)
+      : stride == with_bias ? add_ordinary(sums, values, with_bias)
+                            : add_ordinary(sums, values, stride))
+    return;
   for (unsigned i = 0; i < stride; ++i) saturating_add(sums[i], to_steps(values[i], sample_steps_[i], pixel, i));
 }
 
@@ -234,7 +243,7 @@ void Film::add_parts(std::uint32_t pixel, const PixelSample& sample, double fact
 
 void Film::splat(std::uint32_t pixel, std::size_t layer, const Rgb& value) {
   assert(contents_.splats && pixel < pixel_count() && layer < contents_.layer_count());
-  std::int64_t* sums = &splats_[std::size_t{pixel} * splats_stride() + 3 * layer];
+  std::int64_t* sums = &halves_[half_].splats[std::size_t{pixel} * splats_stride() + 3 * layer];
   auto slot = static_cast<unsigned>(samples_stride() + 3 * layer);  // distinct from the samples' slots in the hash
   const Rgb counted = splat_share_ * sensor_.balanced(value);
   for (const float component : {counted.r, counted.g, counted.b}) {
@@ -294,19 +303,32 @@ void Film::write_spectrum(std::uint32_t pixel, std::uint64_t passes, float* out)
   }
 }
 
-Film::LightMeans Film::light_means(std::uint32_t pixel, std::uint64_t passes) const {
+Film::SampleSums Film::sample_sums(std::uint32_t pixel) const {
+  SampleSums sums;
+  const std::size_t stride = samples_stride(), first = std::size_t{pixel} * stride;
+  std::copy_n(&halves_[0].samples[first], stride, sums.begin());
+  for (std::size_t i = 0; i < stride; ++i) saturating_add(sums[i], halves_[1].samples[first + i]);
+  return sums;
+}
+
+std::int64_t Film::splat_sum(std::uint32_t pixel, std::size_t slot) const {
+  const std::size_t place = std::size_t{pixel} * splats_stride() + slot;
+  std::int64_t sum = halves_[0].splats[place];
+  saturating_add(sum, halves_[1].splats[place]);
+  return sum;
+}
+
+Film::LightMeans Film::light_means(std::uint32_t pixel, std::uint64_t passes, const SampleSums& samples) const {
   LightMeans means{};
   const double step = std::ldexp(1.0, step_exponent_);
   const std::size_t values = splats_stride();
-  const std::int64_t* sums = &samples_[std::size_t{pixel} * samples_stride()];
-  if (sums[weight_slot()] != 0) {
-    const double scale = step * unit_steps / static_cast<double>(sums[weight_slot()]);
-    for (std::size_t i = 0; i < values; ++i) means[i] = static_cast<double>(sums[i]) * scale;
+  if (samples[weight_slot()] != 0) {
+    const double scale = step * unit_steps / static_cast<double>(samples[weight_slot()]);
+    for (std::size_t i = 0; i < values; ++i) means[i] = static_cast<double>(samples[i]) * scale;
   }
   if (contents_.splats && passes > 0) {
     const double scale = step / static_cast<double>(passes);
-    const std::int64_t* splats = &splats_[std::size_t{pixel} * values];
-    for (std::size_t i = 0; i < values; ++i) means[i] += static_cast<double>(splats[i]) * scale;
+    for (std::size_t i = 0; i < values; ++i) means[i] += static_cast<double>(splat_sum(pixel, i)) * scale;
   }
   return means;
 }
@@ -336,9 +358,8 @@ float* write(const Rgb& light, float* out) {
 
 }  // namespace
 
-Film::PartMeans Film::part_means(std::uint32_t pixel) const {
+Film::PartMeans Film::part_means(std::uint32_t pixel, double weight) const {
   PartMeans light{};
-  const auto weight = static_cast<double>(samples_[std::size_t{pixel} * samples_stride() + weight_slot()]);
   if (weight == 0) return light;
   const double step = std::ldexp(1.0, step_exponent_);
   const std::int64_t* sums = &parts_[std::size_t{pixel} * parts_stride()];
@@ -355,18 +376,19 @@ Rgb Film::splat_mean(std::uint32_t pixel, std::uint64_t passes) const {
   const double step = std::ldexp(1.0, step_exponent_);
   Rgb sum;
   for (std::size_t layer = 0; layer < contents_.light.size() && contents_.splats && passes > 0; ++layer) {
-    const std::int64_t* splats = &splats_[std::size_t{pixel} * splats_stride() + 3 * layer];
-    const auto mean = [&](std::int64_t steps) {
+    const auto mean = [&](std::size_t component) {
+      const std::int64_t steps = splat_sum(pixel, 3 * layer + component);
       return static_cast<float>(static_cast<double>(steps) * step / static_cast<double>(passes));
     };
-    sum += {mean(splats[0]), mean(splats[1]), mean(splats[2])};
+    sum += {mean(0), mean(1), mean(2)};
   }
   return sum;
 }
 
-float* Film::write_decomposition(std::uint32_t pixel, std::uint64_t passes, const Rgb& balance, float* out) const {
+float* Film::write_decomposition(std::uint32_t pixel, std::uint64_t passes, double weight, const Rgb& balance,
+                                 float* out) const {
   const Decomposition& d = contents_.decomposition;
-  PartMeans light = part_means(pixel);
+  PartMeans light = part_means(pixel, weight);
   for (Rgb& part : light) part = balance * part;
   for (std::size_t p = 0; p < d.parts.size(); ++p) out = write(light[p], out);
   const Rgb splats = balance * splat_mean(pixel, passes);
@@ -393,42 +415,73 @@ float mean_of_hits(std::int64_t sum, double hits) {
 
 }  // namespace
 
+template <class Body>
+void Film::for_each_pixel(Body&& body) const {
+  parallel_chunks(pixel_count(), chunk_pixels, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t pixel = begin; pixel < end; ++pixel) body(static_cast<std::uint32_t>(pixel));
+  });
+}
+
 Image Film::resolve(std::uint64_t passes, const Rgb& balance) const {
   Image image(width_, height_, resolved_channels(contents_));
   const std::size_t stride = image.channel_count();
-  parallel_chunks(pixel_count(), chunk_pixels, [&](std::size_t, std::size_t begin, std::size_t end) {
-    for (std::size_t pixel = begin; pixel < end; ++pixel) {
-      float* out = &image.pixels[pixel * stride];
-      LightMeans means = light_means(static_cast<std::uint32_t>(pixel), passes);
-      const std::span<double> light = std::span(means).first(splats_stride());
-      scale_colours(balance, light);
-      write_color(light.first(3 * contents_.light.size()), out);
-      out = std::transform(light.begin(), light.end(), out + 3, [](double x) { return static_cast<float>(x); });
-      const double weight = static_cast<double>(samples_[pixel * samples_stride() + weight_slot()]);
-      const std::int64_t* surface = &samples_[pixel * samples_stride() + splats_stride()];
-      const double hits = static_cast<double>(surface[hit_slot]);
-      Features{}.for_each([&]<class Value>(const char*, const Value& value) {
-        for (std::size_t c = 0; c < channels_of(value).size(); ++c, ++surface)
-          *out++ = is_number<Value> ? mean_of_hits(*surface, hits) : mean_of_samples(*surface, weight);
-      });
-      *out++ = static_cast<float>(weight / unit_steps);
-      if (!parts_.empty()) out = write_decomposition(static_cast<std::uint32_t>(pixel), passes, balance, out);
-      if (contents_.buckets) write_spectrum(static_cast<std::uint32_t>(pixel), passes, out);
-    }
+  for_each_pixel([&](std::uint32_t pixel) {
+    float* out = &image.pixels[pixel * stride];
+    const SampleSums sums = sample_sums(pixel);
+    LightMeans means = light_means(pixel, passes, sums);
+    const std::span<double> light = std::span(means).first(splats_stride());
+    scale_colours(balance, light);
+    write_color(light.first(3 * contents_.light.size()), out);
+    out = std::transform(light.begin(), light.end(), out + 3, [](double x) { return static_cast<float>(x); });
+    const double weight = static_cast<double>(sums[weight_slot()]);
+    const std::int64_t* surface = &sums[light_slots()];
+    const double hits = static_cast<double>(surface[hit_slot]);
+    Features{}.for_each([&]<class Value>(const char*, const Value& value) {
+      for (std::size_t c = 0; c < channels_of(value).size(); ++c, ++surface)
+        *out++ = is_number<Value> ? mean_of_hits(*surface, hits) : mean_of_samples(*surface, weight);
+    });
+    *out++ = static_cast<float>(weight / unit_steps);
+    if (!parts_.empty()) out = write_decomposition(pixel, passes, weight, balance, out);
+    if (contents_.buckets) write_spectrum(pixel, passes, out);
   });
   return image;
 }
 
 Image Film::resolve_color(std::uint64_t passes, const Rgb& balance) const {
   Image image(width_, height_, {"R", "G", "B"});
-  parallel_chunks(pixel_count(), chunk_pixels, [&](std::size_t, std::size_t begin, std::size_t end) {
-    for (std::size_t pixel = begin; pixel < end; ++pixel) {
-      LightMeans light = light_means(static_cast<std::uint32_t>(pixel), passes);
-      scale_colours(balance, light);
-      write_color(std::span(light).first(3 * contents_.light.size()), &image.pixels[pixel * 3]);
-    }
+  for_each_pixel([&](std::uint32_t pixel) {
+    LightMeans light = light_means(pixel, passes, sample_sums(pixel));
+    scale_colours(balance, light);
+    write_color(std::span(light).first(3 * contents_.light.size()), &image.pixels[std::size_t{pixel} * 3]);
   });
   return image;
+}
+
+HalfPicture Film::resolve_half(FilmHalf half, std::uint64_t passes, const Rgb& balance) const {
+  const auto& [samples, splats] = halves_[static_cast<std::size_t>(half)];
+  const Image black(width_, height_, {"R", "G", "B"});
+  HalfPicture picture{black, contents_.bias ? black : Image()};
+  const std::array<float, 3> factors{balance.r, balance.g, balance.b};
+  const double step = std::ldexp(1.0, step_exponent_), per_pass = passes > 0 ? step / static_cast<double>(passes) : 0.0;
+  for_each_pixel([&](std::uint32_t pixel) {
+    const std::int64_t* sums = &samples[std::size_t{pixel} * samples_stride()];
+    const double per_sample =
+        sums[weight_slot()] != 0 ? step * unit_steps / static_cast<double>(sums[weight_slot()]) : 0;
+    for (std::size_t c = 0; c < 3; ++c) {
+      double light = 0, splatted = 0;
+      for (std::size_t layer = 0; layer < contents_.light.size(); ++layer) {
+        light += static_cast<double>(sums[3 * layer + c]);
+        if (contents_.splats)
+          splatted += static_cast<double>(splats[std::size_t{pixel} * splats_stride() + 3 * layer + c]);
+      }
+      const std::size_t place = std::size_t{pixel} * 3 + c;
+      picture.color.pixels[place] = factors[c] * static_cast<float>(light * per_sample + splatted * per_pass);
+      if (contents_.bias)
+        picture.bias.pixels[place] =
+            factors[c] * static_cast<float>(static_cast<double>(sums[splats_stride() + c]) * per_sample);
+    }
+  });
+  return picture;
 }
 
 FilmReport Film::report() const {
@@ -436,10 +489,11 @@ FilmReport Film::report() const {
     if (problem.count == 0) return std::nullopt;
     return FilmPlace{problem.first >> 32, static_cast<std::uint32_t>(problem.first)};
   };
+  std::uint64_t saturated = count_saturated(parts_) + count_saturated(spectra_) + count_saturated(spectral_splats_);
+  for (const Half& half : halves_) saturated += count_saturated(half.samples) + count_saturated(half.splats);
   return {.non_finite = non_finite_.count,
           .too_large = too_large_.count,
-          .saturated = count_saturated(samples_) + count_saturated(splats_) + count_saturated(parts_) +
-                       count_saturated(spectra_) + count_saturated(spectral_splats_),
+          .saturated = saturated,
           .first_non_finite = place(non_finite_),
           .first_too_large = place(too_large_)};
 }
@@ -461,8 +515,14 @@ bool Film::compatible(const Film& other) const {
 
 void Film::merge(const Film& other) {
   assert(compatible(other));
-  for (const auto sums : {&Film::samples_, &Film::splats_, &Film::parts_, &Film::spectra_, &Film::spectral_splats_})
-    for (std::size_t i = 0; i < (this->*sums).size(); ++i) saturating_add((this->*sums)[i], (other.*sums)[i]);
+  const auto add = [](std::vector<std::int64_t>& sums, const std::vector<std::int64_t>& others) {
+    for (std::size_t i = 0; i < sums.size(); ++i) saturating_add(sums[i], others[i]);
+  };
+  for (std::size_t h = 0; h < halves_.size(); ++h) {
+    add(halves_[h].samples, other.halves_[h].samples);
+    add(halves_[h].splats, other.halves_[h].splats);
+  }
+  for (const auto sums : {&Film::parts_, &Film::spectra_, &Film::spectral_splats_}) add(this->*sums, other.*sums);
   for (const auto problem : {&Film::non_finite_, &Film::too_large_}) {
     (this->*problem).count += (other.*problem).count;
     (this->*problem).first = std::min((this->*problem).first, (other.*problem).first);
@@ -471,32 +531,36 @@ void Film::merge(const Film& other) {
 
 std::size_t Film::plane_count() const { return stride(contents_); }
 
-Film::PlanePlace Film::find_plane(std::size_t index) const {
-  assert(index < plane_count());
-  const std::size_t count = contents_.buckets ? contents_.buckets->count : 0;
-  if (index < samples_stride()) return {&Film::samples_, samples_stride(), index};
-  index -= samples_stride();
-  if (contents_.splats && index < splats_stride()) return {&Film::splats_, splats_stride(), index};
-  if (contents_.splats) index -= splats_stride();
-  if (index < parts_stride()) return {&Film::parts_, parts_stride(), index};
-  index -= parts_stride();
-  if (index < 2 * count) return {&Film::spectra_, 2 * count, index};
-  return {&Film::spectral_splats_, count, index - 2 * count};
+// The film's own arrays, or those of a constant one, which the caller does not change.
+template <class Sums, class Self>
+Film::PlanePlace<Sums> Film::find_plane(Self& film, std::size_t index) {
+  assert(index < film.plane_count());
+  const std::size_t count = film.contents_.buckets ? film.contents_.buckets->count : 0;
+  const std::size_t splats = film.contents_.splats ? film.splats_stride() : 0;
+  for (auto& half : film.halves_)
+    for (const auto& [sums, stride] :
+         {std::pair{&half.samples, film.samples_stride()}, std::pair{&half.splats, splats}}) {
+      if (index < stride) return {sums, stride, index};
+      index -= stride;
+    }
+  if (index < film.parts_stride()) return {&film.parts_, film.parts_stride(), index};
+  index -= film.parts_stride();
+  if (index < 2 * count) return {&film.spectra_, 2 * count, index};
+  return {&film.spectral_splats_, count, index - 2 * count};
 }
 
 std::vector<std::int64_t> Film::plane(std::size_t index) const {
-  const auto [sums, stride, slot] = find_plane(index);
+  const auto [sums, stride, slot] = find_plane<const std::vector<std::int64_t>>(*this, index);
   std::vector<std::int64_t> values(pixel_count());
-  for (std::size_t i = 0; i < values.size(); ++i) values[i] = (this->*sums)[i * stride + slot];
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = (*sums)[i * stride + slot];
   return values;
 }
 
 void Film::set_plane(std::size_t index, std::span<const std::int64_t> values) {
   assert(values.size() == pixel_count());
-  const auto [place, stride, slot] = find_plane(index);
-  std::vector<std::int64_t>& sums = this->*place;
+  const auto [sums, stride, slot] = find_plane<std::vector<std::int64_t>>(*this, index);
   for (std::size_t i = 0; i < values.size(); ++i)
-    sums[i * stride + slot] = std::clamp(values[i], -sum_limit, sum_limit);
+    (*sums)[i * stride + slot] = std::clamp(values[i], -sum_limit, sum_limit);
 }
 
 }  // namespace lanthorn

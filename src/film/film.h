@@ -5,6 +5,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -48,6 +49,7 @@ struct PixelSample {
   /// Radiance in each of the film's light layers, then in those that repeat light; may be negative.
   std::array<Rgb, most_light_layers> light{};
   std::array<Rgb, most_light_layers> parts{};  ///< the same light in the film's decomposition, if it has one
+  Rgb bias{};                                  ///< estimate of the expected error of the light, if the film keeps it
   Features features{};
   /// The sum of the light layers, for films with spectral buckets.
   std::optional<SpectralRadiance> spectrum{};
@@ -62,12 +64,30 @@ struct FilmContents {
   std::vector<std::string> repeated{};
   Decomposition decomposition{};
   bool splats = false;  ///< `splat` will be called
+  bool bias = false;    ///< samples have an estimate of their bias
   std::optional<SpectralBuckets> buckets{};
   std::size_t layer_count() const { return light.size() + repeated.size(); }
   friend bool operator==(const FilmContents&, const FilmContents&) = default;
 };
 
-/// Exact order-independent sums in 64-bit fixed point.
+/// The passes of a render in two halves, whose difference shows the noise of the picture. Samples are stratified over
+/// passes: the 2^k passes from a multiple of 2^k on are a net, whose noise is less than that of independent samples.
+/// Each half is therefore made of whole nets. One has the passes 0 to 3, 8 to 15, 32 to 63 ..., the other 4 to 7, 16 to
+/// 31, 64 to 127 ... They are not equally large, but each has a quarter of the passes or more, from 8 on.
+enum class FilmHalf : std::uint8_t { first, second };
+inline constexpr std::uint64_t first_net = 4;
+/// One past the last pass of the net that the pass belongs to.
+inline std::uint64_t end_of_net(std::uint64_t pass) { return first_net * std::bit_ceil(pass / first_net + 1); }
+inline FilmHalf half_of_pass(std::uint64_t pass) {
+  return std::bit_width(pass / first_net) % 2 == 0 ? FilmHalf::first : FilmHalf::second;
+}
+
+/// R, G, B of one half of the passes.
+struct HalfPicture {
+  Image color, bias;
+};
+
+/// Exact order-independent sums in 64-bit fixed point, of samples and splats for each half of the passes.
 ///
 /// Scale: 2^40 steps represent a radiance of `largest_radiance` (rounded up to a power of two). A sum saturates at 2^62
 /// steps (4 million samples of the largest radiance); one contribution is clamped at 2^56 steps (65536 times the
@@ -95,15 +115,16 @@ class Film {
   int step_exponent() const { return step_exponent_; }
   /// Bytes held.
   std::size_t memory() const {
-    return (samples_.capacity() + splats_.capacity() + parts_.capacity() + spectra_.capacity() +
-            spectral_splats_.capacity()) *
-           sizeof(std::int64_t);
+    std::size_t integers = parts_.capacity() + spectra_.capacity() + spectral_splats_.capacity();
+    for (const Half& half : halves_) integers += half.samples.capacity() + half.splats.capacity();
+    return integers * sizeof(std::int64_t);
   }
 
   /// Sets the pass of the contributions that follow, and the share of the pass's light that splats bring in full until
   /// the next call: 1 / parts if the pass is rendered in parts. Must not run concurrently with additions.
   void begin_pass(std::uint64_t pass, float splat_share = 1) {
     pass_ = pass;
+    half_ = static_cast<std::size_t>(half_of_pass(pass));
     splat_share_ = splat_share;
   }
 
@@ -122,11 +143,13 @@ class Film {
   /// Tells the processor that a sample of this pixel will be added soon: with more pixels than its caches hold, waiting
   /// for their sums takes longer than adding to them.
   [[gnu::always_inline]] void prefetch(std::uint32_t pixel) const {
-    prefetch(samples_, samples_stride(), pixel);
+    prefetch(halves_[half_].samples, samples_stride(), pixel);
     if (!parts_.empty()) prefetch(parts_, parts_stride(), pixel);
   }
   /// The same for what will be splatted.
-  [[gnu::always_inline]] void prefetch_splats(std::uint32_t pixel) const { prefetch(splats_, splats_stride(), pixel); }
+  [[gnu::always_inline]] void prefetch_splats(std::uint32_t pixel) const {
+    prefetch(halves_[half_].splats, splats_stride(), pixel);
+  }
 
   /// Adds to the light layer of this index (those that repeat light come last), from any thread at any time. `value`:
   /// radiance, already divided by the number of light paths of the pass, or of its part, and multiplied by the filter's
@@ -138,15 +161,17 @@ class Film {
 
   /// The image after `passes` passes (divides splats by `passes`, samples by the sum of their weights). Channels, in
   /// this order: R, G, B (color); the light layers by their names (emission.R ... caustic.B, media.R ...); albedo.R ..
-  /// B; normal.X
-  /// .. Z (mean, not unit length); depth.Z (mean over hits, 0 without hits); samples (sum of weights); the parts of the
-  /// decomposition by their names (technique.hit.R ..., term.A.R ...), its splats and its shares (in red, green and
-  /// blue the luminance share of the first, second and third group); the spectral buckets by their centres (S0.360,5nm
+  /// B; normal.X .. Z (mean, not unit length); depth.Z (mean over hits, 0 without hits); samples (sum of weights); the
+  /// parts of the decomposition by their names (technique.hit.R ..., term.A.R ...), its splats and its shares (in red,
+  /// green and blue the luminance share of the first, second and third group); the spectral buckets by their centres
+  /// (S0.360,5nm
   /// ...). Pixels without samples are 0, and so are buckets in which no wavelength was drawn. `balance`: factors
   /// of the colours of light; the other channels are as measured.
   Image resolve(std::uint64_t passes, const Rgb& balance = {1, 1, 1}) const;
   /// Only R, G, B of `resolve`, for previews.
   Image resolve_color(std::uint64_t passes, const Rgb& balance = {1, 1, 1}) const;
+  /// R, G, B of one half of the passes, of which there are `passes`, and its estimate of the bias, if the film has one.
+  HalfPicture resolve_half(FilmHalf half, std::uint64_t passes, const Rgb& balance = {1, 1, 1}) const;
 
   FilmReport report() const;
 
@@ -177,11 +202,14 @@ class Film {
   using LightMeans = std::array<double, most_light_layers * 3>;  ///< 0 for missing layers
   static constexpr std::size_t surface_slots =
       feature_channels + 2;  ///< of a sample, after its light: with hits, weights
-  using SampleValues = std::array<double, most_light_layers * 3 + surface_slots>;  ///< times the sample's weight
+  static constexpr std::size_t most_slots = (most_light_layers + 1) * 3 + surface_slots;  ///< of a sample
+  using SampleValues = std::array<double, most_slots>;                                    ///< times the sample's weight
+  using SampleSums = std::array<std::int64_t, most_slots>;
 
   /// Integers per pixel: splats, samples, and the parts of samples.
   std::size_t splats_stride() const { return 3 * contents_.layer_count(); }
-  std::size_t samples_stride() const { return splats_stride() + surface_slots; }
+  std::size_t light_slots() const { return splats_stride() + (contents_.bias ? 3 : 0); }  ///< of a sample
+  std::size_t samples_stride() const { return light_slots() + surface_slots; }
   std::size_t parts_stride() const { return 3 * contents_.decomposition.parts.size(); }
   std::size_t weight_slot() const { return samples_stride() - 1; }
 
@@ -197,17 +225,25 @@ class Film {
   void add_spectrum(std::uint32_t pixel, const SpectralRadiance& value, double weight, double factor);
   void write_spectrum(std::uint32_t pixel, std::uint64_t passes, float* out) const;
   /// The array of sums that holds a plane, and the plane's place in it.
+  template <class Sums>
   struct PlanePlace {
-    std::vector<std::int64_t> Film::*sums;
+    Sums* sums;
     std::size_t stride, slot;
   };
-  PlanePlace find_plane(std::size_t index) const;
+  template <class Sums, class Self>
+  static PlanePlace<Sums> find_plane(Self& film, std::size_t index);
+  template <class Body>
+  void for_each_pixel(Body&& body) const;
   void note(Problem& problem, std::uint32_t pixel) const;
-  LightMeans light_means(std::uint32_t pixel, std::uint64_t passes) const;
+  /// The sums of a pixel, over both halves.
+  SampleSums sample_sums(std::uint32_t pixel) const;
+  std::int64_t splat_sum(std::uint32_t pixel, std::size_t slot) const;
+  LightMeans light_means(std::uint32_t pixel, std::uint64_t passes, const SampleSums& samples) const;
   using PartMeans = std::array<Rgb, most_light_layers>;
-  PartMeans part_means(std::uint32_t pixel) const;
+  PartMeans part_means(std::uint32_t pixel, double weight) const;
   Rgb splat_mean(std::uint32_t pixel, std::uint64_t passes) const;
-  float* write_decomposition(std::uint32_t pixel, std::uint64_t passes, const Rgb& balance, float* out) const;
+  float* write_decomposition(std::uint32_t pixel, std::uint64_t passes, double weight, const Rgb& balance,
+                             float* out) const;
 
   int width_ = 0;
   int height_ = 0;
@@ -222,8 +258,12 @@ class Film {
   float splat_share_ = 1;
   Problem non_finite_;
   Problem too_large_;
-  std::vector<std::int64_t> samples_;          ///< samples_stride() per pixel
-  std::vector<std::int64_t> splats_;           ///< splats_stride() per pixel, or empty
+  struct Half {
+    std::vector<std::int64_t> samples;  ///< samples_stride() per pixel
+    std::vector<std::int64_t> splats;   ///< splats_stride() per pixel, or empty
+  };
+  std::array<Half, 2> halves_;                 ///< by half_of_pass
+  std::size_t half_ = 0;                       ///< of the pass
   std::vector<std::int64_t> parts_;            ///< parts_stride() per pixel, or empty
   std::vector<std::int64_t> spectra_;          ///< per pixel the buckets and then their weights, or empty
   std::vector<std::int64_t> spectral_splats_;  ///< the buckets of each pixel, or empty

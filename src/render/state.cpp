@@ -39,7 +39,7 @@ using ByteSpan = std::span<const std::byte>;
 static_assert(std::endian::native == std::endian::little, "state files are little-endian");
 
 constexpr char magic[8] = {'L', 'A', 'N', 'T', 'H', 'O', 'R', 'N'};
-constexpr std::uint32_t format_version = 3;
+constexpr std::uint32_t format_version = 4;
 constexpr std::size_t crc_bytes = sizeof(std::uint32_t);
 constexpr int max_header_depth = 64;
 // Deflate compresses by no more than this factor: a small file cannot claim a large size.
@@ -104,6 +104,7 @@ json problem_json(std::uint64_t count, const std::optional<FilmPlace>& first) {
 json layers_json(const FilmContents& contents) {
   const Decomposition& d = contents.decomposition;
   json layers{{"light", contents.light}, {"parts", d.parts}, {"splat_part", d.splats}, {"splats", contents.splats}};
+  if (contents.bias) layers["bias"] = true;
   if (!contents.repeated.empty()) layers["repeated"] = contents.repeated;
   if (d.shares) layers["shares"] = {{"name", d.shares->name}, {"groups", d.shares->groups}};
   return layers;
@@ -265,6 +266,7 @@ class Decoder {
     d.splats = layers.at("splat_part").get<std::string>();
     d.shares = decode_shares(layers, d.parts.size());
     contents.splats = layers.at("splats").get<bool>();
+    contents.bias = layers.value("bias", false);
     contents.buckets = decode_buckets(film);
     std::vector<std::string> names = contents.light;
     if (contents.layer_count() > most_light_layers) fail("damaged: it has too many layers");

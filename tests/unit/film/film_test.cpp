@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <random>
@@ -123,6 +124,50 @@ TEST(Film, MergedShardsEqualOneFilm) {
   a.merge(b);
   EXPECT_EQ(planes(a), planes(film_of(all)));
   EXPECT_EQ(planes(ba), planes(a));
+}
+
+// Each half is the film of its passes alone; together they are the picture.
+TEST(Film, HalvesAreFilmsOfTheirPasses) {
+  const std::vector<Contribution> all = random_contributions(3000);
+  const Film film = film_of(all);
+  for (const FilmHalf half : {FilmHalf::first, FilmHalf::second}) {
+    std::vector<Contribution> own;
+    std::copy_if(all.begin(), all.end(), std::back_inserter(own),
+                 [&](const Contribution& c) { return half_of_pass(c.pass) == half; });
+    EXPECT_GT(own.size(), all.size() / 5);
+    const Image found = film.resolve_half(half, 5).color, expected = film_of(own).resolve_color(5);
+    for (std::size_t i = 0; i < found.pixels.size(); ++i)
+      EXPECT_NEAR(found.pixels[i], expected.pixels[i], 1e-6f * std::fabs(expected.pixels[i])) << i;
+  }
+}
+
+TEST(Film, HalvesAreMadeOfNets) {
+  std::array<int, 2> counts{};
+  for (std::uint64_t pass = 0; pass < 4096; ++pass) {
+    ++counts[static_cast<std::size_t>(half_of_pass(pass))];
+    EXPECT_EQ(half_of_pass(pass), half_of_pass(end_of_net(pass) - 1)) << pass;
+    EXPECT_NE(half_of_pass(pass), half_of_pass(end_of_net(pass))) << pass;
+    const int smaller = std::min(counts[0], counts[1]), all = counts[0] + counts[1];
+    if (all >= 8) {
+      EXPECT_GE(4 * smaller, all) << pass;
+    }
+  }
+}
+
+TEST(Film, BiasIsAMeanOfSamplesAndNotOfTheColor) {
+  Film film(1, 1, 4, {.light = layers, .bias = true});
+  for (std::uint64_t pass = 0; pass < 8; ++pass) {
+    film.begin_pass(pass);
+    PixelSample s;
+    s.light[direct] = {1, 2, 3};
+    s.bias = pass < 4 ? Rgb{-1, 0, 2} : Rgb{3, 0, 0};
+    s.weight = 0.5f;
+    film.add(0, s);
+  }
+  EXPECT_EQ(film.resolve_color(8).pixels, (std::vector<float>{1, 2, 3}));
+  EXPECT_EQ(film.resolve_half(FilmHalf::first, 4, {2, 2, 2}).bias.pixels, (std::vector<float>{-2, 0, 4}));
+  EXPECT_EQ(film.resolve_half(FilmHalf::second, 4).bias.pixels, (std::vector<float>{3, 0, 0}));
+  EXPECT_TRUE(Film(1, 1, 4, {.light = layers}).resolve_half(FilmHalf::first, 4).bias.pixels.empty());
 }
 
 TEST(Film, ResolvesMeans) {
@@ -261,7 +306,7 @@ TEST(Film, BucketsAreSavedAndMergedExactly) {
   ASSERT_TRUE(merged.compatible(whole));
   EXPECT_FALSE(merged.compatible(Film(2, 2, 4, {.light = layers, .splats = true})));
   merged.merge(film_of_passes(0, 5));
-  ASSERT_EQ(whole.plane_count(), 21 + 12 + 3 * 5);
+  ASSERT_EQ(whole.plane_count(), 2 * (21 + 12) + 3 * 5);
   Film copy = Film::with_exponent(2, 2, whole.step_exponent(), {.light = layers, .splats = true, .buckets = buckets});
   for (std::size_t i = 0; i < whole.plane_count(); ++i) {
     EXPECT_EQ(merged.plane(i), whole.plane(i)) << i;
@@ -314,7 +359,9 @@ TEST(Film, TinyContributionsAreNotLost) {
     s.light[caustic].r = value;
     film.add(0, s);
   }
-  const auto sum = [&](std::size_t slot) { return static_cast<double>(film.plane(slot)[0]) * 0x1p-40; };
+  const auto sum = [&](std::size_t slot) {
+    return static_cast<double>(film.plane(slot)[0] + film.plane(film.plane_count() / 2 + slot)[0]) * 0x1p-40;
+  };
   // The sum of count rounding errors has a standard deviation of at most sqrt(count) / 2 steps. |z| > 5: 6e-7.
   const double tolerance = 5 * 0.5 * std::sqrt(count) * 0x1p-40;
   EXPECT_NEAR(sum(9), expected, tolerance);
