@@ -96,6 +96,8 @@ class Integrator {
   virtual std::string remark() const { return {}; }
   /// The film's layers for this scene and whether the method splats. Default: the layers of the path classes.
   virtual FilmContents film_contents(const Scene& scene) const { return path_layers(scene); }
+  /// False if the method has a bias that its film does not estimate (FilmContents::bias).
+  virtual bool knows_bias() const { return true; }
   /// True if all light of a pass, or of its part, has the wavelengths of `draw_for_pass`.
   virtual bool passes_share_wavelengths() const { return false; }
   /// False if a pass depends on earlier ones. Such a render can be resumed but not sharded.

@@ -27,6 +27,7 @@ class ProbabilisticProgressivePhotonMapper final : public Integrator {
         choose_first_radius(job, radius_choice_, photons_of_first_gather, photon_source_.emission().get(), true);
   }
 
+  FilmContents film_contents(const Scene& scene) const override { return progressive_layers(scene); }
   std::string limitation(const Scene& scene) const override {
     return photon_limitation(scene, photon_source_.volume());
   }

@@ -12,6 +12,12 @@ Kernel kernel_parameter(const Parameters& parameters) {
                                    {"gaussian", KernelShape::gaussian}}})};
 }
 
+FilmContents progressive_layers(const Scene& scene) {
+  FilmContents contents = path_layers(scene);
+  contents.bias = true;
+  return contents;
+}
+
 std::string photon_limitation(const Scene& scene, VolumeEstimator estimator) {
   if (!scene.has_scattering_media() || estimator != VolumeEstimator::path) return {};
   return "without photons in media, eye paths alone find light that glass and mirrors focus into a medium, and none of "

@@ -32,6 +32,9 @@ inline std::vector<ParameterInfo> with_volume_parameters(std::vector<ParameterIn
   return own;
 }
 
+/// The layers of path classes, and the bias.
+FilmContents progressive_layers(const Scene& scene);
+
 /// Message about light of the scene that photon methods with this estimator do not find. Empty if they find all light.
 std::string photon_limitation(const Scene& scene, VolumeEstimator estimator);
 
@@ -114,6 +117,7 @@ struct GatherVisitor : PathVisitor {
   void add(const WalkState& state, const GatheredLight& light) {
     layers.add(state.non_delta == 0 ? PathClass::caustic : PathClass::indirect, light.caustic, false);
     layers.add(PathClass::indirect, light.indirect, false);
+    layers.add_bias(light.bias, false);
   }
 };
 

@@ -86,6 +86,7 @@ class SplitSumShader final : public Integrator {
     return fmt::format("splitsum lights by the environment alone: {} other light{} ignored", others,
                        others == 1 ? " is" : "s are");
   }
+  bool knows_bias() const override { return false; }
   void prepare(const RenderJob& job) override {
     if (!job.scene.infinite_lights().empty()) maps_.emplace(environment_image(job.scene));
     missing_ = missing_of(job);

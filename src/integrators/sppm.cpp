@@ -71,6 +71,7 @@ class StochasticProgressivePhotonMapper final : public Integrator {
     for (std::uint32_t pixel = 0; pixel < pixels; ++pixel)
       radii_.insert(radii_.end(), hits_.count, Radius(first_radius_.at(pixel)));
   }
+  FilmContents film_contents(const Scene& scene) const override { return progressive_layers(scene); }
   std::string limitation(const Scene& scene) const override {
     return photon_limitation(scene, photon_source_.volume());
   }

@@ -35,6 +35,9 @@ class LightLayers {
     has_parts_ = true;
   }
 
+  /// The estimated bias of light that is added as well.
+  void add_bias(const Spectrum& bias, bool dispersed) { bias_ += dispersed ? bias * w_.dispersed : bias; }
+
   /// Light that the walk finds by hitting an emitter at this vertex; `part` as above.
   void add_hit(const SurfaceVertex& v, const Spectrum& radiance, std::optional<std::size_t> part = {}) {
     come_from(false, v.state);
@@ -85,6 +88,7 @@ class LightLayers {
     PixelSample result{.features = features_};
     for (std::size_t c = 0; c < path_class_count; ++c) result.light[c] = w_.to_rgb(sums_[c]);
     if (has_media_) result.light[media_layer] = w_.to_rgb(media_);
+    if (!bias_.is_black()) result.bias = w_.to_rgb(bias_);
     for (std::size_t p = 0; p < parts_.size() && has_parts_; ++p) result.parts[p] = w_.to_rgb(parts_[p]);
     if (w_.mode == ColorMode::spectral) {
       Spectrum sum;
@@ -129,6 +133,7 @@ class LightLayers {
     if (factor == 1) return;
     for (Spectrum& sum : sums_) sum *= factor;
     for (Spectrum& part : parts_) part *= factor;
+    bias_ *= factor;
     sums_[static_cast<std::size_t>(PathClass::emission)] += (1 - factor) * directly_seen_;
     media_ = factor * media_ + (1 - factor) * directly_seen_in_media_;
     if (part_of_directly_seen_) parts_[*part_of_directly_seen_] += (1 - factor) * directly_seen_;
@@ -137,7 +142,7 @@ class LightLayers {
   const Wavelengths& w_;
   std::array<Spectrum, path_class_count> sums_{};
   std::array<Spectrum, most_parts> parts_{};
-  Spectrum media_;
+  Spectrum media_, bias_;
   std::optional<std::size_t> part_;
   Features features_;
   bool seen_ = false;

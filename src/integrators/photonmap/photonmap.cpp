@@ -29,6 +29,7 @@ class PhotonMapper final : public Integrator {
 
   void prepare(const RenderJob& job) override;
   std::string limitation(const Scene& scene) const override { return photon_limitation(scene, settings_.volume); }
+  bool knows_bias() const override { return false; }
   MemoryUse memory_use(const RenderSettings& settings) const override { return settings_.memory_use(settings); }
   FilmContents film_contents(const Scene& scene) const override {
     FilmContents contents = path_layers(scene);

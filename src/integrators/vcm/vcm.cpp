@@ -171,13 +171,14 @@ class EyeVisitor {
   void merge(const SurfaceVertex& v) {
     const GatherVertex gather(v);
     const Techniques& t = bidirectional_.techniques;
-    const auto add = [&](const MergePhoton& photon, const PhotonHit& hit, float density) {
+    const auto add = [&](const MergePhoton& photon, const PhotonHit& hit, float density, float bias_share) {
       const SubpathEnd at_eye{subpath_.densities(), hit.pdf_reverse};
       const SubpathEnd at_light{photon.densities, hit.pdf, subpath_.coherence_beyond()};
       const float weight = weight_merge(at_eye, at_light, t.merging, t.merging, t);
       const Spectrum light = v.state.beta * hit.f * photon.power * (weight * density * hit.ratio);
-      layers_.add(class_of_merge(v.state, photon.depth, photon.caustic), technique::vm, light,
-                  gather.is_dispersed(photon.dispersed));
+      const bool is_dispersed = gather.is_dispersed(photon.dispersed);
+      layers_.add(class_of_merge(v.state, photon.depth, photon.caustic), technique::vm, light, is_dispersed);
+      layers_.add_bias(bias_share * light, is_dispersed);
     };
     pass_.surface_merges->for_each_at(gather, raster_, pass_.max_depth(), add);
   }

@@ -82,6 +82,7 @@ FilmContents VcmSettings::film_contents(const Scene& scene) const {
                             "technique.splat",
                             Decomposition::Shares{"technique.share", {{{vm}, {vc, nee, splat}, {hit}}}}};
   contents.splats = switches.connections;
+  contents.bias = switches.merging;
   return contents;
 }
 

@@ -53,6 +53,12 @@ struct Meeting {
   }
 };
 
+// What an estimator makes of the light of a meeting, but for flux and phase function.
+struct KernelFactor {
+  Spectrum light;
+  float bias_share;  // see Kernel
+};
+
 // Where the merges of one flight or vertex go.
 class MergeSum {
  public:
@@ -79,7 +85,7 @@ class MergeSum {
 
   // `own(collision, pass_light, pass_eye, sin)`: the estimator's part of `VolumeMerging::all`.
   template <class Own>
-  void add(const Meeting& m, const Spectrum& factor, Own&& own) const {
+  void add(const Meeting& m, const KernelFactor& factor, Own&& own) const {
     const Techniques& t = context_.techniques;
     const float sin = length(cross(wi_, m.to_light)), p = phase(phase_, wi_, m.to_light);
     const float collision = m.light.flight.collision, by_light = m.light.flight.pass, by_eye = m.eye.flight.pass;
@@ -87,9 +93,10 @@ class MergeSum {
     const float weight = weight_merge({m.eye.densities, p}, {m.light.densities, p, up_to_here},
                                       before * own(t.volume, collision, by_light, by_eye, sin),
                                       before * t.volume.all(collision, by_light, by_eye, sin), t);
-    const Spectrum light = state_.beta * m.flux * factor * (p * weight);
-    context_.layers.add(class_of_merge(state_, m.depth, m.caustic), technique::vm, light,
-                        m.dispersed || state_.dispersed);
+    const Spectrum light = state_.beta * m.flux * factor.light * (p * weight);
+    const bool is_dispersed = m.dispersed || state_.dispersed;
+    context_.layers.add(class_of_merge(state_, m.depth, m.caustic), technique::vm, light, is_dispersed);
+    context_.layers.add_bias(factor.bias_share * light, is_dispersed);
   }
 
  private:
@@ -108,7 +115,7 @@ class MergeSum {
   int eye_depth_;
 };
 
-// Visitor of an estimator: `take(item, meeting, factor)`, with the factor of the light but for flux and phase function.
+// Visitor of an estimator: `take(item, meeting, factor)`.
 template <class Item, class Take>
 struct Visitor {
   const MergeSum& sum;
@@ -118,7 +125,7 @@ struct Visitor {
 
   bool wants(std::uint32_t slot) const { return sum.reaches(items[slot]->depth); }
   void meet(std::uint32_t slot, const VolumeMeeting& m) const {
-    take(*items[slot], m, m.factor * kernel.weight(m.dist2));
+    take(*items[slot], m, KernelFactor{m.factor * kernel.weight(m.dist2), kernel.bias_share(m.dist2)});
   }
 };
 template <class Item, class Take>
@@ -139,7 +146,7 @@ struct LongBeams {
 // Photons that the eye's ray passes.
 template <class Points>
 void add_points_along(const MergeSum& sum, const EyeRay& eye, const Points& points, const KernelIn& kernel) {
-  const auto take = [&](const LightVertex& v, const VolumeMeeting& m, const Spectrum& factor) {
+  const auto take = [&](const LightVertex& v, const VolumeMeeting& m, const KernelFactor& factor) {
     const VolumeArrival light{v.densities, v.flight};
     const VolumeArrival at_eye =
         sum.eye_at(eye.ray.origin + m.t * eye.ray.direction, m.t, v.at.time, v.flight.collision);
@@ -154,7 +161,7 @@ void add_points_along(const MergeSum& sum, const EyeRay& eye, const Points& poin
 // Beams that the eye's ray passes.
 template <class Beams>
 void add_beams_along(const MergeSum& sum, const EyeRay& eye, const Beams& beams, const KernelIn& kernel) {
-  const auto take = [&](const LightBeam& b, const VolumeMeeting& m, const Spectrum& factor) {
+  const auto take = [&](const LightBeam& b, const VolumeMeeting& m, const KernelFactor& factor) {
     const Point p = eye.ray.origin + m.t * eye.ray.direction;
     const float collision = collision_density(eye.medium, p, sum.path().w);
     const VolumeArrival light = sum.light_at(b, m.s, collision), at_eye = sum.eye_at(p, m.t, b.time, collision);
@@ -171,7 +178,7 @@ void add_beams_along(const MergeSum& sum, const EyeRay& eye, const Beams& beams,
 template <class Points>
 void add_points_at(const MergeSum& sum, const MediumVertex& at, const VolumeArrival& eye, const Points& points,
                    const KernelIn& kernel) {
-  const auto take = [&](const LightVertex& v, const VolumeMeeting&, const Spectrum& factor) {
+  const auto take = [&](const LightVertex& v, const VolumeMeeting&, const KernelFactor& factor) {
     const VolumeArrival light{v.densities, v.flight};
     sum.add(Meeting::with(v, eye, light), factor,
             [](const VolumeMerging& merging, float, float, float, float) { return merging.point; });
@@ -185,7 +192,7 @@ void add_points_at(const MergeSum& sum, const MediumVertex& at, const VolumeArri
 template <class Beams>
 void add_beams_at(const MergeSum& sum, const MediumVertex& at, const VolumeArrival& eye, const Beams& beams,
                   const KernelIn& kernel) {
-  const auto take = [&](const LightBeam& b, const VolumeMeeting& m, const Spectrum& factor) {
+  const auto take = [&](const LightBeam& b, const VolumeMeeting& m, const KernelFactor& factor) {
     const VolumeArrival light = sum.light_at(b, m.s, eye.flight.collision);
     sum.add(Meeting::with(b, eye, light), factor,
             [](const VolumeMerging& merging, float collision, float pass_light, float, float) {

@@ -21,7 +21,12 @@ KernelMoments moments_of(const Kernel& kernel) {
 }
 
 KernelIn::KernelIn(int dimensions, const Kernel& kernel, float radius)
-    : kernel_(kernel), radius_(radius), support_(kernel.support(radius)), box_size_(0), scale_(0) {
+    : kernel_(kernel),
+      dimensions_(dimensions),
+      radius_(radius),
+      support_(kernel.support(radius)),
+      box_size_(0),
+      scale_(0) {
   // Mean of the profile over the ball, by the midpoint rule over shells.
   constexpr int shells = 1024;
   double mean = 0;

@@ -6,9 +6,11 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <numbers>
 #include <optional>
 #include <span>
 
@@ -59,6 +61,17 @@ struct Kernel {
   /// 0 <= dist2 <= support2.
   float weight(float dist2, float support2) const { return profile(dist2 / support2) * inv_pi / support2; }
 
+  /// Estimate of the bias that a photon at u = dist²/R² brings into an estimate, over the photon's contribution. The
+  /// photons within R/√2 make another estimate. The bias of both is proportional to the square of their radii where
+  /// light is smooth (Silverman 1986, eq. 4.8), so that their difference is half of the wider one's.
+  /// `dimensions`: of the kernel's support.
+  float bias_share(float u, int dimensions = 2) const {
+    if (u >= 0.5f) return 2;
+    constexpr std::array<float, 4> peaks{1, std::numbers::sqrt2_v<float>, 2, 2 * std::numbers::sqrt2_v<float>};
+    const float narrow = peaks[static_cast<std::size_t>(dimensions)];  // peak of the narrower kernel over the wider's
+    return 2 - 2 * narrow * profile(2 * u) / profile(u);
+  }
+
   friend bool operator==(const Kernel&, const Kernel&) = default;
 
  private:
@@ -85,10 +98,15 @@ class KernelIn {
   /// Of the equivalent box kernel: m, m² or m³.
   float box_size() const { return box_size_; }
   /// Density (per m, m² or m³) at squared distance `dist2` from the centre, at most support()².
-  float weight(float dist2) const { return scale_ * kernel_.profile(std::min(1.0f, dist2 / (support_ * support_))); }
+  float weight(float dist2) const { return scale_ * kernel_.profile(share_of_support(dist2)); }
+  /// See Kernel.
+  float bias_share(float dist2) const { return kernel_.bias_share(share_of_support(dist2), dimensions_); }
 
  private:
+  float share_of_support(float dist2) const { return std::min(1.0f, dist2 / (support_ * support_)); }
+
   Kernel kernel_;
+  int dimensions_;
   float radius_, support_, box_size_, scale_;
 };
 

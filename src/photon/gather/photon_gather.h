@@ -42,10 +42,12 @@ inline LobeSplit split_lobes(const SurfaceVertex& vertex) {
 struct GatheredLight {
   Spectrum caustic;  ///< of photons that have scattered by delta lobes only; no other technique has to find it
   Spectrum indirect;
+  Spectrum bias;  ///< estimate of the expected error of both together
 
   GatheredLight& operator+=(const GatheredLight& other) {
     caustic += other.caustic;
     indirect += other.indirect;
+    bias += other.bias;
     return *this;
   }
 };
@@ -89,9 +91,9 @@ GatheredLight gather_photons(const Map& map, const SurfaceVertex& vertex, const 
     light *= settings.kernel.weight(dist2, support2);
     if (gather.is_dispersed(flags.dispersed)) light *= w.dispersed;
     (flags.caustic ? sum.caustic : sum.indirect) += light;
+    sum.bias += light * settings.kernel.bias_share(dist2 / support2);
   });
-  sum.caustic *= vertex.state.beta;
-  sum.indirect *= vertex.state.beta;
+  for (Spectrum* light : {&sum.caustic, &sum.indirect, &sum.bias}) *light *= vertex.state.beta;
   return sum;
 }
 

@@ -60,9 +60,11 @@ struct GatherWith {
   GatheredLight sum;
 
   void operator()(const Spectrum& light, bool is_caustic, const VolumeMeeting& meeting) {
-    (is_caustic ? sum.caustic : sum.indirect) += light * kernel.weight(meeting.dist2);
+    const Spectrum found = light * kernel.weight(meeting.dist2);
+    (is_caustic ? sum.caustic : sum.indirect) += found;
+    sum.bias += found * kernel.bias_share(meeting.dist2);
   }
-  GatheredLight times(const Spectrum& beta) const { return {beta * sum.caustic, beta * sum.indirect}; }
+  GatheredLight times(const Spectrum& beta) const { return {beta * sum.caustic, beta * sum.indirect, beta * sum.bias}; }
 };
 
 // Adds up estimates with several kernels.

@@ -115,6 +115,7 @@ class FrameIntegrator final : public Integrator {
     frame_.max_depth = job.settings.max_depth;
     frame_.views.seed = job.settings.seed;
   }
+  bool knows_bias() const override { return false; }
   std::string limitation(const Scene& scene) const override {
     std::vector<std::string> missing;
     if (technique_.limitations != nullptr) missing = technique_.limitations(scene, nullptr);

@@ -46,6 +46,33 @@ TEST(Kernel, IntegratesToOneOverItsDisc) {
 }
 
 // By shells, in each of the dimensions of volume estimates.
+// Light L(x) = 1 + c x² has a bias of c times the kernel's second moment; even light has none.
+TEST(KernelIn, KnowsItsBias) {
+  constexpr double c = 0.7;
+  for (const KernelShape shape :
+       {KernelShape::box, KernelShape::cone, KernelShape::epanechnikov, KernelShape::gaussian})
+    for (int dimensions = 1; dimensions <= 3; ++dimensions) {
+      const KernelIn kernel(dimensions, {shape}, 0.8f);
+      const double r = static_cast<double>(kernel.support());
+      constexpr int steps = 20000;
+      double estimate = 0, bias = 0, bias_of_even = 0;
+      for (int i = 0; i < steps; ++i) {
+        const double x = (i + 0.5) * r / steps;
+        const auto dist2 = static_cast<float>(x * x);
+        const double size = dimensions == 1   ? 2
+                            : dimensions == 2 ? 2 * std::numbers::pi * x
+                                              : 4 * std::numbers::pi * x * x;
+        const double weight = r / steps * size * static_cast<double>(kernel.weight(dist2));
+        const double share = static_cast<double>(kernel.bias_share(dist2));
+        estimate += weight * (1 + c * x * x);
+        bias += weight * share * (1 + c * x * x);
+        bias_of_even += weight * share;
+      }
+      EXPECT_NEAR(bias_of_even, 0, 2e-3) << static_cast<int>(shape) << " in " << dimensions;
+      EXPECT_NEAR(bias / (estimate - 1), 1, 0.02) << static_cast<int>(shape) << " in " << dimensions;
+    }
+}
+
 TEST(KernelIn, IntegratesToOne) {
   constexpr float radius = 0.3f;
   for (const KernelShape shape : shapes)
