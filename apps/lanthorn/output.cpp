@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "console.h"
+#include "estimate_json.h"
 #include "lanthorn/file.h"
 #include "lanthorn/version.h"
 
@@ -20,7 +21,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-nlohmann::json metadata_of(const StateSummary& state, bool reproducible, const nlohmann::json& statistics) {
+nlohmann::json metadata_of(const StateSummary& state, const ErrorEstimate& error, bool reproducible,
+                           const nlohmann::json& statistics) {
   const nlohmann::json settings = nlohmann::json::parse(state.settings);
   nlohmann::json metadata = settings.value("identity", nlohmann::json::object());
   if (settings.contains("scene")) metadata["scene"] = settings["scene"];
@@ -28,6 +30,7 @@ nlohmann::json metadata_of(const StateSummary& state, bool reproducible, const n
   metadata["version"] = version;
   metadata["passes"] = state.pass_count;
   if (state.cut_share > 0) metadata["cut_share"] = state.cut_share;
+  metadata["error"] = estimate_json(error);
   if (reproducible) return metadata;
   metadata["seconds"] = state.seconds;
   if (!statistics.is_null()) metadata["statistics"] = statistics;
@@ -181,7 +184,7 @@ DisplaySettings write(const fs::path& path, const Image& image, const OutputSett
 void write_preview(const fs::path& path, const RenderState& state, const OutputSettings& settings) {
   const StateSummary summary = summarize(state);
   write(path, picture_of(state), settings, settings.measures_exposure.value_or(summary.measures_exposure),
-        metadata_of(summary, settings.reproducible, nullptr).dump());
+        metadata_of(summary, estimate_error(state), settings.reproducible, nullptr).dump());
 }
 
 void write_picture(const fs::path& path, const Image& image, const OutputSettings& settings, bool measures_exposure,
@@ -195,12 +198,12 @@ void write_picture(const fs::path& path, const Image& image, const OutputSetting
     warn_of_exposure(path, image, display);
 }
 
-void write_output(const fs::path& path, const RenderState& state, const OutputSettings& settings,
-                  const nlohmann::json& statistics) {
+void write_output(const fs::path& path, const RenderState& state, const ErrorEstimate& error,
+                  const OutputSettings& settings, const nlohmann::json& statistics) {
   if (path.extension() == ".state") return save_state(state, path, {.times = !settings.reproducible});
   const StateSummary summary = summarize(state);
   write_picture(path, picture_of(state), settings, summary.measures_exposure,
-                metadata_of(summary, settings.reproducible, statistics).dump());
+                metadata_of(summary, error, settings.reproducible, statistics).dump());
 }
 
 void report_film(const FilmReport& report) {

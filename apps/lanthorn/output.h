@@ -56,10 +56,11 @@ void write_preview(const std::filesystem::path& path, const RenderState& state, 
 void write_picture(const std::filesystem::path& path, const Image& image, const OutputSettings& settings,
                    bool measures_exposure, const std::string& metadata);
 
-/// Writes the picture as `write_picture`, or the state itself, by the extension of `path`. `statistics`: of the render,
+/// Writes the picture as `write_picture`, or the state itself, by the extension of `path`. `error`: of the picture.
+/// `statistics`: of the render,
 /// for an image's metadata; may be null. Throws Error.
-void write_output(const std::filesystem::path& path, const RenderState& state, const OutputSettings& settings,
-                  const nlohmann::json& statistics = nullptr);
+void write_output(const std::filesystem::path& path, const RenderState& state, const ErrorEstimate& error,
+                  const OutputSettings& settings, const nlohmann::json& statistics = nullptr);
 
 /// Warns if the film could not add some values exactly.
 void report_film(const FilmReport& report);

@@ -91,30 +91,42 @@ void ProgressLine::finish() {
 }
 
 ProgressDisplay::ProgressDisplay(const StopRule& stop, const RenderState& start, bool quiet)
-    : passes_to_do_(passes_left(stop.passes, start)), seconds_(stop.seconds), line_(quiet) {}
+    : passes_to_do_(passes_left(stop.passes, start)), seconds_(stop.seconds), noise_(stop.noise), line_(quiet) {}
 
-double ProgressDisplay::fraction_done(const RenderStatistics& statistics) const {
+double ProgressDisplay::fraction_done(const RenderStatistics& statistics, std::uint64_t state_passes) const {
   double fraction =
       static_cast<double>(statistics.passes) / static_cast<double>(std::max<std::uint64_t>(1, passes_to_do_));
   if (seconds_) fraction = std::max(fraction, statistics.seconds / *seconds_);
+  if (noise_) fraction = std::max(fraction, fraction_of_noise(statistics, state_passes));
   return std::min(1.0, fraction);
+}
+
+// Of the passes of this run that the bound needs: at most nearly all, until it is reached.
+double ProgressDisplay::fraction_of_noise(const RenderStatistics& statistics, std::uint64_t state_passes) const {
+  if (!statistics.error || !statistics.error->is_known()) return 0;
+  if (statistics.error->is_below(*noise_)) return 1;
+  const double needed = growth_to_reach(*statistics.error, *noise_) * static_cast<double>(statistics.error_passes);
+  const auto before = static_cast<double>(state_passes - statistics.passes);
+  return std::min(0.99, static_cast<double>(statistics.passes) / std::max(1.0, needed - before));
 }
 
 std::string ProgressDisplay::text(const RenderStatistics& s, double fraction) const {
   const double seconds = std::max(1e-9, s.seconds);
-  constexpr std::uint64_t practically_endless = 1u << 31;
-  std::string text = passes_to_do_ < practically_endless ? fmt::format("pass {}/{}", s.passes, passes_to_do_)
-                                                         : fmt::format("pass {}", s.passes);
+  const bool is_endless = passes_to_do_ > 1u << 31;
+  std::string text =
+      !is_endless ? fmt::format("pass {}/{}", s.passes, passes_to_do_) : fmt::format("pass {}", s.passes);
   if (s.light_paths > 0)
     text += fmt::format("  {} photons/s", format_count(static_cast<double>(s.light_paths) / seconds));
   text += fmt::format("  {} rays/s", format_count(static_cast<double>(s.rays.walk + s.rays.shadow) / seconds));
   if (s.radius > 0) text += fmt::format("  radius {:.3g} m", s.radius);
   if (s.volume_radius > 0) text += fmt::format("  in media {:.3g} m", s.volume_radius);
-  return text + fmt::format("  {} left", format_duration(seconds_left(fraction, s.seconds)));
+  if (s.error) text += "  error " + describe_error(*s.error);
+  const bool is_known = !is_endless || seconds_ || (s.error && s.error->is_known());
+  return is_known ? text + fmt::format("  {} left", format_duration(seconds_left(fraction, s.seconds))) : text;
 }
 
-void ProgressDisplay::update(const RenderState&, const RenderStatistics& statistics) {
-  const double fraction = fraction_done(statistics);
+void ProgressDisplay::update(const RenderState& state, const RenderStatistics& statistics) {
+  const double fraction = fraction_done(statistics, summarize(state).pass_count);
   line_.show(fraction, statistics.seconds, [&] { return text(statistics, fraction); });
 }
 

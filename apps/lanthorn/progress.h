@@ -40,10 +40,11 @@ class ProgressDisplay {
 
  private:
   std::string text(const RenderStatistics& statistics, double fraction) const;
-  double fraction_done(const RenderStatistics& statistics) const;
+  double fraction_done(const RenderStatistics& statistics, std::uint64_t state_passes) const;
+  double fraction_of_noise(const RenderStatistics& statistics, std::uint64_t state_passes) const;
 
   std::uint64_t passes_to_do_;
-  std::optional<double> seconds_;
+  std::optional<double> seconds_, noise_;
   ProgressLine line_;
 };
 

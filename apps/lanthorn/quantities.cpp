@@ -17,6 +17,7 @@ struct Unit {
 };
 
 constexpr Unit count_units[]{{"", 1}, {"k", 1e3}, {"K", 1e3}, {"M", 1e6}, {"G", 1e9}};
+constexpr Unit share_units[]{{"", 1}, {"%", 0.01}};
 constexpr Unit time_units[]{{"", 1}, {"s", 1}, {"m", 60}, {"min", 60}, {"h", 3600}};
 constexpr Unit byte_units[]{{"", 1}, {"k", 0x1p10}, {"K", 0x1p10}, {"M", 0x1p20}, {"G", 0x1p30}, {"T", 0x1p40}};
 
@@ -63,6 +64,11 @@ std::optional<std::uint64_t> parse_bytes(std::string_view text) {
     }
   const auto bytes = whole(number, byte_units);
   return bytes && *bytes > 0 ? bytes : std::nullopt;
+}
+
+std::optional<double> parse_share(std::string_view text) {
+  const auto share = scaled(text, share_units);
+  return share && *share > 0 && *share <= 1 ? share : std::nullopt;
 }
 
 std::optional<double> parse_number(std::string_view text) { return scaled(text, std::span(count_units, 1)); }

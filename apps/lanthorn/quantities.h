@@ -18,6 +18,8 @@ std::optional<double> parse_duration(std::string_view text);
 /// Bytes, one at least: "65536", "64k", "512M", "2G" (powers of 1024; "MB" and "MiB" are the same). Nothing for any
 /// other text.
 std::optional<std::uint64_t> parse_bytes(std::string_view text);
+/// A share of 1, more than 0 and at most 1: "2%", "0.02". Nothing for any other text.
+std::optional<double> parse_share(std::string_view text);
 /// A finite number: "1.5", "+1", "-2e-3". Nothing for any other text.
 std::optional<double> parse_number(std::string_view text);
 

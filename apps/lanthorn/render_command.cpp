@@ -34,6 +34,12 @@ OptionTable render_command_options(RenderCommand& a) {
       {.names = "-t,--time",
        .value = into(a.options.seconds, duration_type()),
        .brief = "Stop after the pass during which this time is reached: 30s, 1.5m, 2h"},
+      {.names = "--noise",
+       .value = into(a.options.noise, share_type()),
+       .brief = "Stop when the picture's error is below this, such as 2%",
+       .details = "The error is measured while rendering, noise and bias together, and is below the bound with a "
+                  "probability of 90 %. It is the root of the mean square of each value's relative error, where dark "
+                  "values count as if they had a tenth of the picture's mean. -p and -t are limits beside it."},
       {.names = "--pass-range",
        .value = into(a.options.pass_range, pass_range_type()),
        .brief = "Passes FIRST:END (END not included), for a shard to be merged with others",

@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include "console.h"
+#include "estimate_json.h"
 #include "json_text.h"
 #include "lanthorn/file.h"
 #include "lanthorn/image_file.h"
@@ -89,7 +90,24 @@ json settings_of(const StateSummary& state) {
   return settings;
 }
 
-json state_json(const StateSummary& state, const std::vector<std::string>& layers) {
+// Anybody may have written a picture.
+bool is_error(const json& error) {
+  constexpr std::array<const char*, 4> numbers{"noise", "bias", "error", "bound"};
+  return error.is_object() && error.contains("doubt") && error["doubt"].is_string() &&
+         std::all_of(numbers.begin(), numbers.end(),
+                     [&](const char* name) { return error.contains(name) && error[name].is_number(); });
+}
+
+std::string error_line(const json& error) {
+  const auto percent = [&](const char* member) { return 100 * error.at(member).get<double>(); };
+  ErrorEstimate e;
+  e.bound = error.at("bound").get<double>();
+  e.doubt = text_of(error.at("doubt"));
+  return fmt::format("{} with 90 % confidence; noise {:.2g} %, bias {:.2g} %", describe_error(e), percent("noise"),
+                     percent("bias"));
+}
+
+json state_json(const StateSummary& state, const ErrorEstimate& error, const std::vector<std::string>& layers) {
   json passes = json::array();
   for (const PassRange& range : state.passes) passes.push_back({range.begin, range.end});
   return {{"kind", "state"},
@@ -100,6 +118,7 @@ json state_json(const StateSummary& state, const std::vector<std::string>& layer
           {"seconds", state.seconds},
           {"mergeable", state.mergeable},
           {"cut_share", state.cut_share},
+          {"error", estimate_json(error)},
           {"width", state.width},
           {"height", state.height},
           {"layers", layers},
@@ -142,11 +161,13 @@ FileKind kind_of_file(const std::string& file) {
 void show_state(const std::string& file, bool as_json) {
   const std::shared_ptr<RenderState> sums = open_state(file);  // checks its checksum and every number
   const StateSummary state = summarize(*sums);
+  const ErrorEstimate error = estimate_error(*sums);
   const std::vector<std::string> layers = layer_names(picture_of(*sums));
-  if (as_json) return print_text(report_text(state_json(state, layers)));
+  if (as_json) return print_text(report_text(state_json(state, error, layers)));
   print_line("state", file + " (intact)");
   print_settings(settings_of(state));
   print_line("passes", passes_text(state));
+  print_line("error", error_line(estimate_json(error)));
   if (const std::string limit = limit_text(state.cut_share); !limit.empty()) print_line("depth", limit);
   print_line("merge", state.mergeable ? "with states of other passes"
                                       : "not possible: each pass depends on all before it; --resume only");
@@ -174,6 +195,8 @@ void show_picture(const std::string& file, std::uint64_t max_pixels, bool as_jso
   if (metadata.empty()) print_line("method", "(not known: the file holds no settings of Lanthorn)");
   print_settings(metadata);
   if (const auto passes = metadata.find("passes"); passes != metadata.end()) print_line("passes", text_of(*passes));
+  if (const auto error = metadata.find("error"); error != metadata.end() && is_error(*error))
+    print_line("error", error_line(*error));
   if (const auto cut = metadata.find("cut_share"); cut != metadata.end() && cut->is_number())
     if (const std::string limit = limit_text(cut->get<double>()); !limit.empty()) print_line("depth", limit);
   print_line("size", size_text(image.window, image.width, image.height));

@@ -10,6 +10,7 @@
 
 #include "checkpoint.h"
 #include "console.h"
+#include "estimate_json.h"
 #include "json_text.h"
 #include "lanthorn/error.h"
 #include "lanthorn/file.h"
@@ -93,13 +94,14 @@ void warn_of_limit(const StateSummary& state) {
       settings.at("identity").at("max_depth").get<int>(), 100 * state.cut_share);
 }
 
-void write_report(const std::string& path, const Scene& scene, const RenderState& state,
+void write_report(const std::string& path, const Scene& scene, const RenderState& state, const ErrorEstimate& error,
                   const RenderStatistics& statistics) {
   nlohmann::json report = describe(statistics);
   const StateSummary summary = summarize(state);
   report["settings"] = nlohmann::json::parse(summary.settings);
   report["film"] = describe(summary.report);
   report["depth_limit"] = describe_limit(report["settings"], statistics.rays);
+  report["error"] = estimate_json(error);
   report["passes_total"] = summary.pass_count;
   report["scene"] = scene_report(summarize(scene));
   const std::string text = report_text(report);
@@ -152,6 +154,8 @@ void save_render(const RenderFiles& a, const RenderOptions& options, const std::
                  const Scene& scene, const RenderState& state, const RenderStatistics& statistics) {
   const nlohmann::json described = describe(statistics);
   const StateSummary summary = summarize(state);
+  const bool is_measured = statistics.error && statistics.error_passes == summary.pass_count;
+  const ErrorEstimate error = is_measured ? *statistics.error : estimate_error(state);
   OutputSettings settings = a.output;
   settings.hints = !a.quiet;
   std::vector<Output> outputs;
@@ -159,17 +163,17 @@ void save_render(const RenderFiles& a, const RenderOptions& options, const std::
   for (const fs::path& path : paths)
     outputs.push_back({path, path.extension() == ".state" ? OutputKind::state : OutputKind::picture, [&] {
                          check_state(a, path, state, summary.passes);  // fewer than expected, after a signal
-                         write_output(path, state, settings, described);
+                         write_output(path, state, error, settings, described);
                        }});
   if (!a.json.empty())
-    outputs.push_back({a.json, OutputKind::report, [&] { write_report(a.json, scene, state, statistics); }});
+    outputs.push_back({a.json, OutputKind::report, [&] { write_report(a.json, scene, state, error, statistics); }});
   write_outputs(outputs, state);
   report_film(summary.report);
   if (!options.max_depth) warn_of_limit(summary);  // else the user has chosen it
   if (a.quiet) return;
   for (const fs::path& path : paths)
-    announce("{}: {} passes by {} in {}\n", path.string(), summary.pass_count, summary.integrator,
-             format_duration(summary.seconds));
+    announce("{}: {} passes by {} in {}, error {}\n", path.string(), summary.pass_count, summary.integrator,
+             format_duration(summary.seconds), describe_error(error));
 }
 
 }  // namespace lanthorn::program

@@ -47,6 +47,7 @@ std::string command_of(const ServeCommand& a, const ViewerScene& scene, std::uin
   render.options = scene.options;
   render.options.memory.reset();
   render.options.seconds.reset();
+  render.options.noise.reset();
   render.options.passes = passes;
   render.changes = scene.changes;
   std::erase_if(render.changes.lights, [](const auto& light) { return light.second == 1; });
@@ -139,6 +140,9 @@ OptionTable serve_options(ServeCommand& a) {
       {.names = "-t,--time",
        .value = into(a.options.seconds, duration_type()),
        .brief = "Rest after this time on a view: 30s, 1.5m, 2h"},
+      {.names = "--noise",
+       .value = into(a.options.noise, share_type()),
+       .brief = "Rest when the picture's error is below this, such as 2%"},
       outputs_option(a.outputs, "Where to write the picture that is seen when the server ends", "nowhere")};
   OptionTable table = joined(joined(render_options(a), scene_change_options(a.changes)), std::move(own));
   table = joined(std::move(table), output_options(a.output));

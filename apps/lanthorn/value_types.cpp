@@ -104,6 +104,10 @@ ValueType<double> duration_type() {
           [](double seconds) { return fmt::format("{}s", seconds); }};
 }
 
+ValueType<double> share_type() {
+  return {"SHARE", "a share such as 2% or 0.02", parse_share, [](double share) { return fmt::format("{}", share); }};
+}
+
 ValueType<std::optional<double>> duration_or_none_type() { return or_word(duration_type(), "none"); }
 
 ValueType<std::uint64_t> bytes_type() {

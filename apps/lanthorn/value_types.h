@@ -51,6 +51,7 @@ ValueType<Number> number_type(NumberRange range = {});
 /// A number, or `word`, which is read as no number.
 ValueType<std::optional<float>> number_or_word_type(NumberRange range, const std::string& word);
 ValueType<double> duration_type();
+ValueType<double> share_type();
 /// A duration, or "none", which is read as none.
 ValueType<std::optional<double>> duration_or_none_type();
 ValueType<std::uint64_t> bytes_type();

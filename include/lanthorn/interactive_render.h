@@ -47,7 +47,7 @@ enum class InteractivePhase : std::uint8_t {
   preparing,    ///< there is no full pass of the last edit yet
   refining,     ///< each pass makes the picture better
   paused,       ///< by `pause`
-  finished,     ///< all passes that the options, or else the scene, ask for are done
+  finished,     ///< all passes are done that the options, or else the scene, ask for, or the error is below their bound
   out_of_time,  ///< the time of the options is over
   failed,       ///< the last edit cannot be rendered; `problem` says why
 };

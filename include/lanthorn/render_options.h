@@ -31,7 +31,9 @@ struct ViewOptions {
 struct RenderOptions : ViewOptions {
   std::optional<std::string> integrator{};  ///< name of a method
   std::optional<std::uint64_t> passes{};
-  std::optional<double> seconds{};        ///< stop after the pass in which this time is over
+  std::optional<double> seconds{};  ///< stop after the pass in which this time is over
+  /// Stop when the picture's error is below this (ErrorEstimate::bound), in (0, 1].
+  std::optional<double> noise{};
   std::optional<PassRange> pass_range{};  ///< for shards; excludes `passes`
   std::optional<std::uint64_t> seed{};
   std::optional<ColorMode> color{};

@@ -34,6 +34,9 @@ enum class Undo : std::uint8_t {
 struct StopRule {
   PassRange passes{0, 1};           ///< passes to have done; end may be "never" (the largest number)
   std::optional<double> seconds{};  ///< of this call, wall clock
+  /// Bound of the picture's error (`ErrorEstimate::is_below`). Looked at after numbers of passes that are fixed in
+  /// advance, so that the picture does not depend on the machine's speed.
+  std::optional<double> noise{};
   /// After the running pass; one pass is always rendered.
   const std::atomic<bool>* interrupted = nullptr;
   /// At once: the running pass is given up and leaves no trace if `undo` allows it, and is finished otherwise.

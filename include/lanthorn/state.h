@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "lanthorn/error_estimate.h"
 #include "lanthorn/image.h"
 #include "lanthorn/render_options.h"
 
@@ -59,8 +60,12 @@ struct StateSummary {
 };
 StateSummary summarize(const RenderState& state);
 
-/// The picture so far with all its layers; black before the first pass.
+/// The picture so far with all its layers; black before the first pass. Its layer `error` is one standard error of
+/// color, `bias` the estimated error of photon methods, which passes do not average out.
 Image picture_of(const RenderState& state);
+
+/// How far that picture is from the truth. Costs about as much as the picture.
+ErrorEstimate estimate_error(const RenderState& state);
 
 /// Reads a saved state. Throws Error if the file cannot be read, is truncated, damaged, or of another version.
 std::shared_ptr<RenderState> open_state(const std::filesystem::path& path);

@@ -89,7 +89,7 @@ class InteractiveRender::Worker {
   void render_coarse(const Wanted& wanted);
   double render_coarse(const Wanted& wanted, double pixels, bool is_first);
   void refine(const Wanted& wanted);
-  void note_end(const Wanted& wanted, const PassRange& passes);
+  void note_end(const Wanted& wanted, const RenderStatistics& statistics, const StopRule& stop);
   void make_scene(Wanted& wanted);
   void make_plan(const Wanted& wanted);
   double photons_of(const Wanted& wanted, double pixels) const;
@@ -278,15 +278,17 @@ void InteractiveRender::Worker::refine(const Wanted& wanted) {
   const RenderStatistics statistics = lanthorn::render(*scene_, *plan_, stop, observer);
   if (statistics.out_of_memory) throw std::bad_alloc();
   if (drop_) return;
-  if (!rest_) note_end(wanted, stop.passes);
+  if (!rest_) note_end(wanted, statistics, stop);
   if (shown_passes < plan_->state.pass_count()) show_passes(statistics);
 }
 
-void InteractiveRender::Worker::note_end(const Wanted& wanted, const PassRange& passes) {
+void InteractiveRender::Worker::note_end(const Wanted& wanted, const RenderStatistics& statistics,
+                                         const StopRule& stop) {
   const std::lock_guard lock(mutex_);
   over_revision_ = wanted.revision;
-  over_ = plan_->state.pass_count() < passes.end - passes.begin ? InteractivePhase::out_of_time
-                                                                : InteractivePhase::finished;
+  const bool is_good = stop.noise && statistics.error && statistics.error->is_below(*stop.noise);
+  const bool has_all = plan_->state.pass_count() >= stop.passes.end - stop.passes.begin;
+  over_ = is_good || has_all ? InteractivePhase::finished : InteractivePhase::out_of_time;
 }
 
 void InteractiveRender::Worker::show(const Wanted& wanted, const RenderPlan& plan, const RenderStatistics& statistics,

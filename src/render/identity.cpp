@@ -150,6 +150,7 @@ std::string describe_render(const Scene& scene, const ViewDescription& view, con
                           {"measures_exposure", view.film.measures_exposure},
                           {"scene", fs::path(scene.description().filename).filename().string()}};
   if (view.film.display_emission) settings["display_emission"] = true;
+  if (!plan.integrator->knows_bias()) settings["bias_not_measured"] = true;
   // File names need not be UTF-8.
   return settings.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }

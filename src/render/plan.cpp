@@ -48,7 +48,7 @@ PassRange choose_passes(const description::RenderHints& hints, const RenderOptio
   constexpr std::uint64_t never = std::numeric_limits<std::uint32_t>::max();
   if (options.pass_range) return *options.pass_range;
   if (options.passes) return {0, *options.passes};
-  if (options.seconds) return {0, never};
+  if (options.seconds || options.noise) return {0, never};
   return {0, hints.pixel_samples ? static_cast<std::uint64_t>(std::max(1, *hints.pixel_samples)) : default_passes};
 }
 
@@ -113,6 +113,10 @@ RenderPlan plan_render(const Scene& scene, const ViewDescription& view, const Re
     throw Error(fmt::format(
         "--pass-range: each pass of {} depends on all before it, so that it can start with pass 0 only", info.name));
   plan.stop.seconds = options.seconds;
+  plan.stop.noise = options.noise;
+  if (options.noise && !plan.integrator->knows_bias())
+    throw Error(
+        fmt::format("--noise: {} has a bias that it does not measure; limit it by --passes or --time", info.name));
 
   RenderState& state = plan.state;
   const PixelWindow& window = plan.view.window;

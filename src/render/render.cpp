@@ -4,12 +4,16 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
+#include <cstdint>
 #include <new>
+#include <optional>
 
 #include "base/parallel.h"
 #include "lanthorn/error.h"
 #include "render/pass_undo.h"
+#include "render/picture.h"
 
 namespace lanthorn {
 
@@ -67,12 +71,48 @@ PassReport render_parts(const RenderJob& job, std::uint64_t pass, RenderPlan& pl
 
 bool is_set(const std::atomic<bool>* flag) { return flag && flag->load(); }
 
+bool is_reached(const StopRule& stop, const RenderStatistics& statistics) {
+  return stop.noise && statistics.error && statistics.error->is_below(*stop.noise);
+}
+
 bool must_stop(const StopRule& stop, const RenderStatistics& statistics) {
-  if (is_set(stop.drop)) return true;
+  if (is_set(stop.drop) || is_reached(stop, statistics)) return true;
   // At least one pass is rendered, however early the stop: there must be a picture.
   if (statistics.passes == 0) return false;
   return is_set(stop.interrupted) || (stop.seconds && statistics.seconds >= *stop.seconds);
 }
+
+// Looks at the picture's error now and then.
+class ErrorLooks {
+ public:
+  ErrorLooks(const StopRule& stop, const Film& film)
+      : is_needed_(stop.noise.has_value()), cost_(guessed_per_pixel * film.pixel_count()) {}
+
+  /// After a pass, `seconds` into the render.
+  void look_if_due(const RenderState& state, RenderStatistics& statistics, double seconds) {
+    if (!is_look(state.pass_count())) return;
+    if (!is_needed_ && seconds - last_ < cost_ / most_of_time) return;
+    const Clock::time_point start = Clock::now();
+    statistics.error = measure_error(state).estimate;
+    statistics.error_passes = state.pass_count();
+    cost_ = seconds_between(start, Clock::now());
+    last_ = seconds + cost_;
+  }
+
+ private:
+  // Each look comes after an eighth more passes than the one before: more would seldom end a render earlier.
+  static bool is_look(std::uint64_t passes) {
+    constexpr std::uint64_t first = 4, share = 8;
+    std::uint64_t look = first;
+    while (look < passes) look += std::max<std::uint64_t>(1, look / share);
+    return look == passes;
+  }
+
+  static constexpr double guessed_per_pixel = 1e-6, most_of_time = 0.01;
+
+  bool is_needed_;
+  double cost_, last_ = 0;  // seconds
+};
 
 // Returns false if the pass was stopped before its end.
 template <class Work>
@@ -120,6 +160,8 @@ RenderStatistics render(const Scene& scene, RenderPlan& plan, const StopRule& st
   statistics.prepare_seconds = statistics.seconds = seconds_between(start, Clock::now());
 
   PassUndo undo(stop.undo);
+  ErrorLooks looks(stop, state.film);
+  if (stop.noise) looks.look_if_due(state, statistics, statistics.seconds);  // of a state that is resumed
   std::optional<double> pass_seconds;
   Clock::time_point last_checkpoint = Clock::now();
   for (std::uint64_t pass = stop.passes.begin; pass < stop.passes.end; ++pass) {
@@ -147,6 +189,7 @@ RenderStatistics render(const Scene& scene, RenderPlan& plan, const StopRule& st
     statistics.seconds = seconds_between(start, now);
     if (statistics.passes == 1) statistics.first_pass_seconds = statistics.seconds;
     state.seconds = seconds_before + statistics.seconds;
+    looks.look_if_due(state, statistics, statistics.seconds);
     if (observer.checkpoint(state, seconds_between(last_checkpoint, now))) last_checkpoint = Clock::now();
     observer.progress(state, statistics);
   }

@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "render/colour_balance.h"
+#include "render/picture.h"
 #include "render/state.h"
 
 namespace lanthorn {
@@ -62,10 +62,12 @@ StateSummary summarize(const RenderState& state) {
 }
 
 Image picture_of(const RenderState& state) {
-  Image image = state.film.resolve(std::max<std::uint64_t>(1, state.pass_count()), colour_balance(state));
+  Image image = picture_of(state, state.film, state.passes);
   image.window = window_of(state);
   return image;
 }
+
+ErrorEstimate estimate_error(const RenderState& state) { return measure_error(state).estimate; }
 
 std::shared_ptr<RenderState> open_state(const std::filesystem::path& path) {
   return std::make_shared<RenderState>(load_state(path));

@@ -61,6 +61,7 @@ struct Panel {
   // Shown.
   std::vector<TechniqueDescription> techniques;  ///< with all their parameters, those of lights included
   std::string scene, driver, object_name, message, command;
+  std::string error;   ///< of the picture, of an offline method; empty: not known yet
   std::string notice;  ///< over the picture: why it is not what was asked for
   std::vector<std::string> notes;
   std::vector<LightMark> marks;

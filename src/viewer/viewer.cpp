@@ -373,6 +373,8 @@ void Viewer::refine() {
   measure();
   panel_.is_offline = true;
   panel_.frames = offline_->state.pass_count;
+  const std::optional<ErrorEstimate>& error = offline_->statistics.error;
+  panel_.error = error ? describe_error(*error) : "";
 }
 
 void Viewer::draw() {

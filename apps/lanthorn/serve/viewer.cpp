@@ -37,7 +37,7 @@ nlohmann::json to_json(const LookAt& look, bool is_mirrored) {
 
 // Without passes and time, a view refines until it changes.
 RenderOptions endless(RenderOptions options) {
-  if (!options.passes && !options.seconds) options.passes = most_passes;
+  if (!options.passes && !options.seconds && !options.noise) options.passes = most_passes;
   return options;
 }
 
@@ -183,6 +183,7 @@ nlohmann::json Viewer::about(const InteractiveSnapshot& snapshot) {
           {"samples", static_cast<double>(state.pass_count) * state.width * state.height},
           {"photons", state.pass_count * photons},
           {"traces_photons", picture.statistics.light_paths > 0},
+          {"error", picture.statistics.error ? describe_error(*picture.statistics.error) : ""},
           {"radius", picture.statistics.radius},
           {"volume_radius", picture.statistics.volume_radius},
           {"integrator", state.integrator},

@@ -237,6 +237,7 @@ void draw_times(const Panel& panel) {
   if (!ImGui::BeginTable("times", 2, ImGuiTableFlags_SizingStretchProp)) return;
   if (panel.is_offline) {
     row("Passes", std::to_string(panel.frames));
+    if (!panel.error.empty()) row("Error", panel.error);
   } else {
     row("Frames in the mean", std::to_string(panel.frames));
     row("Whole frame", milliseconds(panel.frame_milliseconds));

@@ -249,6 +249,7 @@ function showProgress(about) {
   byId('limitation').textContent = about.limitation;
   byId('passes').textContent = about.coarse ? 'coarse' : about.passes;
   byId('time').textContent = time(about.seconds);
+  byId('error').textContent = about.error || '–';
   byId('samples').textContent = grouped(about.samples);
   for (const id of ['photons', 'photons-term']) byId(id).hidden = !about.traces_photons;
   byId('photons').textContent = grouped(about.photons);

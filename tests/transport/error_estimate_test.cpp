@@ -1,0 +1,112 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// What a render says of its error, against the error of many renders.
+#include "lanthorn/error_estimate.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "render/picture.h"
+#include "support/render_scene.h"
+#include "support/runs.h"
+
+namespace lanthorn::error_estimate_test {
+namespace {
+
+const Scene& cornell() {
+  static const Scene scene(read_scene(LANTHORN_SOURCE_DIR "/scenes/cornell-caustics.pbrt"));
+  return scene;
+}
+
+constexpr int size = 48;
+RenderOptions options_of(const std::string& method, std::uint64_t passes, std::uint64_t seed) {
+  RenderOptions options;
+  options.integrator = method;
+  options.resolution = {size, size};
+  options.passes = passes;
+  options.photons = size * size;
+  options.seed = seed;
+  return options;
+}
+
+// Independent renders: their pictures, and what each says of itself.
+struct Runs {
+  std::vector<Image> pictures;
+  std::vector<MeasuredError> said;
+  Image mean;
+
+  Runs(const std::string& method, std::uint64_t passes, unsigned count,
+       const std::map<std::string, std::string>& parameters = {}) {
+    for (unsigned seed = 0; seed < count; ++seed) {
+      RenderOptions options = options_of(method, passes, seed);
+      options.set = parameters;
+      const RenderState state = test::render_state(cornell(), options);
+      said.push_back(measure_error(state));
+      pictures.push_back(*select_layer(picture_of(state), "color"));
+    }
+    mean = pictures.front();
+    for (std::size_t i = 0; i < mean.pixels.size(); ++i) {
+      double sum = 0;
+      for (const Image& picture : pictures) sum += static_cast<double>(picture.pixels[i]);
+      mean.pixels[i] = static_cast<float>(sum / count);
+    }
+  }
+
+  // Root of the mean of min(1, square / (r² + .01 m²)).
+  template <class Square>
+  static double relative(const Image& truth, Square&& square) {
+    double m = 0, sum = 0;
+    for (const float r : truth.pixels) m += static_cast<double>(r) / static_cast<double>(truth.pixels.size());
+    for (std::size_t i = 0; i < truth.pixels.size(); ++i) {
+      const auto r = static_cast<double>(truth.pixels[i]);
+      sum += std::min(1.0, square(i) / (r * r + 0.01 * m * m));
+    }
+    return std::sqrt(sum / static_cast<double>(truth.pixels.size()));
+  }
+  // Root of the mean of the squares of the pictures' errors. Their mean is nearer to each than the truth is.
+  double true_noise() const {
+    const auto count = static_cast<double>(pictures.size());
+    double sum = 0;
+    for (const Image& picture : pictures) {
+      const auto off = [&](std::size_t i) {
+        return static_cast<double>(picture.pixels[i]) - static_cast<double>(mean.pixels[i]);
+      };
+      sum += std::pow(relative(mean, [&](std::size_t i) { return off(i) * off(i) * count / (count - 1); }), 2);
+    }
+    return std::sqrt(sum / count);
+  }
+};
+
+class NoiseOf : public testing::TestWithParam<const char*> {};
+
+TEST_P(NoiseOf, AMethodIsKnownWithinAFifth) {
+  const Runs runs(GetParam(), 32, 12);
+  double said = 0;
+  for (const MeasuredError& error : runs.said) said += error.estimate.noise / static_cast<double>(runs.said.size());
+  EXPECT_NEAR(said / runs.true_noise(), 1, 0.2);
+}
+INSTANTIATE_TEST_SUITE_P(Methods, NoiseOf, testing::Values("path", "light", "bdpt", "vcm", "probppm", "sppm", "mlt"));
+
+// A radius that does not shrink, so that the bias is far above the noise.
+class BiasOf : public testing::TestWithParam<const char*> {};
+
+TEST_P(BiasOf, AMethodIsKnown) {
+  const Runs biased(GetParam(), 32, 8, {{"radius", "0.15"}, {"alpha", "1"}});
+  const Runs unbiased("bdpt", 512, 4);
+  const double true_bias = Runs::relative(unbiased.mean, [&](std::size_t i) {
+    return std::pow(static_cast<double>(biased.mean.pixels[i]) - static_cast<double>(unbiased.mean.pixels[i]), 2);
+  });
+  double said = 0;
+  for (const MeasuredError& error : biased.said) said += error.estimate.bias / static_cast<double>(biased.said.size());
+  EXPECT_NEAR(said / true_bias, 1, 0.3);
+}
+INSTANTIATE_TEST_SUITE_P(Methods, BiasOf, testing::Values("vcm", "probppm", "sppm"));
+
+}  // namespace
+}  // namespace lanthorn::error_estimate_test
