@@ -2,11 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/read_scene.h"
 
-#include <bit>
-#include <cstdint>
-#include <span>
-#include <string>
-
 #include "lanthorn/error.h"
 #include "lanthorn/scene.h"
 #include "math/hash.h"
@@ -14,26 +9,11 @@
 
 namespace lanthorn {
 
-namespace {
-
-// Another environment makes another scene. Files have hashes of their own.
-void add_environment_to_hash(SceneDescription& scene, const EnvironmentChoice& e) {
-  constexpr std::uint64_t is_environment = 2;
-  if (e.source.empty()) return;
-  const std::string name = std::filesystem::path(e.source).filename().string();
-  const std::uint64_t up = e.up ? static_cast<std::uint64_t>(*e.up) : 2;
-  scene.hash = hash_words({scene.hash, is_environment, std::bit_cast<std::uint32_t>(e.rotation),
-                           std::bit_cast<std::uint32_t>(e.scale), up, hash_bytes(std::as_bytes(std::span(name)))});
-}
-
-}  // namespace
-
 SceneDescription read_scene(const std::filesystem::path& path, const ReadOptions& options) {
   const EnvironmentChoice& environment = options.environment;
   if (environment.source.empty() && !(environment == EnvironmentChoice()))
     throw Error("--environment-rotate, -scale, -up: expected --environment FILE, which they are about");
   SceneDescription scene = read_scene_file(path, options, method_of_file);
-  add_environment_to_hash(scene, environment);
   if (options.window_glass) {
     if (replace_window_glass(scene) == 0)
       scene.warnings.push_back(
@@ -41,6 +21,7 @@ SceneDescription read_scene(const std::filesystem::path& path, const ReadOptions
     scene.hash = hash_words({scene.hash, 1});  // another scene
   }
   move_origin(scene);
+  replace_environment(scene, environment);
   return scene;
 }
 

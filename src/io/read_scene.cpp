@@ -45,13 +45,8 @@ void hash_files(std::map<std::string, description::File>& files, const FileAcces
   parallel_for(std::size_t{0}, all.size(), [&](std::size_t i) { all[i]->hash = hash_file(all[i]->path, access); });
 }
 
-SceneDescription lit(SceneDescription scene, const ReadOptions& options) {
-  if (!options.environment.source.empty()) replace_environment(scene, options.environment, options.max_pixels);
-  return scene;
-}
 SceneDescription completed(ModelFile model, const ReadOptions& options) {
-  model.scene = lit(std::move(model.scene), options);
-  if (!options.environment.source.empty()) model.lacking.light = false;
+  model.lacking.gets_environment = !options.environment.source.empty();
   return with_stand_ins(std::move(model));
 }
 
@@ -145,7 +140,7 @@ SceneDescription read_scene_file(const std::filesystem::path& path, const ReadOp
     }
     const FileReader read = decompressing_reader(access);
     return finished(extension == ".obj" ? completed(obj::read(bytes, folder, name, read, &access), options)
-                                        : lit(pbrt::read(bytes, folder, name, methods, read, &access), options),
+                                        : pbrt::read(bytes, folder, name, methods, read, &access),
                     bytes, access);
   });
 }

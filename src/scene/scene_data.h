@@ -3,6 +3,7 @@
 // What a scene is made of, for those who make scenes.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -40,6 +41,8 @@ struct SceneData {
   SceneData(const SceneData&) = delete;
   SceneData& operator=(const SceneData&) = delete;
 
+  /// The index of the first of the description's lights.
+  std::size_t first_described_light() const { return lights.size() - volume_lights.size() - description.lights.size(); }
   /// Where the light, an index of `lights`, is described.
   const SourceLocation& light_location(std::uint32_t light) const;
 
