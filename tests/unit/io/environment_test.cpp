@@ -163,7 +163,9 @@ TEST_F(Environment, TakesThePlaceOfEnvironmentsAlone) {
 
 TEST_F(Environment, AnotherOneIsAnotherScene) {
   const auto hash = [&](const EnvironmentChoice& choice) {
-    const Session session(build_scene(read("model.gltf", choice)), {.integrator = "path", .passes = 1});
+    RenderOptions options;
+    options.integrator = "path";
+    const Session session(build_scene(read("model.gltf", choice)), options);
     const auto settings = nlohmann::json::parse(summarize(session.state()).settings);
     return settings["identity"]["scene_hash"].get<std::string>();
   };
