@@ -111,7 +111,8 @@ void run_serve(const ServeCommand& a) {
   const auto command = [&a](const ViewerScene& shown, std::uint64_t passes) { return command_of(a, shown, passes); };
   Viewer viewer(build_scene(std::move(description)),
                 {command, {a.changes, a.options, a.reading.environment}, !outputs.empty()});
-  report_warnings(viewer.warnings());
+  SaidLines said;
+  report_warnings(viewer.warnings(), said);
   const std::string token = random_token();
   const ViewService service(viewer, a.output, title_of(a.scene), token, is_loopback(a.address) ? "" : host_name());
   const HttpServer server(a.address, a.port, [&service](const HttpRequest& request, const IsGone& is_gone) {

@@ -41,6 +41,23 @@ struct ReadOptions {
 /// names, is wrong.
 SceneDescription read_scene(const std::filesystem::path& path, const ReadOptions& options = {});
 
+/// A scene file of which several moments are wanted: it is read once.
+class SceneFile {
+ public:
+  /// Throws Error as `read_scene`. `ReadOptions::at` is not looked at.
+  explicit SceneFile(const std::filesystem::path& path, const ReadOptions& options = {});
+  ~SceneFile();
+  SceneFile(const SceneFile&) = delete;
+  SceneFile& operator=(const SceneFile&) = delete;
+
+  /// The scene at this time in its animation, as `ReadOptions::at` says it. Throws Error as `read_scene`.
+  SceneDescription at(const std::optional<double>& seconds);
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
 /// True if the name ends as those of files that `read_scene` reads.
 bool is_scene_file(const std::filesystem::path& path);
 
@@ -94,8 +111,9 @@ struct LookAt {
   friend bool operator==(const LookAt&, const LookAt&) = default;
 };
 
-/// Throws Error at the location of an error in the description.
-SharedScene build_scene(SceneDescription description);
+/// `like`: a scene from the same `SceneFile`. The new one shares its images and does not read them again. Throws Error
+/// at the location of an error in the description.
+SharedScene build_scene(SceneDescription description, const SharedScene& like = {});
 
 /// Replacements, by index into the vectors of the same names of a scene's description (`description_of`).
 struct SceneEdits {

@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/read_scene.h"
 
+#include <optional>
+
+#include "io/replace_environment.h"
 #include "lanthorn/error.h"
 #include "lanthorn/scene.h"
 #include "math/hash.h"
@@ -9,11 +12,24 @@
 
 namespace lanthorn {
 
-SceneDescription read_scene(const std::filesystem::path& path, const ReadOptions& options) {
+struct SceneFile::Parts {
+  SceneSource source;
+  std::filesystem::path path;
+  ReadOptions options;
+  std::optional<EnvironmentPicture> environment{};
+};
+
+SceneFile::SceneFile(const std::filesystem::path& path, const ReadOptions& options)
+    : parts_(new Parts{{path, options, method_of_file}, path, options}) {
   const EnvironmentChoice& environment = options.environment;
   if (environment.source.empty() && !(environment == EnvironmentChoice()))
     throw Error("--environment-rotate, -scale, -up: expected --environment FILE, which they are about");
-  SceneDescription scene = read_scene_file(path, options, method_of_file);
+}
+SceneFile::~SceneFile() = default;
+
+SceneDescription SceneFile::at(const std::optional<double>& seconds) {
+  auto& [source, path, options, environment] = *parts_;
+  SceneDescription scene = source.read(seconds);
   if (options.window_glass) {
     if (replace_window_glass(scene) == 0)
       scene.warnings.push_back(
@@ -21,8 +37,14 @@ SceneDescription read_scene(const std::filesystem::path& path, const ReadOptions
     scene.hash = hash_words({scene.hash, 1});  // another scene
   }
   move_origin(scene);
-  replace_environment(scene, environment);
+  if (options.environment.source.empty()) return scene;
+  if (!environment) environment = read_environment_picture(options.environment, options.max_pixels);
+  replace_environment(scene, options.environment, *environment);
   return scene;
+}
+
+SceneDescription read_scene(const std::filesystem::path& path, const ReadOptions& options) {
+  return SceneFile(path, options).at(options.at);
 }
 
 SceneDescription read_pbrt_string(std::string_view text, const std::filesystem::path& folder, const std::string& name) {

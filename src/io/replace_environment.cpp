@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
+#include "io/replace_environment.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -122,17 +124,6 @@ void replace_lights(std::vector<Light>& lights, Light light) {
 // A file of its own, whatever the scene calls its files.
 std::string name_of_file(const EnvironmentChoice& choice) { return "--environment " + choice.source; }
 
-std::shared_ptr<const SphericalTexels> read_picture(SceneDescription& scene, const EnvironmentChoice& choice) {
-  if (const std::optional<Image> own = own_environment(choice.source)) return picture_of(*own);
-  const std::string bytes = read_file(choice.source);
-  std::shared_ptr<const SphericalTexels> picture =
-      picture_of(read_environment({choice.source}, scene.access.max_pixels));
-  File& file = scene.files[name_of_file(choice)];
-  file.path = choice.source;
-  file.hash = hash_bytes(std::as_bytes(std::span(bytes)));
-  return picture;
-}
-
 // That of the environment that the scene has by now; null if it is another one.
 std::shared_ptr<const SphericalTexels> known_picture(const SceneDescription& scene, const EnvironmentChoice& choice) {
   if (scene.environment.source != choice.source) return nullptr;
@@ -163,27 +154,44 @@ void restore_environment(SceneDescription& scene) {
   scene.environment = {};
 }
 
-}  // namespace
-
-void replace_environment(SceneDescription& scene, const EnvironmentChoice& choice) {
+void check(const EnvironmentChoice& choice) {
   if (!(choice.scale >= 0 && std::isfinite(choice.scale) && std::isfinite(choice.rotation)))
     throw Error("--environment-rotate, --environment-scale: expected finite numbers, and a scale of 0 or more");
-  if (choice.source.empty()) return restore_environment(scene);
-  std::shared_ptr<const SphericalTexels> picture = known_picture(scene, choice);
-  if (!picture) picture = read_picture(scene, choice);
-  if (scene.environment.source.empty())
-    scene.own_lights = scene.lights;
-  else if (scene.environment.source != choice.source)
-    scene.files.erase(name_of_file(scene.environment));
+}
+
+}  // namespace
+
+EnvironmentPicture read_environment_picture(const EnvironmentChoice& choice, std::uint64_t max_pixels) {
+  if (const std::optional<Image> own = own_environment(choice.source)) return {picture_of(*own), {}};
+  File file;
+  file.path = choice.source;
+  const std::string bytes = read_file(file.path);
+  file.hash = hash_bytes(std::as_bytes(std::span(bytes)));
+  return {picture_of(read_environment({choice.source}, max_pixels)), std::move(file)};
+}
+
+void replace_environment(SceneDescription& scene, const EnvironmentChoice& choice, const EnvironmentPicture& picture) {
+  check(choice);
+  if (scene.environment.source.empty()) scene.own_lights = scene.lights;
+  if (scene.environment.source != choice.source) scene.files.erase(name_of_file(scene.environment));
+  if (picture.file) scene.files[name_of_file(choice)] = *picture.file;
   Light light;
-  const bool is_octahedral = picture->width == picture->height;
+  const bool is_octahedral = picture.texels->width == picture.texels->height;
   light.light_to_world = placement(scene, choice, axis_upwards(scene, choice), is_octahedral);
   light.location.file = scene.filename;
   InfiniteLight& environment = light.node.emplace<InfiniteLight>();
-  environment.texels = std::move(picture);
+  environment.texels = picture.texels;
   environment.radiance.scale = choice.scale;
   replace_lights(scene.lights, std::move(light));
   scene.environment = choice;
+}
+
+void replace_environment(SceneDescription& scene, const EnvironmentChoice& choice) {
+  check(choice);
+  if (choice.source.empty()) return restore_environment(scene);
+  EnvironmentPicture picture{known_picture(scene, choice), {}};
+  if (!picture.texels) picture = read_environment_picture(choice, scene.access.max_pixels);
+  replace_environment(scene, choice, picture);
 }
 
 }  // namespace lanthorn

@@ -63,7 +63,7 @@ class SceneEditor {
   SceneEditor(std::shared_ptr<const SceneData> base, const SceneEdits& edits)
       : base_(std::move(base)),
         edits_(edits),
-        data_(std::make_shared<SceneData>(edited(base_->description, edits), base_.get())) {}
+        data_(std::make_shared<SceneData>(edited(base_->description, edits), base_.get(), base_->geometry)) {}
 
   std::shared_ptr<const SceneData> edit() {
     const auto started = std::chrono::steady_clock::now();
@@ -89,7 +89,8 @@ class SceneEditor {
   // scene in which that happened.
   void keep() {
     data_->kept = base_->kept;
-    if (data_->kept.empty() || base_->has_edited_lights) data_->kept.push_back(base_);
+    if (!base_->is_edited || base_->has_edited_lights) data_->kept.push_back(base_);
+    data_->is_edited = true;
     data_->emitters = base_->emitters;
     data_->light_media = base_->light_media;
     data_->volume_lights = base_->volume_lights;
@@ -200,10 +201,7 @@ class SceneEditor {
   }
   void update(Light& light, std::size_t described) { light = made(data_->description.lights[described]); }
   Light made(const description::Light& source) {
-    std::optional<Light> light;
-    for (std::size_t i = 0; i < base_->description.lights.size() && !light; ++i)
-      light = make_from({base_->description.lights[i], base_->lights[base_->first_described_light() + i]}, source,
-                        data_->sphere);
+    std::optional<Light> light = make_from(*base_, source, data_->sphere);
     if (!light)
       light = make_light(source, data_->description.access, data_->sphere, *data_->spectra,
                          data_->description.color_space, *data_->light_store, data_->description.warnings);

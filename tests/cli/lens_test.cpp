@@ -182,6 +182,23 @@ TEST_F(Lens, FramesAreThePicturesOfTheirMoments) {
   EXPECT_NE(bytes("f.011.exr"), bytes("f.012.exr"));
 }
 
+// The scene has warnings: of two cameras, and of the studio.
+TEST_F(Lens, FramesSayEachWarningOnce) {
+  const auto count = [](const std::string& text, const std::string& part) {
+    int n = 0;
+    for (std::size_t at = text.find(part); at != text.npos; at = text.find(part, at + 1)) ++n;
+    return n;
+  };
+  const auto expect_once = [&](const Words& more) {
+    const Ending ending = succeed(Words{"render", "moves.gltf", "-i", "path", "-p", "1", "-r", "16x16"} + more);
+    EXPECT_EQ(count(ending.err, "several cameras"), 1) << ending.err;
+    EXPECT_EQ(count(ending.err, "a studio of three soft lamps stands in"), 1) << ending.err;
+    EXPECT_EQ(count(ending.err, "color rgb:"), 1) << ending.err;
+  };
+  expect_once({"--frames", "0:3", "-o", "f.#.png"});
+  expect_once({"--turntable", "3", "-o", "t.#.png"});
+}
+
 TEST_F(Lens, TurntablesAreThePicturesOfOrbits) {
   succeed(quick("tiny.pbrt", {"--turntable", "4", "-o", "t.#.exr", "--aperture", "8"}));
   EXPECT_EQ(files(), (Words{"bar.obj", "moves.gltf", "t.0.exr", "t.1.exr", "t.2.exr", "t.3.exr", "tiny.pbrt"}));
