@@ -213,6 +213,11 @@ TEST_F(Serve, BadEditsChangeNothing) {
                            R"({"size":[64,-1]})",
                            R"({"size":"64x64"})"})
     EXPECT_EQ(client().post(root_ + "edit", body).status, 400) << body;
+  // An environment that could be read, but was not named when the server was started.
+  Image sky(2, 1, {"R", "G", "B"});
+  sky.pixels.assign(6, 1.0f);
+  write_exr(path("sky.exr"), sky);
+  EXPECT_EQ(client().post(root_ + "edit", R"({"environment":{"source":"sky.exr"}})").status, 400);
   EXPECT_EQ(about(get("frame"))["number"], before["number"]);
 }
 

@@ -43,8 +43,8 @@ class SceneFiles : public testing::Test {
     for (const int i : {0, 1}) {
       file.add("textures", {{"source", i}});
       file.add("materials", {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", i}}}, {"metallicFactor", 0}}}});
-      const std::size_t mesh = file.mesh({{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}, {0, 1, 2, 0, 2, 3},
-                                         static_cast<std::size_t>(i));
+      const std::size_t mesh =
+          file.mesh({{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}, {0, 1, 2, 0, 2, 3}, static_cast<std::size_t>(i));
       file.root["meshes"][mesh]["primitives"][0]["attributes"]["TEXCOORD_0"] =
           file.accessor<float>({0, 0, 1, 0, 1, 1, 0, 1}, 2);
       file.node({{"mesh", mesh}, {"translation", {2 * i, 0, 0}}});
@@ -103,6 +103,33 @@ TEST_F(SceneFiles, NothingIsReadAgain) {
   EXPECT_EQ(picture(scene = build_scene(file.at(0), scene)), first);
   EXPECT_EQ(picture(edit_scene(*scene, {})), first);
   EXPECT_THROW(build_scene(file.at(1)), Error) << "without another scene, its images are read";
+}
+
+// A mesh that is deformed is read before those that are not: at rest the other one comes first.
+TEST_F(SceneFiles, PicturesInTheFileKeepTheirMeshes) {
+  GltfWriter model;
+  for (const int i : {0, 1}) {
+    const std::string bytes = read_file(dir_.path() / (i == 0 ? "inside.png" : "beside.png"));
+    model.add("images", {{"bufferView", model.view(bytes)}, {"mimeType", "image/png"}});
+    model.add("textures", {{"source", i}});
+    model.add("materials", {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", i}}}, {"metallicFactor", 0}}}});
+    model.mesh({{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}}, {0, 1, 2}, static_cast<std::size_t>(i));
+    model.root["meshes"][i]["primitives"][0]["attributes"]["TEXCOORD_0"] = model.accessor<float>({0, 0, 1, 0, 1, 1}, 2);
+  }
+  model.root["meshes"][1]["primitives"][0]["targets"] = {
+      {{"POSITION", model.positions({{0, 1, 0}, {0, 0, 0}, {0, 0, 0}})}}};
+  model.node({{"mesh", 1}, {"translation", {2, 0, 0}}});
+  model.node({{"mesh", 0}});
+  const nlohmann::json sampler = {{"input", model.accessor<float>({0, 1}, 1)},
+                                  {"output", model.accessor<float>({0, 1}, 1)}};
+  model.add("animations", {{"samplers", {sampler}},
+                           {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "weights"}}}}}}});
+  const std::filesystem::path path = dir_.write("morphs.glb", model.binary());
+  SceneFile file(path);
+  const SharedScene rest = build_scene(file.at(0));
+  ReadOptions options;
+  options.at = 1;
+  EXPECT_EQ(picture(build_scene(file.at(1), rest)), picture(build_scene(read_scene(path, options))));
 }
 
 TEST_F(SceneFiles, OfOtherFormatsStandStill) {
