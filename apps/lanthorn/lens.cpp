@@ -110,31 +110,42 @@ PerspectiveCamera& perspective(Camera& camera, const char* option) {
   return *lens;
 }
 
-// A film whose shorter side is 24 mm, as that of 35 mm film: the focal length follows from the angle of view.
-void set_aperture(Camera& camera, float f_number) {
+// A film whose shorter side is 24 mm, as that of 35 mm film: the focal length, in metres, follows from the angle of
+// view.
+float focal_length_of(const PerspectiveCamera& lens) {
   constexpr float half_film = 0.012f;
+  return half_film / std::tan(0.5f * lens.fov * degree);
+}
+
+void set_aperture(Camera& camera, const LensChanges::Aperture& f_number) {
   PerspectiveCamera& lens = perspective(camera, "--aperture");
-  const float focal_length = half_film / std::tan(0.5f * lens.fov * degree);
-  lens.lens_radius = focal_length / (2 * f_number) / CameraAxes(camera).scale;
+  lens.lens_radius = f_number ? focal_length_of(lens) / (2 * *f_number) / CameraAxes(camera).scale : 0;
+}
+
+// Whose place does not follow from what it frames.
+ViewDescription placed(const ViewDescription& view, const ViewOptions& options) {
+  ViewDescription result = view;
+  result.camera.camera_to_world = AnimatedTransform(camera_placement(view, options));
+  result.camera.subject.reset();
+  return result;
 }
 
 // In units of the camera's space. Where nothing is seen, what the camera turns around is sharp.
 float depth_of_focus(const ViewDescription& view, const LensChanges::Focus& focus, const Scene& scene,
                      const ViewOptions& options) {
-  ViewDescription placed = view;
-  placed.camera.camera_to_world = AnimatedTransform(camera_placement(view, options));
-  placed.camera.subject.reset();
-  const CameraAxes axes(placed.camera);
+  const ViewDescription standing = placed(view, options);
+  const Camera& camera = standing.camera;
+  const CameraAxes axes(camera);
   if (focus) return *focus / axes.scale;
-  if (const auto depth = depth_in_middle(scene, placed, options)) return *depth;
-  return glm::length(pivot_of(placed.camera, axes, scene) - placed.camera.camera_to_world.start.point(Point(0))) /
-         axes.scale;
+  if (const auto depth = depth_at(scene, standing, options)) return *depth;
+  return glm::length(pivot_of(camera, axes, scene) - camera.camera_to_world.start.point(Point(0))) / axes.scale;
 }
 
 }  // namespace
 
 void focus(ViewDescription& view, const LensChanges& lens, const Scene& scene, const ViewOptions& options) {
-  if (!lens.focus && !lens.aperture) return;
+  const bool opens_aperture = lens.aperture && *lens.aperture;
+  if (!lens.focus && !opens_aperture) return;
   Camera& camera = view.camera;
   const auto set = [&](float radius, float& distance) {
     if (!(radius > 0))
@@ -154,6 +165,27 @@ void change_lens(ViewDescription& view, const LensChanges& lens, const Scene& sc
   if (lens.orbit) orbit_camera(view, *lens.orbit, scene);
   if (lens.aperture) set_aperture(view.camera, *lens.aperture);
   focus(view, lens, scene, options);
+}
+
+LensNumbers lens_of(const ViewDescription& view) {
+  const Camera& camera = view.camera;
+  const float scale = CameraAxes(camera).scale;
+  if (const auto* const thin = std::get_if<PerspectiveCamera>(&camera.node)) {
+    if (!(thin->lens_radius > 0)) return {.fov = thin->fov};
+    return {thin->fov, focal_length_of(*thin) / (2 * thin->lens_radius * scale), thin->focal_distance * scale};
+  }
+  if (const auto* const parallel = std::get_if<OrthographicCamera>(&camera.node); parallel && parallel->lens_radius > 0)
+    return {.focus = parallel->focal_distance * scale};
+  if (const auto* const real = std::get_if<RealisticCamera>(&camera.node))
+    return {.focus = real->focus_distance * scale};
+  return {};
+}
+
+float focus_at(const ViewDescription& view, const Scene& scene, const ViewOptions& options, const Vec2& pixel) {
+  const ViewDescription standing = placed(view, options);
+  const auto depth = depth_at(scene, standing, options, pixel);
+  if (!depth) throw Error("nothing is seen there that could be sharp");
+  return *depth * CameraAxes(standing.camera).scale;
 }
 
 std::vector<ViewDescription> turntable(const ViewDescription& view, const Scene& scene, std::size_t count) {
@@ -180,24 +212,35 @@ std::vector<ViewDescription> turntable(const ViewDescription& view, const Scene&
   return views;
 }
 
+namespace {
+
+constexpr double narrowest = 0.01, widest = 179, largest_aperture = 0.1, farthest = 1e12;
+
+}  // namespace
+
+ValueType<float> fov_type() { return number_type<float>({narrowest, widest}); }
+ValueType<LensChanges::Aperture> aperture_type() { return number_or_word_type({largest_aperture, farthest}, "off"); }
+ValueType<LensChanges::Focus> focus_type() { return number_or_word_type({1e-9, farthest}, "auto"); }
+
 OptionTable lens_options(LensChanges& lens) {
-  constexpr double narrowest = 0.01, widest = 179, largest_aperture = 0.1, farthest = 1e12;
   return {{.names = "--orbit",
            .value = into(lens.orbit, orbit_type()),
            .brief = "Turn the camera around what it looks at: degrees to the right, and upwards",
            .details = "A model without a camera is framed from there.",
            .excludes = "--look-at"},
           {.names = "--fov",
-           .value = into(lens.fov, number_type<float>({narrowest, widest})),
+           .value = into(lens.fov, fov_type()),
            .brief = "Angle of view over the shorter side of the picture, degrees",
+           .details = "The camera stays where it is. Of a model without a camera it comes nearer or goes farther away, "
+                      "so that the model fills the picture as before.",
            .otherwise = "the scene file's"},
           {.names = "--aperture",
-           .value = into(lens.aperture, number_type<float>({largest_aperture, farthest})),
-           .brief = "f-number of the lens, such as 2.8: smaller numbers blur more outside the focus",
+           .value = into(lens.aperture, aperture_type()),
+           .brief = "f-number of the lens, such as 2.8: smaller numbers blur more outside the focus; off: all is sharp",
            .details = "The scene counts in metres, and the film is 24 mm along its shorter side.",
-           .otherwise = "the scene file's, else a pinhole"},
+           .otherwise = "the scene file's, else off"},
           {.names = "--focus",
-           .value = into(lens.focus, number_or_word_type({1e-9, farthest}, "auto")),
+           .value = into(lens.focus, focus_type()),
            .brief = "Focus distance in metres, or auto: the surface in the middle of the picture",
            .otherwise = "with --aperture auto, else the scene file's"}};
 }

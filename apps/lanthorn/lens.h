@@ -19,12 +19,17 @@ struct Orbit {
 };
 
 struct LensChanges {
-  using Focus = std::optional<float>;  ///< metres; none: what the middle of the picture sees
+  using Aperture = std::optional<float>;  ///< f-number; none: a pinhole
+  using Focus = std::optional<float>;     ///< metres; none: what the middle of the picture sees
   std::optional<Orbit> orbit{};
-  std::optional<float> fov{};       ///< degrees over the shorter side of the picture
-  std::optional<float> aperture{};  ///< f-number
+  std::optional<float> fov{};  ///< degrees over the shorter side of the picture
+  std::optional<Aperture> aperture{};
   std::optional<Focus> focus{};
+  friend bool operator==(const LensChanges&, const LensChanges&) = default;
 };
+ValueType<float> fov_type();
+ValueType<LensChanges::Aperture> aperture_type();
+ValueType<LensChanges::Focus> focus_type();
 
 /// --orbit, --fov, --aperture and --focus.
 OptionTable lens_options(LensChanges& lens);
@@ -33,6 +38,17 @@ OptionTable lens_options(LensChanges& lens);
 /// around the point of its axis that is nearest to the middle of the scene. One that frames a subject frames it from
 /// there. Throws Error for cameras that cannot be changed so.
 void change_lens(ViewDescription& view, const LensChanges& lens, const Scene& scene, const ViewOptions& options);
+
+/// What a lens is by now, as far as the camera has it.
+struct LensNumbers {
+  std::optional<float> fov{};       ///< degrees; none: the camera is not perspective
+  std::optional<float> aperture{};  ///< f-number; none: a pinhole, or not perspective
+  std::optional<float> focus{};     ///< metres; none: all is sharp
+};
+LensNumbers lens_of(const ViewDescription& view);
+/// The distance along the camera's axis to what a pixel of the whole picture sees, metres. Throws Error if that is
+/// nothing.
+float focus_at(const ViewDescription& view, const Scene& scene, const ViewOptions& options, const Vec2& pixel);
 
 /// The view from so many places in equal steps around what the camera looks at, from the view itself to the right. All
 /// are equally far away.

@@ -8,6 +8,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "checkpoint.h"
@@ -47,12 +48,13 @@ void announce_checkpoints(const Checkpoints& checkpoints) {
 }
 
 // Says what the scene decided, where the user did not.
-void announce_color(const RenderCommand& a, const RenderState& state) {
+void announce_color(const RenderCommand& a, const RenderState& state, SaidLines& said) {
   if (a.quiet || a.options.color) return;
   const std::string color = nlohmann::json::parse(summarize(state).settings)["identity"]["color"];
-  say("color {}\n", color == "rgb"
-                        ? "rgb: nothing in the scene disperses light (--color spectral: exact spectra)"
-                        : "spectral: glass disperses light, or spectra are measured (--color rgb: less noise)");
+  const std::string line =
+      color == "rgb" ? "color rgb: nothing in the scene disperses light (--color spectral: exact spectra)\n"
+                     : "color spectral: glass disperses light, or spectra are measured (--color rgb: less noise)\n";
+  if (said.is_new(line)) say("{}", line);
 }
 
 // Asked for, or somebody sits before the terminal.
@@ -104,20 +106,21 @@ void explain_black(const RenderCommand& a, const Scene& scene, const ViewDescrip
 
 // What is checked before the render, and read for it once.
 struct Prepared {
-  SharedScene scene;
+  SharedScene scene;  // without --light
   std::vector<fs::path> outputs;
 };
 
-Prepared prepare(const RenderCommand& a) {
-  SceneDescription description = read_scene(a.scene, a.reading);
+// `like`: the scene of another moment, or null.
+Prepared prepare(const RenderCommand& a, SceneDescription description, const SharedScene& like = {}) {
   check_view(description.view, a.options);
   std::vector<fs::path> outputs = choose_outputs(a, a.scene, description);
   check_files(a, a.scene, description, outputs);
-  return {scale_lights(build_scene(std::move(description)), a.changes.lights), std::move(outputs)};
+  return {build_scene(std::move(description), like), std::move(outputs)};
 }
 
-void render_view(const RenderCommand& a, const Prepared& prepared, const ViewDescription& view) {
-  const auto& [scene, outputs] = prepared;
+void render_view(const RenderCommand& a, const Prepared& prepared, const ViewDescription& view, SaidLines& said) {
+  const std::vector<fs::path>& outputs = prepared.outputs;
+  const SharedScene scene = scale_lights(prepared.scene, a.changes.lights);
   Session session(scene, view, a.options);
   if (!a.resume.empty()) session.resume(open_state(a.resume), a.resume);
   check_states(a, outputs, session);
@@ -129,8 +132,8 @@ void render_view(const RenderCommand& a, const Prepared& prepared, const ViewDes
   if (const auto viewer = viewer_of(a)) onlookers.tev.emplace(*viewer, printable(outputs.front().filename().string()));
   set_stage(Stage::rendering);
   if (onlookers.checkpoints && !a.quiet) announce_checkpoints(*onlookers.checkpoints);
-  announce_color(a, session.state());
-  report_warnings(session.warnings());
+  announce_color(a, session.state(), said);
+  report_warnings(session.warnings(), said);
 
   StopRule stop = session.plan();
   stop.interrupted = &stop_requested();
@@ -158,7 +161,9 @@ ViewDescription first_view(const RenderCommand& a, const Scene& scene) { return 
 // The scene is read and built once: the camera alone moves.
 void render_turntable(const RenderCommand& a) {
   const FrameRange frames = frames_of(a);
-  Prepared prepared = prepare(of_frame(a, frames.begin));
+  const RenderCommand first = of_frame(a, frames.begin);
+  Prepared prepared = prepare(first, read_scene(first.scene, first.reading));
+  SaidLines said;
   const Scene& scene = *prepared.scene;
   std::vector<ViewDescription> views = turntable(first_view(a, scene), scene, *a.turntable);
   for (std::uint64_t i = frames.begin; i < frames.end && !stop_requested(); ++i) {
@@ -166,7 +171,20 @@ void render_turntable(const RenderCommand& a) {
     prepared.outputs = choose_outputs(one, a.scene, description_of(scene));
     check_files(one, a.scene, description_of(scene), prepared.outputs);
     focus(views[i], a.changes.lens, scene, a.options);
-    render_view(one, prepared, views[i]);
+    render_view(one, prepared, views[i], said);
+  }
+}
+
+// The file is read once, and images are shared from moment to moment: what moves is built anew.
+void render_animation(const RenderCommand& a) {
+  SceneFile file(a.scene, a.reading);
+  SharedScene last;
+  SaidLines said;
+  for (std::uint64_t i = a.frames->begin; i < a.frames->end && !stop_requested(); ++i) {
+    const RenderCommand one = of_frame(a, i);
+    const Prepared prepared = prepare(one, file.at(one.reading.at), std::exchange(last, nullptr));
+    render_view(one, prepared, first_view(one, *prepared.scene), said);
+    last = prepared.scene;
   }
 }
 
@@ -176,15 +194,10 @@ void run_render(const RenderCommand& a) {
   const ThreadLimit limit(a.threads);
   if (a.frames || a.turntable) check_frames(a);
   if (a.turntable) return render_turntable(a);
-  if (!a.frames) {
-    const Prepared prepared = prepare(a);
-    return render_view(a, prepared, first_view(a, *prepared.scene));
-  }
-  for (std::uint64_t i = a.frames->begin; i < a.frames->end && !stop_requested(); ++i) {
-    const RenderCommand one = of_frame(a, i);
-    const Prepared prepared = prepare(one);
-    render_view(one, prepared, first_view(one, *prepared.scene));
-  }
+  if (a.frames) return render_animation(a);
+  const Prepared prepared = prepare(a, read_scene(a.scene, a.reading));
+  SaidLines said;
+  render_view(a, prepared, first_view(a, *prepared.scene), said);
 }
 
 }  // namespace

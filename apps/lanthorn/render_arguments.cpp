@@ -55,22 +55,30 @@ OptionTable read_options(ReadOptions& o) {
            .otherwise = "everything is at rest"}};
 }
 
+ValueType<float> environment_rotation_type() {
+  constexpr double most_degrees = 1e6;
+  return number_type<float>({-most_degrees, most_degrees});
+}
+ValueType<float> environment_scale_type() {
+  constexpr double brightest = 1e12;
+  return number_type<float>({0, brightest});
+}
+
 namespace {
 
 OptionTable environment_options(EnvironmentChoice& e) {
-  constexpr double most_degrees = 1e6, brightest = 1e12;
   return {{.names = "--environment",
            .value = into(e.source, existing_file_or_word_type(environment_names())),
            .brief = "Light the scene by a picture of its surroundings, or by studio, overcast or sunny",
            .details = "It takes the place of the scene's environment and of the stand-in studio; lamps stay. Any image "
                       "of 2:1 (equirectangular), 1:1 (octahedral) or of a cube will do. y is up."},
           {.names = "--environment-rotate",
-           .value = into(e.rotation, number_type<float>({-most_degrees, most_degrees})),
+           .value = into(e.rotation, environment_rotation_type()),
            .brief = "Turn the environment, degrees counter-clockwise as seen from above",
            .details = "At 0 the middle of an equirectangular picture lies in the direction +x, at 90 in -z.",
            .otherwise = "0"},
           {.names = "--environment-scale",
-           .value = into(e.scale, number_type<float>({0, brightest})),
+           .value = into(e.scale, environment_scale_type()),
            .brief = "Multiply its light",
            .otherwise = "1"},
           {.names = "--environment-up",

@@ -23,6 +23,9 @@ struct RenderArguments {
 OptionTable render_options(RenderArguments& arguments);
 /// How a scene is read: --sandbox, --missing ...
 OptionTable read_options(ReadOptions& options);
+/// Of --environment-rotate and --environment-scale.
+ValueType<float> environment_rotation_type();
+ValueType<float> environment_scale_type();
 /// --max-pixels: of each picture that is read.
 Option max_pixels_option(std::uint64_t& max_pixels);
 /// --threads. `what`: the picture, the files.

@@ -146,8 +146,11 @@ void check_states(const RenderFiles& a, const std::vector<fs::path>& outputs, co
   if (a.checkpoint_seconds) check_state(a, checkpoint_path(outputs), session.state(), resumed);
 }
 
-void report_warnings(const std::vector<description::Warning>& warnings) {
-  for (const description::Warning& warning : warnings) warn("{}", Error(warning.location, warning.message).what());
+void report_warnings(const std::vector<description::Warning>& warnings, SaidLines& said) {
+  for (const description::Warning& warning : warnings) {
+    const std::string line = Error(warning.location, warning.message).what();
+    if (said.is_new(line)) warn("{}", line);
+  }
 }
 
 void save_render(const RenderFiles& a, const RenderOptions& options, const std::vector<fs::path>& paths,

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -33,8 +34,16 @@ void check_files(const RenderFiles& files, const std::string& scene_file, const 
 /// Refuses to replace states that hold passes which `session` is not going to render.
 void check_states(const RenderFiles& files, const std::vector<std::filesystem::path>& outputs, const Session& session);
 
+/// What the pictures of one command have said: no line is said twice.
+class SaidLines {
+ public:
+  bool is_new(const std::string& line) { return said_.insert(line).second; }
+
+ private:
+  std::set<std::string> said_;
+};
 /// Warnings of the scene and of the method, to standard error.
-void report_warnings(const std::vector<description::Warning>& warnings);
+void report_warnings(const std::vector<description::Warning>& warnings, SaidLines& said);
 
 /// Writes pictures, states and the report; says what it wrote. Throws Error if something could not be written.
 void save_render(const RenderFiles& files, const RenderOptions& options,

@@ -143,19 +143,20 @@ SharedScene scale_lights(const SharedScene& scene, const LightFactors& factors) 
 
 ViewDescription view_of(const Scene& scene, const SceneChanges& changes, const ViewOptions& options) {
   ViewDescription view = description_of(scene).view;
-  LensChanges lens = changes.lens;
-  if (changes.look) {
-    place_camera(view, *changes.look, description_of(scene).origin);
-    lens.orbit.reset();
-  }
-  change_lens(view, lens, scene, options);
+  if (changes.look) place_camera(view, *changes.look, description_of(scene).origin);
+  change_lens(view, changes.lens, scene, options);
   return view;
 }
 
-SceneChanges moved(SceneChanges changes, const std::optional<LookAt>& look, LightFactors lights) {
+void move_camera(SceneChanges& changes, const LookAt& look) {
   changes.look = look;
+  changes.lens.orbit.reset();
+}
+
+SceneChanges moved(SceneChanges changes, const std::optional<LookAt>& look, LightFactors lights) {
+  changes.look.reset();
+  if (look) move_camera(changes, *look);
   changes.lights = std::move(lights);
-  if (look) changes.lens.orbit.reset();
   return changes;
 }
 

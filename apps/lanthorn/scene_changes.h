@@ -41,6 +41,8 @@ struct SceneChanges {
   LightFactors lights{};
   LensChanges lens{};
 };
+/// Places the camera, which then no longer orbits.
+void move_camera(SceneChanges& changes, const LookAt& look);
 /// The scene's own view with the camera of `changes`. A camera that has moved does not orbit.
 ViewDescription view_of(const Scene& scene, const SceneChanges& changes, const ViewOptions& options = {});
 /// Replaces the camera and the lights in `changes` and keeps the lens. With a given camera, the orbit is dropped.

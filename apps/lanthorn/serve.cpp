@@ -49,6 +49,7 @@ std::string command_of(const ServeCommand& a, const ViewerScene& scene, std::uin
   render.options.seconds.reset();
   render.options.noise.reset();
   render.options.passes = passes;
+  render.reading.environment = scene.environment;
   render.changes = scene.changes;
   std::erase_if(render.changes.lights, [](const auto& light) { return light.second == 1; });
   render.outputs = {"picture.exr"};
@@ -109,8 +110,10 @@ void run_serve(const ServeCommand& a) {
   const std::vector<fs::path> outputs(a.outputs.begin(), a.outputs.end());
   if (!outputs.empty()) check_files(a, a.scene, description, outputs);
   const auto command = [&a](const ViewerScene& shown, std::uint64_t passes) { return command_of(a, shown, passes); };
-  Viewer viewer(build_scene(std::move(description)), {command, {a.changes, a.options}, !outputs.empty()});
-  report_warnings(viewer.warnings());
+  Viewer viewer(build_scene(std::move(description)),
+                {command, {a.changes, a.options, a.reading.environment}, !outputs.empty()});
+  SaidLines said;
+  report_warnings(viewer.warnings(), said);
   const std::string token = random_token();
   const ViewService service(viewer, a.output, title_of(a.scene), token, is_loopback(a.address) ? "" : host_name());
   const HttpServer server(a.address, a.port, [&service](const HttpRequest& request, const IsGone& is_gone) {
@@ -156,9 +159,9 @@ void add_serve(CLI::App& app) {
   const auto a = std::make_shared<ServeCommand>();
   constexpr const char* footer =
       "The page shows the picture as it refines, moves the camera (drag: around what is in the middle; shift or right\n"
-      "button: sideways; wheel: nearer and farther), dims lights, chooses method, size, layer, exposure and tone "
-      "curve,\nsaves the picture "
-      "and gives the command line that renders it. Its address holds a random token: without it, nothing can be "
+      "button: sideways; wheel: nearer and farther), sets lens and environment, dims lights, chooses method, size,\n"
+      "layer, exposure and tone curve, saves the picture and gives the command line that renders it. Its address holds "
+      "a random token: without it, nothing can be "
       "read.\n"
       "From another machine: ssh -L 8080:localhost:8080 MACHINE, then open the address there. Nothing is rendered "
       "while\n"

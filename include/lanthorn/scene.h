@@ -20,21 +20,6 @@
 
 namespace lanthorn {
 
-enum class UpAxis : std::uint8_t { y, z };
-
-/// An environment in place of a scene's own.
-struct EnvironmentChoice {
-  /// One of `environment_names`, or an image file in any layout that `read_environment` (ibl.h) reads, wherever it
-  /// lies.
-  std::string source{};
-  float rotation = 0;  ///< degrees around the axis upwards, counter-clockwise as seen from above
-  float scale = 1;     ///< factor of radiance
-  /// None: +y. Of pbrt files, whose worlds have no direction upwards, +y or +z, whichever is nearer to the camera's;
-  /// a warning says which.
-  std::optional<UpAxis> up{};
-  friend bool operator==(const EnvironmentChoice&, const EnvironmentChoice&) = default;
-};
-
 /// How a scene is read, and how far its file is trusted.
 struct ReadOptions {
   /// Reads only files in the tree of the scene file's folder; error messages show no content of files.
@@ -47,7 +32,7 @@ struct ReadOptions {
   bool window_glass = false;        ///< calls `replace_window_glass`
   std::optional<double> at{};       ///< seconds into the first animation of a glTF file; none: everything is at rest
   std::string camera{};             ///< of a glTF file: name, or number from 1 on; empty: the first one
-  EnvironmentChoice environment{};  ///< without source: the scene's own; else calls `replace_environment`
+  EnvironmentChoice environment{};  ///< calls `replace_environment`, unless it is the scene's own
 };
 
 /// Reads a scene file by its extension: .pbrt (pbrt-v4 and v3), .gltf and .glb (glTF 2.0), .obj (Wavefront), each also
@@ -55,6 +40,23 @@ struct ReadOptions {
 /// Throws Error with its place (file, line and column; in glTF files file and JSON pointer) if the file, or one that it
 /// names, is wrong.
 SceneDescription read_scene(const std::filesystem::path& path, const ReadOptions& options = {});
+
+/// A scene file of which several moments are wanted: it is read once.
+class SceneFile {
+ public:
+  /// Throws Error as `read_scene`. `ReadOptions::at` is not looked at.
+  explicit SceneFile(const std::filesystem::path& path, const ReadOptions& options = {});
+  ~SceneFile();
+  SceneFile(const SceneFile&) = delete;
+  SceneFile& operator=(const SceneFile&) = delete;
+
+  /// The scene at this time in its animation, as `ReadOptions::at` says it. Throws Error as `read_scene`.
+  SceneDescription at(const std::optional<double>& seconds);
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
 
 /// True if the name ends as those of files that `read_scene` reads.
 bool is_scene_file(const std::filesystem::path& path);
@@ -75,11 +77,12 @@ std::size_t replace_window_glass(SceneDescription& scene);
 void move_origin(SceneDescription& scene);
 /// Names of environments that need no file.
 std::vector<std::string> environment_names();
-/// Puts an environment in the place of all infinite lights of a scene. +y of a picture is up; the middle of an
-/// equirectangular one is in the direction +x, and what is to its right in +z. Its camera sees it as it is, not
-/// mirrored. Throws Error if the file cannot be read, or has another shape or more pixels.
-void replace_environment(SceneDescription& scene, const EnvironmentChoice& choice,
-                         std::uint64_t max_pixels = FileAccess::default_max_pixels);
+/// Puts an environment in the place of all infinite lights of a scene, or of the environment that an earlier call put
+/// there. +y of a picture is up; the middle of an equirectangular one is in the direction +x, and what is to its right
+/// in +z. The scene's camera sees it as it is, not mirrored. Without `EnvironmentChoice::source`, the scene gets back
+/// the lights that it had before the first call. A source is read once: calls that turn or scale it share its picture.
+/// Throws Error if the file cannot be read, or has another shape or more pixels than the scene's `access` allows.
+void replace_environment(SceneDescription& scene, const EnvironmentChoice& choice);
 
 /// Reads the text of a pbrt file. Relative file names start in `folder`; messages call the text `name`.
 SceneDescription read_pbrt_string(std::string_view text, const std::filesystem::path& folder, const std::string& name);
@@ -108,15 +111,18 @@ struct LookAt {
   friend bool operator==(const LookAt&, const LookAt&) = default;
 };
 
-/// Throws Error at the location of an error in the description.
-SharedScene build_scene(SceneDescription description);
+/// `like`: a scene from the same `SceneFile`. The new one shares its images and does not read them again. Throws Error
+/// at the location of an error in the description.
+SharedScene build_scene(SceneDescription description, const SharedScene& like = {});
 
 /// Replacements, by index into the vectors of the same names of a scene's description (`description_of`).
 struct SceneEdits {
-  std::map<description::Index, description::Material> materials;
-  std::map<description::Index, description::AreaLight> area_lights;
-  std::map<description::Index, description::Light> lights;
-  std::map<description::Index, AnimatedTransform> instances;  ///< object to world
+  std::map<description::Index, description::Material> materials{};
+  std::map<description::Index, description::AreaLight> area_lights{};
+  std::map<description::Index, description::Light> lights{};
+  std::map<description::Index, AnimatedTransform> instances{};  ///< object to world
+  /// As `replace_environment`; `lights` are those after it.
+  std::optional<EnvironmentChoice> environment{};
   /// A number of your own for these edits of this scene, if states of the edited scene shall be resumed by another
   /// process.
   std::optional<std::uint64_t> hash{};
@@ -167,9 +173,11 @@ struct SceneModel {
 /// squares; curves become tubes. Displacement is applied. Does not need the scene's file.
 SceneModel model_of(const Scene& scene);
 
-/// How far before the camera the nearest surface lies that the middle of the picture sees, in the units of the camera's
-/// space, for `focal_distance`. nullopt if it sees none. Throws Error as `check_view` does.
-std::optional<float> depth_in_middle(const Scene& scene, const ViewDescription& view, const ViewOptions& options = {});
+/// How far before the camera, along its axis, the nearest surface lies that a pixel of the whole picture sees; none:
+/// the picture's middle. In the units of the camera's space, for `focal_distance`. nullopt if it sees none. Throws
+/// Error as `check_view` does.
+std::optional<float> depth_at(const Scene& scene, const ViewDescription& view, const ViewOptions& options = {},
+                              const std::optional<Vec2>& pixel = {});
 
 /// What a scene, seen like this, asks for and does not get: warnings of reading and of building, and media that
 /// contradict each other along rays from the camera and to the lights.

@@ -515,7 +515,8 @@ struct InfiniteLight {
 
   Emission radiance;
   std::optional<std::string> image;
-  std::optional<SphericalTexels> texels;  ///< an image that is no file, in linear sRGB; instead of `image`
+  /// An image that is no file, in linear sRGB; instead of `image`. Shared by copies of the scene.
+  std::shared_ptr<const SphericalTexels> texels;
   ColorSpace image_space = ColorSpace::srgb;
   std::optional<float> illuminance;
   /// Corners of a rectangle, in order around it, in world space whatever the light's transformation. Light passes only
@@ -645,6 +646,21 @@ struct ViewDescription {
   description::Filter filter;
 };
 
+enum class UpAxis : std::uint8_t { y, z };
+
+/// An environment in place of a scene's own.
+struct EnvironmentChoice {
+  /// One of `environment_names`, or an image file in any layout that `read_environment` (ibl.h) reads, wherever it
+  /// lies. Empty: the scene's own.
+  std::string source{};
+  float rotation = 0;  ///< degrees around the axis upwards, counter-clockwise as seen from above
+  float scale = 1;     ///< factor of radiance
+  /// None: +y. Of pbrt files, whose worlds have no direction upwards, +y or +z, whichever is nearer to the camera's;
+  /// a warning says which.
+  std::optional<UpAxis> up{};
+  friend bool operator==(const EnvironmentChoice&, const EnvironmentChoice&) = default;
+};
+
 struct SceneDescription {
   std::string filename;
   std::uint64_t hash = 0;                          ///< hash of the scene file's text
@@ -663,6 +679,8 @@ struct SceneDescription {
   std::vector<description::Object> objects;
   std::vector<description::Instance> instances;
   std::vector<description::Light> lights;
+  EnvironmentChoice environment;               ///< what `replace_environment` put in the place of the scene's own
+  std::vector<description::Light> own_lights;  ///< `lights` as they were before it did; else empty
   std::vector<description::Warning> warnings;
   ColorSpace color_space = ColorSpace::srgb;  ///< of the film; its white is that of lights given as numbers
   /// Where the origin of all coordinates here lies in the coordinates of the file, metres: see `move_origin`.

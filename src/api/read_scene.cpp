@@ -2,11 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/read_scene.h"
 
-#include <bit>
-#include <cstdint>
-#include <span>
-#include <string>
+#include <optional>
 
+#include "io/replace_environment.h"
 #include "lanthorn/error.h"
 #include "lanthorn/scene.h"
 #include "math/hash.h"
@@ -14,26 +12,24 @@
 
 namespace lanthorn {
 
-namespace {
+struct SceneFile::Parts {
+  SceneSource source;
+  std::filesystem::path path;
+  ReadOptions options;
+  std::optional<EnvironmentPicture> environment{};
+};
 
-// Another environment makes another scene. Files have hashes of their own.
-void add_environment_to_hash(SceneDescription& scene, const EnvironmentChoice& e) {
-  constexpr std::uint64_t is_environment = 2;
-  if (e.source.empty()) return;
-  const std::string name = std::filesystem::path(e.source).filename().string();
-  const std::uint64_t up = e.up ? static_cast<std::uint64_t>(*e.up) : 2;
-  scene.hash = hash_words({scene.hash, is_environment, std::bit_cast<std::uint32_t>(e.rotation),
-                           std::bit_cast<std::uint32_t>(e.scale), up, hash_bytes(std::as_bytes(std::span(name)))});
-}
-
-}  // namespace
-
-SceneDescription read_scene(const std::filesystem::path& path, const ReadOptions& options) {
+SceneFile::SceneFile(const std::filesystem::path& path, const ReadOptions& options)
+    : parts_(new Parts{{path, options, method_of_file}, path, options}) {
   const EnvironmentChoice& environment = options.environment;
   if (environment.source.empty() && !(environment == EnvironmentChoice()))
     throw Error("--environment-rotate, -scale, -up: expected --environment FILE, which they are about");
-  SceneDescription scene = read_scene_file(path, options, method_of_file);
-  add_environment_to_hash(scene, environment);
+}
+SceneFile::~SceneFile() = default;
+
+SceneDescription SceneFile::at(const std::optional<double>& seconds) {
+  auto& [source, path, options, environment] = *parts_;
+  SceneDescription scene = source.read(seconds);
   if (options.window_glass) {
     if (replace_window_glass(scene) == 0)
       scene.warnings.push_back(
@@ -41,7 +37,14 @@ SceneDescription read_scene(const std::filesystem::path& path, const ReadOptions
     scene.hash = hash_words({scene.hash, 1});  // another scene
   }
   move_origin(scene);
+  if (options.environment.source.empty()) return scene;
+  if (!environment) environment = read_environment_picture(options.environment, options.max_pixels);
+  replace_environment(scene, options.environment, *environment);
   return scene;
+}
+
+SceneDescription read_scene(const std::filesystem::path& path, const ReadOptions& options) {
+  return SceneFile(path, options).at(options.at);
 }
 
 SceneDescription read_pbrt_string(std::string_view text, const std::filesystem::path& folder, const std::string& name) {

@@ -84,6 +84,7 @@ void move_origin(SceneDescription& scene) {
   for (description::Shape& shape : scene.shapes) mover.move(shape.object_to_world);
   for (description::Instance& instance : scene.instances) mover.move(instance.object_to_world);
   for (description::Light& light : scene.lights) mover.move(light);
+  for (description::Light& light : scene.own_lights) mover.move(light);
   mover.move(scene.view.camera.camera_to_world);
   scene.origin += origin;
 }

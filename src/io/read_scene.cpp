@@ -6,11 +6,13 @@
 #include <bit>
 #include <cstddef>
 #include <map>
+#include <memory>
 #include <new>
 #include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/parallel.h"
@@ -45,13 +47,8 @@ void hash_files(std::map<std::string, description::File>& files, const FileAcces
   parallel_for(std::size_t{0}, all.size(), [&](std::size_t i) { all[i]->hash = hash_file(all[i]->path, access); });
 }
 
-SceneDescription lit(SceneDescription scene, const ReadOptions& options) {
-  if (!options.environment.source.empty()) replace_environment(scene, options.environment, options.max_pixels);
-  return scene;
-}
 SceneDescription completed(ModelFile model, const ReadOptions& options) {
-  model.scene = lit(std::move(model.scene), options);
-  if (!options.environment.source.empty()) model.lacking.light = false;
+  model.lacking.gets_environment = !options.environment.source.empty();
   return with_stand_ins(std::move(model));
 }
 
@@ -60,12 +57,20 @@ std::string scene_extension(const std::filesystem::path& path) {
   return lower_extension(lower_extension(path) == ".gz" ? path.stem() : path);
 }
 
-// Completes the scene description: hash and files, and the access through which its other files will be read.
-SceneDescription finished(SceneDescription scene, std::string_view bytes, const FileAccess& access) {
+// Completes the scene description: hash and files, and the access through which its other files will be read. `known`:
+// files that have been read before.
+SceneDescription finished(SceneDescription scene, std::string_view bytes, const FileAccess& access,
+                          const std::map<std::string, description::File>& known = {}) {
   scene.hash = hash_bytes(std::as_bytes(std::span(bytes)));
   scene.access = access;
+  for (const auto& [name, file] : known) scene.files.insert_or_assign(name, file);
   hash_files(scene.files, access);
   return scene;
+}
+
+bool is_gltf(const std::filesystem::path& path) {
+  const std::string extension = scene_extension(path);
+  return extension == ".gltf" || extension == ".glb";
 }
 
 void refuse_utf16(std::string_view bytes, const std::string& name) {
@@ -119,35 +124,42 @@ bool is_scene_file(const std::filesystem::path& path) {
   return extension == ".pbrt" || extension == ".gltf" || extension == ".glb" || extension == ".obj";
 }
 
-SceneDescription read_scene_file(const std::filesystem::path& path, const ReadOptions& options,
-                                 const FindMethod& methods) {
-  const std::string name = path.string();
-  const std::string extension = scene_extension(path);
-  const bool is_gltf = extension == ".gltf" || extension == ".glb";
+SceneSource::SceneSource(const std::filesystem::path& path, const ReadOptions& options, FindMethod methods)
+    : name_(path.string()),
+      folder_(path.parent_path()),
+      options_(options),
+      methods_(std::move(methods)),
+      access_(access_for(folder_, options)) {
   if (!is_scene_file(path))
-    throw Error(name +
+    throw Error(name_ +
                 ": not a kind of scene file that Lanthorn reads (.pbrt, .gltf, .glb, .obj, all of them also as .gz)");
-  const std::filesystem::path folder = path.parent_path();
-  if (options.at && !is_gltf) throw Error(name + ": --at, --frames: only glTF files have animations");
-  if (!options.camera.empty() && !is_gltf) throw Error(name + ": --camera: only glTF files have several cameras");
-  const FileAccess access = access_for(folder, options);
-  return discreet(access, name, [&] {
-    const std::string bytes = decompressed(access.read(path), name);
-    refuse_utf16(bytes, name);
-    if (is_gltf) {
-      SceneDescription model = finished(
-          completed(gltf::read(bytes, folder, name, reader(access), {options.at, options.camera}, &access), options),
-          bytes, access);
-      if (!options.camera.empty())
-        model.hash = hash_words({model.hash, hash_bytes(std::as_bytes(std::span(options.camera)))});
-      if (options.at) model.hash = hash_words({model.hash, std::bit_cast<std::uint64_t>(*options.at)});
-      return model;
-    }
-    const FileReader read = decompressing_reader(access);
-    return finished(extension == ".obj" ? completed(obj::read(bytes, folder, name, read, &access), options)
-                                        : lit(pbrt::read(bytes, folder, name, methods, read, &access), options),
-                    bytes, access);
+  if (!options.camera.empty() && !is_gltf(path))
+    throw Error(name_ + ": --camera: only glTF files have several cameras");
+}
+SceneSource::~SceneSource() = default;
+
+SceneDescription SceneSource::read(const std::optional<double>& seconds) {
+  if (seconds && !is_gltf(name_)) throw Error(name_ + ": --at, --frames: only glTF files have animations");
+  SceneDescription scene = discreet(access_, name_, [&] {
+    if (bytes_.empty()) bytes_ = decompressed(access_.read(name_), name_);
+    refuse_utf16(bytes_, name_);
+    if (is_gltf(name_)) return finished(read_model(seconds), bytes_, access_, files_);
+    const FileReader read = decompressing_reader(access_);
+    return finished(scene_extension(name_) == ".obj"
+                        ? completed(obj::read(bytes_, folder_, name_, read, &access_), options_)
+                        : pbrt::read(bytes_, folder_, name_, methods_, read, &access_),
+                    bytes_, access_, files_);
   });
+  files_ = scene.files;
+  if (!options_.camera.empty())
+    scene.hash = hash_words({scene.hash, hash_bytes(std::as_bytes(std::span(options_.camera)))});
+  if (seconds) scene.hash = hash_words({scene.hash, std::bit_cast<std::uint64_t>(*seconds)});
+  return scene;
+}
+
+SceneDescription SceneSource::read_model(const std::optional<double>& seconds) {
+  if (!gltf_) gltf_ = std::make_unique<gltf::File>(bytes_, folder_, name_, reader(access_), &access_);
+  return completed(gltf_->read({seconds, options_.camera}), options_);
 }
 
 UpgradedScene upgrade_pbrt(const std::filesystem::path& path, const std::filesystem::path& target,

@@ -4,6 +4,9 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -12,9 +15,32 @@
 
 namespace lanthorn {
 
-/// `read_scene`, except that `ReadOptions::window_glass` is not looked at.
-SceneDescription read_scene_file(const std::filesystem::path& path, const ReadOptions& options,
-                                 const FindMethod& methods);
+namespace gltf {
+class File;
+}  // namespace gltf
+
+/// `SceneFile`, except that `ReadOptions::window_glass` and the environment are not looked at.
+class SceneSource {
+ public:
+  SceneSource(const std::filesystem::path& path, const ReadOptions& options, FindMethod methods);
+  ~SceneSource();
+  SceneSource(const SceneSource&) = delete;
+  SceneSource& operator=(const SceneSource&) = delete;
+
+  SceneDescription read(const std::optional<double>& seconds);
+
+ private:
+  SceneDescription read_model(const std::optional<double>& seconds);
+
+  std::string name_;
+  std::filesystem::path folder_;
+  ReadOptions options_;
+  FindMethod methods_;
+  FileAccess access_;
+  std::string bytes_;
+  std::unique_ptr<gltf::File> gltf_;                // of glTF files, once it is parsed
+  std::map<std::string, description::File> files_;  // the scene's other files, as they were when it was read first
+};
 /// `read_pbrt_string`.
 SceneDescription read_pbrt_text(std::string_view text, const std::filesystem::path& folder, const std::string& name,
                                 const FindMethod& methods);

@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
+#include "io/replace_environment.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,7 +9,9 @@
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <span>
+#include <string>
 #include <utility>
 #include <variant>
 
@@ -69,15 +73,10 @@ SphericalTexels unrolled(const Image& strip) {
   return texels;
 }
 
-struct LightImage {
-  SphericalTexels texels;
-  bool is_octahedral = false;
-};
-
-LightImage light_image(const Image& image) {
-  const EnvironmentLayout layout = *layout_of(image);
-  if (layout == EnvironmentLayout::cube) return {unrolled(image)};
-  return {{image.width, image.height, colours_of(image)}, layout == EnvironmentLayout::octahedral};
+// The picture of an environment. One whose layout is octahedral is square.
+std::shared_ptr<const SphericalTexels> picture_of(const Image& image) {
+  if (*layout_of(image) == EnvironmentLayout::cube) return std::make_shared<const SphericalTexels>(unrolled(image));
+  return std::make_shared<const SphericalTexels>(SphericalTexels{image.width, image.height, colours_of(image)});
 }
 
 // The camera's direction upwards tells more of a pbrt file's world than anything else in it.
@@ -125,34 +124,74 @@ void replace_lights(std::vector<Light>& lights, Light light) {
 // A file of its own, whatever the scene calls its files.
 std::string name_of_file(const EnvironmentChoice& choice) { return "--environment " + choice.source; }
 
-}  // namespace
+// That of the environment that the scene has by now; null if it is another one.
+std::shared_ptr<const SphericalTexels> known_picture(const SceneDescription& scene, const EnvironmentChoice& choice) {
+  if (scene.environment.source != choice.source) return nullptr;
+  const auto light = std::find_if(scene.lights.begin(), scene.lights.end(), is_environment);
+  return light == scene.lights.end() ? nullptr : std::get<InfiniteLight>(light->node).texels;
+}
 
-void replace_environment(SceneDescription& scene, const EnvironmentChoice& choice, std::uint64_t max_pixels) {
+UpAxis axis_upwards(SceneDescription& scene, const EnvironmentChoice& choice) {
+  if (choice.up) return *choice.up;
+  if (extension_of(scene) != ".pbrt") return UpAxis::y;
+  const UpAxis up = axis_upwards(scene.view.camera);
+  std::string message = fmt::format(
+      "--environment: +{0} is up, because the camera's upward direction is nearer to it than to {1}; "
+      "--environment-up {1} says otherwise",
+      up == UpAxis::z ? 'z' : 'y', up == UpAxis::z ? 'y' : 'z');
+  if (std::none_of(scene.warnings.begin(), scene.warnings.end(),
+                   [&](const Warning& w) { return w.message == message; }))
+    scene.warnings.push_back({{printable(scene.filename)}, std::move(message)});
+  return up;
+}
+
+// As it was before any environment took the place of its own.
+void restore_environment(SceneDescription& scene) {
+  if (scene.environment.source.empty()) return;
+  scene.files.erase(name_of_file(scene.environment));
+  scene.lights = std::move(scene.own_lights);
+  scene.own_lights.clear();
+  scene.environment = {};
+}
+
+void check(const EnvironmentChoice& choice) {
   if (!(choice.scale >= 0 && std::isfinite(choice.scale) && std::isfinite(choice.rotation)))
     throw Error("--environment-rotate, --environment-scale: expected finite numbers, and a scale of 0 or more");
-  std::optional<Image> own = own_environment(choice.source);
-  if (!own) {
-    const std::string bytes = read_file(choice.source);
-    File& file = scene.files[name_of_file(choice)];
-    file.path = choice.source;
-    file.hash = hash_bytes(std::as_bytes(std::span(bytes)));
-  }
-  LightImage image = light_image(own ? std::move(*own) : read_environment({choice.source}, max_pixels));
-  const bool is_pbrt = choice.up == std::nullopt && extension_of(scene) == ".pbrt";
-  const UpAxis up = choice.up.value_or(is_pbrt ? axis_upwards(scene.view.camera) : UpAxis::y);
-  if (is_pbrt)
-    scene.warnings.push_back(
-        {{scene.filename},
-         fmt::format("--environment: +{} is up, because the camera's upward direction is nearer to "
-                     "it than to {}; --environment-up {} says otherwise",
-                     up == UpAxis::z ? 'z' : 'y', up == UpAxis::z ? 'y' : 'z', up == UpAxis::z ? 'y' : 'z')});
+}
+
+}  // namespace
+
+EnvironmentPicture read_environment_picture(const EnvironmentChoice& choice, std::uint64_t max_pixels) {
+  if (const std::optional<Image> own = own_environment(choice.source)) return {picture_of(*own), {}};
+  File file;
+  file.path = choice.source;
+  const std::string bytes = read_file(file.path);
+  file.hash = hash_bytes(std::as_bytes(std::span(bytes)));
+  return {picture_of(read_environment({choice.source}, max_pixels)), std::move(file)};
+}
+
+void replace_environment(SceneDescription& scene, const EnvironmentChoice& choice, const EnvironmentPicture& picture) {
+  check(choice);
+  if (scene.environment.source.empty()) scene.own_lights = scene.lights;
+  if (scene.environment.source != choice.source) scene.files.erase(name_of_file(scene.environment));
+  if (picture.file) scene.files[name_of_file(choice)] = *picture.file;
   Light light;
-  light.light_to_world = placement(scene, choice, up, image.is_octahedral);
+  const bool is_octahedral = picture.texels->width == picture.texels->height;
+  light.light_to_world = placement(scene, choice, axis_upwards(scene, choice), is_octahedral);
   light.location.file = scene.filename;
   InfiniteLight& environment = light.node.emplace<InfiniteLight>();
-  environment.texels = std::move(image.texels);
+  environment.texels = picture.texels;
   environment.radiance.scale = choice.scale;
   replace_lights(scene.lights, std::move(light));
+  scene.environment = choice;
+}
+
+void replace_environment(SceneDescription& scene, const EnvironmentChoice& choice) {
+  check(choice);
+  if (choice.source.empty()) return restore_environment(scene);
+  EnvironmentPicture picture{known_picture(scene, choice), {}};
+  if (!picture.texels) picture = read_environment_picture(choice, scene.access.max_pixels);
+  replace_environment(scene, choice, picture);
 }
 
 }  // namespace lanthorn

@@ -3,6 +3,8 @@
 #include "io/stand_ins.h"
 
 #include <cmath>
+#include <memory>
+#include <string>
 #include <utility>
 #include <variant>
 
@@ -59,16 +61,17 @@ void add_studio(SceneDescription& scene) {
   constexpr int width = 256, height = width / 2;
   const auto texels = static_cast<std::size_t>(width) * height;
   InfiniteLight studio;
-  studio.texels = SphericalTexels{width, height, {}};
-  studio.texels->rows.reserve(texels);
+  SphericalTexels picture{width, height, {}};
+  picture.rows.reserve(texels);
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x) {
       const float phi = 2 * pi * (static_cast<float>(x) + 0.5f) / width;
       const float theta = pi * (static_cast<float>(y) + 0.5f) / height;
       const float radiance =
           studio_radiance({std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)});
-      studio.texels->rows.push_back({radiance, radiance, radiance});
+      picture.rows.push_back({radiance, radiance, radiance});
     }
+  studio.texels = std::make_shared<const SphericalTexels>(std::move(picture));
   const Vec3 seen = scene.view.camera.camera_to_world.start.vector({0, 0, -1});
   const Vec3 level(seen.x, 0, seen.z);
   const Direction towards = length_squared(level) > 0 ? normalize(level) : Direction(0, 0, 1);
@@ -77,6 +80,22 @@ void add_studio(SceneDescription& scene) {
   light.light_to_world = Transform(Mat4(glm::vec4(towards, 0), glm::vec4(cross({0, 1, 0}, towards), 0),
                                         glm::vec4(0, 1, 0, 0), glm::vec4(0, 0, 0, 1)));
   light.location.file = scene.filename;
+}
+
+// What stands in. The user's environment is not one of these things.
+std::string message_of(const StandIns& lacking, const std::optional<StandInView>& view) {
+  const bool is_inside = view && view->inside, hides_lights = view && view->hides_lights;
+  const bool has_studio = !lacking.gets_environment && !is_inside;
+  const std::string studio = "a studio of three soft lamps";
+  if (!view) return has_studio ? "the file has no light: " + studio + " stands in" : "";
+  std::string text = lacking.has_blind_camera ? "the file has no camera that sees anything" : "the file has no camera";
+  if (hides_lights) text += ", and its lights are enclosed in closed meshes, whose outside they do not light";
+  const bool has_lamp = lacking.light && is_inside, is_in_studio = (lacking.light || hides_lights) && has_studio;
+  if (lacking.light && (has_lamp || is_in_studio)) text += " and no light";
+  text += std::string(is_inside ? ": a view " : ": a view of all of it ") + view->name;
+  if (has_lamp) text += ", lit by a lamp in the room,";
+  if (is_in_studio) text += ", in " + studio + ",";
+  return text + " stands in";
 }
 
 }  // namespace
@@ -95,36 +114,21 @@ bool is_lit_by(const SceneDescription& scene, std::span<const Index> lamps) {
 }
 
 void add_stand_ins(SceneDescription& scene, const StandIns& lacking) {
-  scene.view.film.measures_exposure = !lacking.light;
+  scene.view.film.measures_exposure = !lacking.light || lacking.gets_environment;
   if (!lacking.camera && !lacking.light) return;
   std::optional<StandInView> view;
   if (lacking.camera) {
     view = stand_in_view(scene, lacking.one_sided, !lacking.light);
     add_camera(scene, *view);
   }
-  const bool is_inside = view && view->inside, hides_lights = view && view->hides_lights;
-  if (lacking.light && is_inside) {
+  if (lacking.light && view && view->inside) {
     add_lamp(scene, *view->inside);
     scene.view.film.measures_exposure = true;  // walls may be close to the lamp
-  } else if (lacking.light || hides_lights) {
+  } else if (lacking.light || (view && view->hides_lights)) {
     add_studio(scene);
   }
-  Warning& warning = scene.warnings.emplace_back();
-  warning.location.file = scene.filename;
-  const std::string no_camera =
-      lacking.has_blind_camera ? "the file has no camera that sees anything" : "the file has no camera";
-  const std::string shown = view ? std::string(is_inside ? "a view " : "a view of all of it ") + view->name : "";
-  const std::string lit = is_inside ? "lit by a lamp in the room" : "in a studio of three soft lamps";
-  if (hides_lights)
-    warning.message = no_camera +
-                      ", and its lights are enclosed in closed meshes, whose outside they do not light: " + shown +
-                      ", " + lit + ", stands in";
-  else if (!lacking.light)
-    warning.message = no_camera + ": " + shown + " stands in";
-  else if (!lacking.camera)
-    warning.message = "the file has no light: a studio of three soft lamps stands in";
-  else
-    warning.message = no_camera + " and no light: " + shown + ", " + lit + ", stands in";
+  const std::string message = message_of(lacking, view);
+  if (!message.empty()) scene.warnings.push_back({{scene.filename}, message});
 }
 
 SceneDescription with_stand_ins(ModelFile file) {

@@ -20,6 +20,7 @@ struct StandIns {
   bool camera = false, light = false;
   OneSided one_sided = {};
   bool has_blind_camera = false;  ///< `camera`: it has one, which sees nothing
+  bool gets_environment = false;  ///< the user's will take the place of the studio
 };
 
 /// What a reader of models returns.
@@ -28,7 +29,8 @@ struct ModelFile {
   StandIns lacking;
 };
 
-/// Gives the scene what it lacks; one warning says so.
+/// Gives the scene what it lacks; one warning says so. The user's environment changes nothing of where the camera
+/// stands, and takes the place of the studio alone.
 ///
 /// The camera has a field of view of 40 degrees and +y up, and frames all triangle meshes whatever the film's aspect
 /// ratio, from the best side (see `stand_in_view`). In a closed room it stands inside, with 60 degrees, and an

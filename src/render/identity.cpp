@@ -5,12 +5,15 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <bit>
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <system_error>
 #include <variant>
@@ -111,6 +114,17 @@ class ViewNumbers {
   std::vector<double> numbers_;
 };
 
+// Another environment makes another scene. Files have hashes of their own.
+std::uint64_t hash_of(const SceneDescription& scene) {
+  constexpr std::uint64_t is_environment = 2;
+  const EnvironmentChoice& e = scene.environment;
+  if (e.source.empty()) return scene.hash;
+  const std::string name = std::filesystem::path(e.source).filename().string();
+  const std::uint64_t up = e.up ? static_cast<std::uint64_t>(*e.up) : 2;
+  return hash_words({scene.hash, is_environment, std::bit_cast<std::uint32_t>(e.rotation),
+                     std::bit_cast<std::uint32_t>(e.scale), up, hash_bytes(std::as_bytes(std::span(name)))});
+}
+
 // What must be equal for two states to belong together.
 nlohmann::json identity(const Scene& scene, const ViewDescription& view, const RenderPlan& plan) {
   const SceneDescription& description = scene.description();
@@ -119,7 +133,7 @@ nlohmann::json identity(const Scene& scene, const ViewDescription& view, const R
   const PixelWindow& window = plan.view.window;
   nlohmann::json result{
       {"version", version},
-      {"scene_hash", hash_text(description.hash)},
+      {"scene_hash", hash_text(hash_of(description))},
       {"files", describe_files(description)},
       {"integrator", plan.info->name},
       {"parameters", plan.parameters.all()},

@@ -71,7 +71,7 @@ class Places {
 
 Described area_light(const Scene& scene, const Places& places, description::Index index) {
   const SceneData& data = *scene.data();
-  const std::size_t end = data.lights.size() - data.volume_lights.size() - data.description.lights.size();
+  const std::size_t end = data.first_described_light();
   std::string kind;
   Bounds box;
   for (std::size_t i = 0; i < data.emitters.size(); ++i) {

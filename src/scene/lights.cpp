@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <variant>
 
 #include "base/memory.h"
 #include "lanthorn/text.h"
@@ -186,6 +188,18 @@ Light make_light(const description::Light& light, const FileAccess& access, cons
                  std::vector<description::Warning>& warnings) {
   LightMaker maker{light.light_to_world, scene, spectra, space, store, warnings, light.location, access};
   return std::visit(maker, light.node);
+}
+
+std::optional<Light> make_from(const MadeLight& before, const description::Light& light, const BoundingSphere& scene) {
+  const auto* const now = std::get_if<description::InfiniteLight>(&light.node);
+  const auto* const then = std::get_if<description::InfiniteLight>(&before.source.node);
+  const auto* const made = std::get_if<ImageInfiniteLight>(&before.light);
+  if (now == nullptr || then == nullptr || made == nullptr) return {};
+  const bool has_image = now->texels || now->image;
+  const bool has_same_image =
+      now->texels == then->texels && now->image == then->image && now->image_space == then->image_space;
+  if (!has_image || !has_same_image || now->portal || now->illuminance || light.light_to_world.is_singular()) return {};
+  return ImageInfiniteLight{made->image, now->radiance.scale, DirectionMap(light.light_to_world), scene};
 }
 
 }  // namespace lanthorn

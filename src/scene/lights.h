@@ -4,6 +4,7 @@
 #pragma once
 
 #include <deque>
+#include <optional>
 #include <vector>
 
 #include "lanthorn/scene_description.h"
@@ -26,5 +27,14 @@ struct LightStore {
 Light make_light(const description::Light& light, const FileAccess& access, const BoundingSphere& scene,
                  SpectrumStore& spectra, ColorSpace space, LightStore& store,
                  std::vector<description::Warning>& warnings);
+
+/// A light that was made from a description.
+struct MadeLight {
+  const description::Light& source;
+  const Light& light;
+};
+/// As `make_light` for an environment that differs from `before` in its place and scale alone: it shares the image,
+/// which takes long to make. nullopt for all others.
+std::optional<Light> make_from(const MadeLight& before, const description::Light& light, const BoundingSphere& scene);
 
 }  // namespace lanthorn

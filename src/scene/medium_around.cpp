@@ -78,7 +78,7 @@ void settle_light_media(const std::shared_ptr<SceneData>& data, std::span<const 
   const Scene scene(data);
   const MediumFinder media(scene);
   const float time = shutter_middle(data->description);
-  const std::size_t first = data->lights.size() - data->volume_lights.size() - data->description.lights.size();
+  const std::size_t first = data->first_described_light();
   const std::vector<description::Light>& described = data->description.lights;
   parallel_for(std::size_t{0}, lights.size(), [&](std::size_t n) {
     const std::size_t i = lights[n];

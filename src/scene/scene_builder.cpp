@@ -50,7 +50,7 @@ std::vector<std::unique_ptr<ShapeStore>> group_of(std::unique_ptr<ShapeStore> sh
 
 class SceneBuilder {
  public:
-  explicit SceneBuilder(SceneData& data) : data_(data) {}
+  SceneBuilder(SceneData& data, const SceneData* like) : data_(data), like_(like) {}
   void build();
 
  private:
@@ -60,6 +60,7 @@ class SceneBuilder {
   void add_objects();
   void add_part(description::Shape& shape, const std::vector<description::Index>& instances);
   void add_lights();
+  Light make_light(const description::Light& light);
   void count();
   bool is_visible(const description::Shape& shape) const;
   std::unique_ptr<ShapeStore> store(description::Shape& shape, const Transform& to_space);
@@ -77,6 +78,7 @@ class SceneBuilder {
   float shutter_middle() const { return lanthorn::shutter_middle(data_.description); }
 
   SceneData& data_;
+  const SceneData* like_;
   std::size_t left_out_ = 0;  // shapes and instances that cannot be placed
   SourceLocation first_left_out_;
   struct CoarseSteps {
@@ -363,10 +365,21 @@ void SceneBuilder::add_part(description::Shape& shape, const std::vector<descrip
   }
 }
 
+Light SceneBuilder::make_light(const description::Light& light) {
+  if (like_ != nullptr)
+    if (std::optional<Light> shared = make_from(*like_, light, data_.sphere)) {
+      // The image is that scene's, or one's before it.
+      data_.kept = like_->kept;
+      if (!like_->light_store->spherical_images.empty()) data_.kept.push_back(like_->light_store);
+      return *shared;
+    }
+  return lanthorn::make_light(light, data_.description.access, data_.sphere, *data_.spectra,
+                              data_.description.color_space, *data_.light_store, data_.description.warnings);
+}
+
 void SceneBuilder::add_lights() {
   for (const description::Light& light : data_.description.lights) {
-    data_.lights.push_back(make_light(light, data_.description.access, data_.sphere, *data_.spectra,
-                                      data_.description.color_space, *data_.light_store, data_.description.warnings));
+    data_.lights.push_back(make_light(light));
     check_power(data_.lights.back(), light.location);
     data_.light_locations[static_cast<std::uint32_t>(data_.lights.size() - 1)] = light.location;
   }
@@ -399,18 +412,18 @@ void SceneBuilder::count() {
 
 }  // namespace
 
-SceneData::SceneData(SceneDescription&& source, const SceneData* loaded)
+SceneData::SceneData(SceneDescription&& source, const SceneData* loaded, Geometry own_geometry)
     : description(std::move(source)),
       textures(description, *spectra, loaded != nullptr ? &loaded->textures : nullptr),
       materials(description, textures, *spectra, description.warnings,
                 loaded != nullptr ? &loaded->materials : nullptr),
-      geometry(loaded != nullptr
-                   ? loaded->geometry
-                   : Geometry(description.view.camera.shutter_open, description.view.camera.shutter_close)) {}
+      geometry(std::move(own_geometry)) {}
 
-std::shared_ptr<const SceneData> build(SceneDescription&& description) {
-  const auto data = std::make_shared<SceneData>(std::move(description));
-  SceneBuilder(*data).build();
+std::shared_ptr<const SceneData> build(SceneDescription&& description, const SceneData* like) {
+  const description::Camera& camera = description.view.camera;
+  Geometry geometry(camera.shutter_open, camera.shutter_close);
+  const auto data = std::make_shared<SceneData>(std::move(description), like, std::move(geometry));
+  SceneBuilder(*data, like).build();
   std::vector<description::Index> lights(data->description.lights.size());
   std::iota(lights.begin(), lights.end(), description::Index{0});
   settle_light_media(data, lights);
@@ -492,6 +505,13 @@ float find_largest_radiance(const SceneData& data) {
     if (b.radiance > brightest.radiance) brightest = b;
   if (brightest.radiance > 0) check_radiance(brightest.radiance, data.light_location(brightest.light));
   return brightest.radiance;
+}
+
+std::optional<Light> make_from(const SceneData& scene, const description::Light& light, const BoundingSphere& bounds) {
+  const std::size_t first = scene.first_described_light();
+  for (std::size_t i = 0; i < scene.description.lights.size(); ++i)
+    if (auto made = make_from({scene.description.lights[i], scene.lights[first + i]}, light, bounds)) return made;
+  return {};
 }
 
 void index_lights(SceneData& data) {

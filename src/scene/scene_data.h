@@ -3,6 +3,7 @@
 // What a scene is made of, for those who make scenes.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -35,11 +36,13 @@ struct PlacedInstance {
 /// The parts of a scene. An edited scene shares those that take long to make with the scene it comes from, and keeps
 /// them alive.
 struct SceneData {
-  /// Compiles the materials. `loaded`: images, measured materials and geometry are its own.
-  explicit SceneData(SceneDescription&& source, const SceneData* loaded = nullptr);
+  /// Compiles the materials. `loaded`: may be null; images and measured materials are its own.
+  SceneData(SceneDescription&& source, const SceneData* loaded, Geometry own_geometry);
   SceneData(const SceneData&) = delete;
   SceneData& operator=(const SceneData&) = delete;
 
+  /// The index of the first of the description's lights.
+  std::size_t first_described_light() const { return lights.size() - volume_lights.size() - description.lights.size(); }
   /// Where the light, an index of `lights`, is described.
   const SourceLocation& light_location(std::uint32_t light) const;
 
@@ -67,12 +70,14 @@ struct SceneData {
   bool has_measured_spectra = false, has_dispersion = false, has_interfaces = false, has_emissive = false;
   bool has_unlit_glow = false;          ///< some medium that emits is no light
   std::vector<MediumId> endless_media;  ///< around the whole scene
-  bool has_edited_lights = false;       ///< `lights` point to `spectra`, `light_store` and `textures`
+  bool is_edited = false;
+  bool has_edited_lights = false;  ///< `lights` point to `spectra`, `light_store` and `textures`
   SceneStatistics statistics;
 };
 
-/// Makes all parts. Throws Error.
-std::shared_ptr<const SceneData> build(SceneDescription&& description);
+/// Makes all parts. `like`: may be null; another scene from the same files, whose images are not read again. Throws
+/// Error.
+std::shared_ptr<const SceneData> build(SceneDescription&& description, const SceneData* like = nullptr);
 
 /// Middle of the shutter interval of the scene's own camera.
 float shutter_middle(const SceneDescription& description);
@@ -87,6 +92,9 @@ BoundingSphere bounding_sphere(const Bounds& box);
 /// Largest radiance of any light, in any channel. For lights without extent, that of a white surface where they first
 /// meet one. Depends on lights and geometry. Throws Error as `check_radiance` does.
 float find_largest_radiance(const SceneData& data);
+/// As `make_light` for an environment that differs in its place and scale alone from one of `scene`: it shares the
+/// image, which takes long to make. nullopt for all others.
+std::optional<Light> make_from(const SceneData& scene, const description::Light& light, const BoundingSphere& bounds);
 /// What follows from the lights: their index, which are infinite, the largest radiance.
 void index_lights(SceneData& data);
 

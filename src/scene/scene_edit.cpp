@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <chrono>
 #include <cstddef>
+#include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <random>
 #include <string>
 #include <utility>
@@ -32,6 +34,10 @@ void replace(std::vector<Value>& values, const std::map<description::Index, Valu
   }
 }
 
+bool is_environment(const description::Light& light) {
+  return std::holds_alternative<description::InfiniteLight>(light.node);
+}
+
 // Nobody else's edit has this number: states of edited scenes are never mixed up.
 std::uint64_t unique_hash() {
   std::random_device random;
@@ -42,6 +48,7 @@ SceneDescription edited(const SceneDescription& description, const SceneEdits& e
   SceneDescription result = description;
   replace(result.materials, edits.materials, "material");
   replace(result.area_lights, edits.area_lights, "area light");
+  if (edits.environment) replace_environment(result, *edits.environment);
   replace(result.lights, edits.lights, "light");
   for (const auto& [index, object_to_world] : edits.instances) {
     if (index >= result.instances.size()) throw Error("the scene has no instance with index " + std::to_string(index));
@@ -56,7 +63,7 @@ class SceneEditor {
   SceneEditor(std::shared_ptr<const SceneData> base, const SceneEdits& edits)
       : base_(std::move(base)),
         edits_(edits),
-        data_(std::make_shared<SceneData>(edited(base_->description, edits), base_.get())) {}
+        data_(std::make_shared<SceneData>(edited(base_->description, edits), base_.get(), base_->geometry)) {}
 
   std::shared_ptr<const SceneData> edit() {
     const auto started = std::chrono::steady_clock::now();
@@ -82,13 +89,14 @@ class SceneEditor {
   // scene in which that happened.
   void keep() {
     data_->kept = base_->kept;
-    if (data_->kept.empty() || base_->has_edited_lights) data_->kept.push_back(base_);
+    if (!base_->is_edited || base_->has_edited_lights) data_->kept.push_back(base_);
+    data_->is_edited = true;
     data_->emitters = base_->emitters;
     data_->light_media = base_->light_media;
     data_->volume_lights = base_->volume_lights;
     data_->light_locations = base_->light_locations;
     data_->placed = base_->placed;
-    data_->has_edited_lights = !edits_.lights.empty() || !edits_.area_lights.empty();
+    data_->has_edited_lights = edits_.environment || !edits_.lights.empty() || !edits_.area_lights.empty();
   }
 
   // What a material says about surfaces is stored with them.
@@ -131,9 +139,10 @@ class SceneEditor {
 
   void update_lights() {
     data_->lights = base_->lights;
+    if (edits_.environment) exchange_environments();
     for (const EmittingShape& emitter : data_->emitters)
       if (edits_.area_lights.contains(*emitter.source->area_light)) update(emitter);
-    const std::size_t first = data_->lights.size() - data_->volume_lights.size() - data_->description.lights.size();
+    const std::size_t first = data_->first_described_light();
     const bool same_size = data_->sphere.centre == base_->sphere.centre && data_->sphere.radius == base_->sphere.radius;
     std::vector<description::Index> unsettled;  // lights around which there may be another medium
     for (std::size_t i = 0; i < data_->description.lights.size(); ++i) {
@@ -152,6 +161,33 @@ class SceneEditor {
       reuse_index();
     settle_light_media(data_, unsettled);
   }
+  // All lights but environments keep their order.
+  void exchange_environments() {
+    const std::size_t first = base_->first_described_light();
+    data_->lights.erase(data_->lights.begin() + static_cast<std::ptrdiff_t>(first), data_->lights.end());
+    data_->light_media.resize(first);
+    data_->light_locations.erase(data_->light_locations.lower_bound(static_cast<std::uint32_t>(first)),
+                                 data_->light_locations.end());
+    const auto add = [&](const Light& light, const MediumInterface& media, const SourceLocation& location) {
+      const auto index = static_cast<std::uint32_t>(data_->lights.size());
+      data_->lights.push_back(light);
+      data_->light_media.push_back(media);
+      data_->light_locations[index] = location;
+      return index;
+    };
+    std::size_t old = first;  // the next light of the old scene
+    for (const description::Light& light : data_->description.lights) {
+      if (is_environment(light)) {
+        add(made(light), {}, light.location);
+        continue;
+      }
+      while (is_environment(base_->description.lights[old - first])) ++old;
+      add(base_->lights[old], base_->light_media[old], light.location);
+      ++old;
+    }
+    for (auto& [medium, index] : data_->volume_lights)
+      index = add(base_->lights[index], base_->light_media[index], base_->light_location(index));
+  }
   void update(const EmittingShape& emitter) {
     const description::AreaLight& light = data_->description.area_lights[*emitter.source->area_light];
     const SpectrumInput radiance =
@@ -163,11 +199,14 @@ class SceneEditor {
       data_->lights[emitter.first_light + i] = lights[i];
     }
   }
-  void update(Light& light, std::size_t described) {
-    const description::Light& source = data_->description.lights[described];
-    light = make_light(source, data_->description.access, data_->sphere, *data_->spectra,
-                       data_->description.color_space, *data_->light_store, data_->description.warnings);
-    check_power(light, source.location);
+  void update(Light& light, std::size_t described) { light = made(data_->description.lights[described]); }
+  Light made(const description::Light& source) {
+    std::optional<Light> light = make_from(*base_, source, data_->sphere);
+    if (!light)
+      light = make_light(source, data_->description.access, data_->sphere, *data_->spectra,
+                         data_->description.color_space, *data_->light_store, data_->description.warnings);
+    check_power(*light, source.location);
+    return *light;
   }
   void reuse_index() {
     data_->infinite_lights = base_->infinite_lights;

@@ -11,10 +11,13 @@
 #include "scene/media_check.h"
 #include "scene/medium_around.h"
 #include "scene/scene.h"
+#include "scene/scene_data.h"
 
 namespace lanthorn {
 
-SharedScene build_scene(SceneDescription description) { return std::make_shared<const Scene>(std::move(description)); }
+SharedScene build_scene(SceneDescription description, const SharedScene& like) {
+  return std::make_shared<const Scene>(build(std::move(description), like ? like->data().get() : nullptr));
+}
 
 const SceneDescription& description_of(const Scene& scene) { return scene.description(); }
 

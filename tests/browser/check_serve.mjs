@@ -177,8 +177,65 @@ async function changeMethodAndSize() {
   expect(true, 'and taken back');
 }
 
+async function changeLens() {
+  const command = (part) => page.waitForFunction((wanted) => document.getElementById('command').value.includes(wanted), part, {timeout: 60000});
+  await page.locator('#fov').fill('20');
+  await page.locator('#fov').press('Tab');
+  await command('--fov 20');
+  expect(!await page.locator('#home').isDisabled(), 'As in the file takes the lens back, too');
+  expect(await page.locator('#focus').isDisabled(), 'a pinhole has no focus');
+  await page.locator('#aperture').selectOption('1.4');
+  await command('--aperture 1.4');
+  await page.waitForFunction(() => document.getElementById('focus-middle').getAttribute('aria-pressed') === 'true');
+  const distance = Number(await page.locator('#focus').inputValue());
+  expect(distance > 0, `the middle is sharp, at ${distance} m`);
+  await page.locator('#focus-pick').click();
+  const box = await page.locator('#picture').boundingBox(), eye = await text('eye');
+  await page.mouse.click(box.x + 0.75 * box.width, box.y + 0.85 * box.height);
+  await command('--focus ');
+  await page.waitForFunction((old) => document.getElementById('focus').value !== old, String(distance));
+  const picked = Number(await page.locator('#focus').inputValue());
+  expect(picked > 0 && picked < distance, `the glass ball in front is sharp, at ${picked} m`);
+  expect(await text('eye') === eye, 'picking moves no camera');
+  expect(await page.locator('#focus-pick').getAttribute('aria-pressed') === 'false', 'one click is picked');
+  await page.locator('#focus').fill('2.5');
+  await page.locator('#focus').press('Tab');
+  await command('--focus 2.5');
+  await isRefined();
+  await shot('lens');
+  await page.locator('#aperture').selectOption('off');
+  await command('--aperture off');
+  await page.locator('#home').click();
+  await page.waitForFunction(() => !/--(fov|aperture|focus)/.test(document.getElementById('command').value));
+  expect(true, 'As in the file puts the lens back');
+}
+
+async function changeEnvironment() {
+  const command = (part) => page.waitForFunction((wanted) => document.getElementById('command').value.includes(wanted), part, {timeout: 60000});
+  const lights = () => page.locator('#light-list label').count(), before = await lights();
+  const offered = await page.locator('#environment-source option').allTextContents();
+  expect(offered.join() === 'As in the file,studio,overcast,sunny', `environments: ${offered.join()}`);
+  expect(await page.locator('#environment-place').isHidden(), 'the file’s own environment does not turn');
+  await page.locator('#environment-source').selectOption('sunny');
+  await command('--environment sunny');
+  await changes('the environment is among the lights', before, lights);
+  await page.locator('#environment-rotation').fill('90');
+  await command('--environment-rotate 90');
+  await page.locator('#environment-scale').fill('1');
+  await command('--environment-scale 2');
+  expect(await text('environment-scale-text') === '× 2', 'its brightness is told');
+  await isRefined();
+  await page.locator('#environment').scrollIntoViewIfNeeded();
+  await shot('environment');
+  await page.locator('#environment-source').selectOption('');
+  await page.waitForFunction(() => !document.getElementById('command').value.includes('--environment'));
+  await page.waitForFunction((count) => document.querySelectorAll('#light-list label').length === count, before);
+  expect(true, 'the file’s own environment comes back');
+}
+
 async function lookAtSmallScreen() {
   await page.setViewportSize({width: 1366, height: 768 - 140});  // less what a browser takes of the screen
+  await page.locator('aside').evaluate((panel) => { panel.scrollTop = 0; });
   const lowest = await page.evaluate(() => Math.max(...['save-png', 'save-exr', 'copy', 'command'].map((id) => document.getElementById(id).getBoundingClientRect().bottom)));
   expect(lowest < 768 - 140, `what saves is seen on a small screen: down to ${lowest}`);
   await shot('small');
@@ -220,6 +277,8 @@ try {
   expect(await page.locator('#light-list label').first().textContent() === 'Lamp, ceiling area1', 'the lamp has a name');
   await editOnSlowLine();
   await readPixels();
+  await changeLens();
+  await changeEnvironment();
   await changeMethodAndSize();
   await lookAtSmallScreen();
   await page.locator('#pause').click();

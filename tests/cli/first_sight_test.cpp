@@ -160,6 +160,10 @@ TEST_F(FirstSight, BlackPicturesSayWhy) {
   EXPECT_EQ(reason(look + lamp + ball), "");
   EXPECT_EQ(reason(look + ball), "the scene has no light");
   EXPECT_EQ(reason(look + "LightSource \"point\" \"float scale\" 0\n" + ball), "the scene's light has no power");
+  EXPECT_EQ(
+      reason(look + "LightSource \"point\" \"float scale\" 0\nLightSource \"infinite\" \"float scale\" 0\n" + ball),
+      "none of the scene's lights has any power");
+  EXPECT_EQ(reason("Film \"rgb\" \"float iso\" 1e-44\n" + look + lamp + ball), "the film's exposure is 0");
   EXPECT_EQ(reason(look + lamp + "Translate 0 9 0\n" + ball),
             "no surface is in the camera's view; --look-at places the camera");
   EXPECT_EQ(

@@ -78,6 +78,30 @@ TEST_F(Lens, FocusesOnWhatTheMiddleSees) {
   EXPECT_GT(lens_of(bar).focal_distance, to_camera.point({5, 0, 0}).z - 2.2f);
 }
 
+// What a page tells of a lens is what the options said; a pinhole has no focus.
+TEST_F(Lens, TellsWhatItIs) {
+  const SharedScene tiny = scene("tiny.pbrt");
+  const ViewDescription open = changed(*tiny, {.fov = 30.0f, .aperture = 2.0f, .focus = LensChanges::Focus(3.0f)});
+  const LensNumbers numbers = program::lens_of(open);
+  EXPECT_FLOAT_EQ(numbers.fov.value(), 30);
+  EXPECT_FLOAT_EQ(numbers.aperture.value(), 2);
+  EXPECT_FLOAT_EQ(numbers.focus.value(), 3);
+  ViewDescription closed = open;
+  change_lens(closed, {.aperture = LensChanges::Aperture()}, *tiny, {});
+  EXPECT_EQ(lens_of(closed).lens_radius, 0);
+  EXPECT_FALSE(program::lens_of(closed).aperture);
+  EXPECT_FALSE(program::lens_of(closed).focus);
+}
+
+// Of 16 x 16 pixels over 40 degrees, 5.5 below the middle: the floor, a metre below the eye.
+TEST_F(Lens, FocusesOnWhatAPixelSees) {
+  const SharedScene tiny = scene("tiny.pbrt");
+  const ViewDescription& view = description_of(*tiny).view;
+  EXPECT_NEAR(focus_at(view, *tiny, {}, {8, 13.5f}), 8 / (5.5f * std::tan(0.34906585f)), 1e-4f);
+  EXPECT_NEAR(focus_at(view, *tiny, {}, {8, 8}), 5.4f, 1e-4f);
+  EXPECT_THROW(focus_at(view, *tiny, {}, {0.5f, 0.5f}), Error) << "nothing is there";
+}
+
 TEST_F(Lens, OrbitsAroundTheMiddleOfTheScene) {
   const SharedScene tiny = scene("tiny.pbrt");
   const Point middle(0, 1, 0);  // of the bounds, at the height of the eye
@@ -156,6 +180,23 @@ TEST_F(Lens, FramesAreThePicturesOfTheirMoments) {
   succeed(quick("moves.gltf", {"--at", "1.5", "-o", "one.exr"}));
   expect_equal_files("f.012.exr", "one.exr");
   EXPECT_NE(bytes("f.011.exr"), bytes("f.012.exr"));
+}
+
+// The scene has warnings: of two cameras, and of the studio.
+TEST_F(Lens, FramesSayEachWarningOnce) {
+  const auto count = [](const std::string& text, const std::string& part) {
+    int n = 0;
+    for (std::size_t at = text.find(part); at != text.npos; at = text.find(part, at + 1)) ++n;
+    return n;
+  };
+  const auto expect_once = [&](const Words& more) {
+    const Ending ending = succeed(Words{"render", "moves.gltf", "-i", "path", "-p", "1", "-r", "16x16"} + more);
+    EXPECT_EQ(count(ending.err, "several cameras"), 1) << ending.err;
+    EXPECT_EQ(count(ending.err, "a studio of three soft lamps stands in"), 1) << ending.err;
+    EXPECT_EQ(count(ending.err, "color rgb:"), 1) << ending.err;
+  };
+  expect_once({"--frames", "0:3", "-o", "f.#.png"});
+  expect_once({"--turntable", "3", "-o", "t.#.png"});
 }
 
 TEST_F(Lens, TurntablesAreThePicturesOfOrbits) {

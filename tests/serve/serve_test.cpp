@@ -44,6 +44,32 @@ class Serve : public Cli {
   Answer get(const std::string& resource) const { return client().get(root_ + resource); }
   int edit(const nlohmann::json& json) const { return client().post(root_ + "edit", json.dump()).status; }
 
+  // The finished picture of an edit.
+  nlohmann::json picture_of(const nlohmann::json& change) const {
+    const Answer answer = client().post(root_ + "edit", change.dump());
+    EXPECT_EQ(answer.status, 200) << change << ' ' << answer.body;
+    if (answer.status != 200) return frame([](const nlohmann::json&) { return true; });
+    const nlohmann::json revision = nlohmann::json::parse(answer.body)["revision"];
+    return frame([&](const nlohmann::json& f) { return f["finished"] && f["revision"] == revision; });
+  }
+  // The command line that the page shows after an edit renders the very picture that it saves. Returns the command.
+  std::string expect_same_picture(const nlohmann::json& change) {
+    const std::string text = picture_of(change)["command"];
+    const Answer exr = get("picture.exr");
+    EXPECT_EQ(exr.status, 200);
+    std::ofstream(path("served.exr"), std::ios::binary) << exr.body;
+    std::istringstream words(text);
+    Words command;
+    for (std::string word; words >> word;) command.push_back(word);
+    EXPECT_EQ(command.front(), "lanthorn");
+    command.erase(command.begin());
+    succeed(command + Words{"-q"});
+    const Image served = read_image(path("served.exr")), rendered = read_image(path("picture.exr"));
+    EXPECT_EQ(served.channels, rendered.channels);
+    EXPECT_TRUE(served.pixels == rendered.pixels) << text;
+    return text;
+  }
+
   static nlohmann::json about(const Answer& answer) {
     std::uint32_t size = 0;
     if (answer.body.size() < 4) return {};
@@ -157,34 +183,113 @@ TEST_F(Serve, ListensWhereItIsTold) {
 TEST_F(Serve, BadEditsChangeNothing) {
   start({"-p", "2"});
   const nlohmann::json before = frame(is_finished);
-  for (const char* body :
-       {"", "[]", "null", "{", R"({"camera":1})", R"({"camera":{"eye":[0,0,0],"target":[0,0,0],"up":[0,1,0]}})",
-        R"({"camera":{"eye":[0,0],"target":[0,0,1],"up":[0,1,0]}})", R"({"lights":{"moon":1}})",
-        R"({"lights":{"light1":-1}})", R"({"paused":"yes"})", R"({"method":"moonlight"})", R"({"method":1})",
-        R"({"size":[64]})", R"({"size":[0,64]})", R"({"size":[64,-1]})", R"({"size":"64x64"})"})
+  for (const char* body : {"",
+                           "[]",
+                           "null",
+                           "{",
+                           R"({"camera":1})",
+                           R"({"camera":{"eye":[0,0,0],"target":[0,0,0],"up":[0,1,0]}})",
+                           R"({"camera":{"eye":[0,0],"target":[0,0,1],"up":[0,1,0]}})",
+                           R"({"lights":{"moon":1}})",
+                           R"({"lights":{"light1":-1}})",
+                           R"({"paused":"yes"})",
+                           R"({"method":"moonlight"})",
+                           R"({"method":1})",
+                           R"({"lens":{"fov":0}})",
+                           R"({"lens":{"fov":"wide"}})",
+                           R"({"lens":{"aperture":"wide"}})",
+                           R"({"lens":{"focus":-1}})",
+                           R"({"lens":{"focus":2}})",
+                           R"({"lens":2})",
+                           R"({"lens":{"focus_at":[1]}})",
+                           R"({"environment":{"source":"tiny.pbrt"}})",
+                           R"({"environment":{"source":"/etc/passwd"}})",
+                           R"({"environment":{"source":"studio","scale":-1}})",
+                           R"({"environment":{"source":"studio","rotation":"x"}})",
+                           R"({"environment":"studio"})",
+                           R"({"environment":{}})",
+                           R"({"size":[64]})",
+                           R"({"size":[0,64]})",
+                           R"({"size":[64,-1]})",
+                           R"({"size":"64x64"})"})
     EXPECT_EQ(client().post(root_ + "edit", body).status, 400) << body;
+  // An environment that could be read, but was not named when the server was started.
+  Image sky(2, 1, {"R", "G", "B"});
+  sky.pixels.assign(6, 1.0f);
+  write_exr(path("sky.exr"), sky);
+  EXPECT_EQ(client().post(root_ + "edit", R"({"environment":{"source":"sky.exr"}})").status, 400);
   EXPECT_EQ(about(get("frame"))["number"], before["number"]);
 }
 
-// The command line that the page shows renders the very picture that it saves.
 TEST_F(Serve, TheCommandLineRendersTheSamePicture) {
   start({"-p", "3"});
-  ASSERT_EQ(edit({{"camera", {{"eye", {0.5, 1.25, 4}}, {"target", {0, 1, 0}}, {"up", {0.1, 1, 0}}}},
-                  {"lights", {{"area1", 0.5}, {"light1", 2}}}}),
-            200);
-  const nlohmann::json shown = frame([](const nlohmann::json& f) { return f["finished"] && f["moved"]; });
-  const Answer exr = get("picture.exr");
-  ASSERT_EQ(exr.status, 200);
-  std::ofstream(path("served.exr"), std::ios::binary) << exr.body;
-  std::istringstream words(shown["command"].get<std::string>());
-  Words command;
-  for (std::string word; words >> word;) command.push_back(word);
-  ASSERT_EQ(command.front(), "lanthorn");
-  command.erase(command.begin());
-  succeed(command + Words{"-q"});
-  const Image served = read_image(path("served.exr")), rendered = read_image(path("picture.exr"));
-  EXPECT_EQ(served.channels, rendered.channels);
-  EXPECT_TRUE(served.pixels == rendered.pixels);
+  expect_same_picture({{"camera", {{"eye", {0.5, 1.25, 4}}, {"target", {0, 1, 0}}, {"up", {0.1, 1, 0}}}},
+                       {"lights", {{"area1", 0.5}, {"light1", 2}}}});
+  EXPECT_TRUE(contains(expect_same_picture({{"lens", {{"fov", 30}, {"aperture", 0.5}}}}), " --fov 30 --aperture 0.5 "));
+  EXPECT_TRUE(contains(expect_same_picture({{"lens", {{"focus", 3.3}}}}), " --focus 3.3 "));
+  EXPECT_TRUE(contains(expect_same_picture({{"lens", {{"focus", "auto"}}}}), " --focus auto "));
+  expect_same_picture({{"lens", {{"focus_at", {5, 9}}}}});
+  expect_same_picture({{"environment", {{"source", "studio"}}}});
+  const std::string turned =
+      expect_same_picture({{"environment", {{"source", "sunny"}, {"rotation", 30.5}, {"scale", 0.1}}}});
+  EXPECT_TRUE(contains(turned, " --environment sunny --environment-rotate 30.5 --environment-scale 0.1 ")) << turned;
+  const std::string closed = expect_same_picture({{"lens", {{"aperture", "off"}}}, {"environment", {{"source", ""}}}});
+  EXPECT_TRUE(contains(closed, " --aperture off ")) << closed;
+  EXPECT_FALSE(contains(closed, "--environment") || contains(closed, "--focus")) << closed;
+}
+
+// A model without camera and light, which has a studio and frames itself.
+TEST_F(Serve, TheCommandLineRendersTheSamePictureOfAModel) {
+  dir_.write("model.obj", "v -1 0 0\nv 1 0 0\nv 1 2 0\nv -1 2 .5\nf 1 2 3 4\n");
+  write_exr(path("sky.exr"), [] {
+    Image image(4, 2, {"R", "G", "B"});
+    for (std::size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] = 0.1f * static_cast<float>(i % 7);
+    return image;
+  }());
+  start({"-p", "2", "-r", "24x16", "--environment", "sky.exr", "--environment-rotate", "20", "--orbit", "20,10"},
+        "model.obj");
+  const std::string file = expect_same_picture({{"environment", {{"source", "sky.exr"}, {"rotation", 70}}}});
+  EXPECT_TRUE(contains(file, " --environment sky.exr --environment-rotate 70 --orbit 20,10")) << file;
+  expect_same_picture({{"lens", {{"fov", 60}, {"aperture", 0.5}}}});
+  EXPECT_FALSE(contains(expect_same_picture({{"environment", {{"source", ""}}}}), "--environment"));
+  expect_same_picture({{"environment", {{"source", "overcast"}, {"scale", 2}}}});
+  const std::string placed =
+      expect_same_picture({{"camera", {{"eye", {0.5, 1.25, 4}}, {"target", {0, 1, 0}}, {"up", {0, 1, 0}}}},
+                           {"environment", {{"source", "sky.exr"}, {"rotation", 0}}}});
+  EXPECT_FALSE(contains(placed, "--orbit") || contains(placed, "-rotate")) << placed;
+  expect_same_picture({{"size", {16, 24}}, {"lens", {{"focus", "auto"}}}});
+}
+
+TEST_F(Serve, FocusIsPickedInThePicture) {
+  start({"-p", "2", "--aperture", "1"});
+  const nlohmann::json middle = frame(is_finished);
+  EXPECT_TRUE(middle["lens"]["focuses_middle"]);
+  const nlohmann::json size = middle["full_size"];
+  const nlohmann::json picked =
+      picture_of({{"lens", {{"focus_at", {0.5 * size[0].get<double>(), 0.5 * size[1].get<double>()}}}}});
+  EXPECT_FALSE(picked["lens"]["focuses_middle"]);
+  EXPECT_NEAR(picked["lens"]["focus"].get<double>(), middle["lens"]["focus"].get<double>(), 1e-5);
+  const nlohmann::json floor =
+      picture_of({{"lens", {{"focus_at", {0.5 * size[0].get<double>(), 0.84 * size[1].get<double>()}}}}});
+  EXPECT_LT(floor["lens"]["focus"].get<double>(), middle["lens"]["focus"].get<double>() - 0.1);
+  EXPECT_TRUE(floor["moved"]);
+  const nlohmann::json home = picture_of({{"home", true}});
+  EXPECT_EQ(home["lens"], middle["lens"]);
+}
+
+// Environments come and go as lights; their factors go with them.
+TEST_F(Serve, LightsAreThoseOfTheEnvironment) {
+  start({"-p", "1"});
+  const auto lights = [&] { return nlohmann::json::parse(get("scene").body)["lights"]; };
+  const nlohmann::json own = lights();
+  picture_of({{"environment", {{"source", "overcast"}}}});
+  ASSERT_EQ(lights().size(), own.size() + 1);
+  EXPECT_EQ(lights().back(), (nlohmann::json{{"name", "light2"}, {"description", "Environment"}}));
+  const nlohmann::json dimmed = picture_of({{"lights", {{"light1", 0.5}, {"light2", 0.25}}}});
+  EXPECT_TRUE(contains(dimmed["command"], "--light light2=0.25")) << dimmed["command"];
+  const nlohmann::json back = picture_of({{"environment", {{"source", ""}}}});
+  EXPECT_EQ(lights(), own);
+  EXPECT_EQ(back["lights"], (nlohmann::json{{"light1", 0.5}}));
 }
 
 TEST_F(Serve, MethodAndSizeCanBeChanged) {

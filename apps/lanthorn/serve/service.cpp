@@ -7,13 +7,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
-#include <variant>
 
 #include "../json_text.h"
 #include "../quantities.h"
+#include "../render_arguments.h"
+#include "../value_types.h"
 #include "access.h"
 #include "lanthorn/error.h"
 #include "lanthorn/image_file.h"
@@ -51,6 +53,32 @@ LookAt look_of(const nlohmann::json& json) {
   return {vector_of(json.at("eye")), vector_of(json.at("target")), vector_of(json.at("up"))};
 }
 
+// A number, or one of an option's words. Throws Error.
+template <class Value>
+Value value_of(const nlohmann::json& json, const char* name, const ValueType<Value>& type) {
+  const std::string text =
+      json.is_string() ? json.get<std::string>() : fmt::format("{}", static_cast<float>(json.get<double>()));
+  const std::optional<Value> value = type.parse(text);
+  if (!value) throw Error(fmt::format("{} {}: expected {}", name, printable(text), type.expected));
+  return *value;
+}
+
+void read_lens(const nlohmann::json& json, ViewerEdit& edit) {
+  if (!json.is_object()) throw Error("lens: expected fov, aperture, focus or focus_at");
+  if (json.contains("fov")) edit.lens.fov = value_of(json.at("fov"), "field of view", fov_type());
+  if (json.contains("aperture")) edit.lens.aperture = value_of(json.at("aperture"), "aperture", aperture_type());
+  if (json.contains("focus")) edit.lens.focus = value_of(json.at("focus"), "focus", focus_type());
+  if (!json.contains("focus_at")) return;
+  const auto pixel = json.at("focus_at").get<std::array<float, 2>>();
+  edit.focus_at = Vec2(pixel[0], pixel[1]);
+}
+
+EnvironmentChoice environment_of(const nlohmann::json& json) {
+  return {json.at("source").get<std::string>(),
+          value_of(json.value("rotation", nlohmann::json(0)), "rotation", environment_rotation_type()),
+          value_of(json.value("scale", nlohmann::json(1)), "brightness", environment_scale_type())};
+}
+
 // Throws Error, or what the JSON library throws for other types.
 ViewerEdit edit_of(const nlohmann::json& json) {
   ViewerEdit edit;
@@ -60,6 +88,8 @@ ViewerEdit edit_of(const nlohmann::json& json) {
   if (json.contains("method")) edit.method = json.at("method").get<std::string>();
   if (json.contains("size")) edit.size = json.at("size").get<std::array<int, 2>>();
   if (json.contains("camera")) edit.look = look_of(json.at("camera"));
+  if (json.contains("lens")) read_lens(json.at("lens"), edit);
+  if (json.contains("environment")) edit.environment = environment_of(json.at("environment"));
   if (!json.contains("lights")) return edit;
   edit.lights.emplace();
   for (const auto& [name, factor] : json.at("lights").items()) {
@@ -134,23 +164,26 @@ HttpResponse ViewService::page() const {
 
 HttpResponse ViewService::scene() const {
   nlohmann::json lights = nlohmann::json::array(), warnings = nlohmann::json::array(),
-                 known_methods = nlohmann::json::array();
+                 known_methods = nlohmann::json::array(), environments = nlohmann::json::array();
   for (const NamedLight& light : viewer_.lights()) lights.push_back({{"name", light.id}, {"description", light.words}});
   for (const description::Warning& warning : viewer_.warnings()) warnings.push_back(warning.message);
   for (const MethodInfo& method : methods())
     known_methods.push_back({{"name", method.name}, {"description", method.summary}});
-  const ViewDescription view = viewer_.first_view();
-  const auto* perspective = std::get_if<description::PerspectiveCamera>(&view.camera.node);
+  for (const std::string& source : viewer_.environments())
+    environments.push_back(
+        {{"source", source},
+         {"label", source.empty() ? "As in the file" : std::filesystem::path(source).filename().string()}});
   return {HttpStatus::ok, json_type,
-          share(json_text({{"title", title_},
-                           {"lights", lights},
-                           {"methods", known_methods},
-                           {"warnings", warnings},
-                           {"field_of_view", perspective != nullptr ? perspective->fov : 40},
-                           {"exposure", display_.display.exposure},
-                           {"measures_exposure", display_.measures_exposure.value_or(view.film.measures_exposure)},
-                           {"curve", view_transform_type().print(display_.display.curve)}},
-                          one_line))};
+          share(json_text(
+              {{"title", title_},
+               {"lights", lights},
+               {"methods", known_methods},
+               {"environments", environments},
+               {"warnings", warnings},
+               {"exposure", display_.display.exposure},
+               {"measures_exposure", display_.measures_exposure.value_or(viewer_.first_view().film.measures_exposure)},
+               {"curve", view_transform_type().print(display_.display.curve)}},
+              one_line))};
 }
 
 HttpResponse ViewService::frame(const HttpRequest& request, const IsGone& is_gone) const {

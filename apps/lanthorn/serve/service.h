@@ -24,7 +24,8 @@ class ViewService {
   /// GET /TOKEN/ the page; /TOKEN/scene its lights and warnings, as JSON; /TOKEN/frame?after=NUMBER&layer=NAME the next
   /// frame (see `PageFrame::encoded`), or 204 if there is none for ten seconds; /TOKEN/picture.png?exposure=STOPS&
   /// curve=none|filmic|agx&layer=NAME and /TOKEN/picture.exr the last picture. POST /TOKEN/edit an edit as JSON: any of
-  /// camera (eye, target, up), lights (factors by name), paused, moving, home. All else is not found.
+  /// camera (eye, target, up), lens (fov, aperture, focus: as the options; focus_at: a pixel), environment (source,
+  /// rotation, scale), lights (factors by name), method, size, paused, moving, home. All else is not found.
   HttpResponse answer(const HttpRequest& request, const IsGone& is_gone) const;
 
  private:

@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "viewer.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <utility>
@@ -10,6 +13,7 @@
 #include "lanthorn/error.h"
 #include "lanthorn/methods.h"
 #include "lanthorn/session.h"
+#include "lanthorn/text.h"
 
 namespace lanthorn::program {
 
@@ -35,6 +39,19 @@ nlohmann::json to_json(const LookAt& look, bool is_mirrored) {
       {"eye", vector(look.eye)}, {"target", vector(look.target)}, {"up", vector(look.up)}, {"mirrored", is_mirrored}};
 }
 
+// As it is by now; the f-number as it was given.
+nlohmann::json to_json(const LensChanges& changes, const ViewDescription& view) {
+  LensNumbers lens = lens_of(view);
+  if (changes.aperture) lens.aperture = *changes.aperture;
+  const auto number = [](const std::optional<float>& x) { return x ? nlohmann::json(*x) : nlohmann::json(); };
+  const bool is_auto = changes.focus ? !*changes.focus : changes.aperture && *changes.aperture;
+  return {{"fov", number(lens.fov)},
+          {"aperture", number(lens.aperture)},
+          {"focus", number(lens.focus)},
+          {"focuses_middle", is_auto},
+          {"frames_subject", view.camera.subject.has_value()}};
+}
+
 // Without passes and time, a view refines until it changes.
 RenderOptions endless(RenderOptions options) {
   if (!options.passes && !options.seconds && !options.noise) options.passes = most_passes;
@@ -46,12 +63,13 @@ RenderOptions endless(RenderOptions options) {
 Viewer::Viewer(const SharedScene& scene, ViewerSettings settings)
     : scene_(scene),
       settings_(std::move(settings)),
-      lights_(lights_of(*scene)),
       is_mirrored_(description_of(*scene).view.camera.camera_to_world.start.swaps_handedness()),
       render_(scale_lights(scene_, settings_.start.changes.lights),
               view_of(*scene_, settings_.start.changes, settings_.start.options), endless(settings_.start.options),
               {.keeps_sums = settings_.keeps_sums}),
-      wanted_(settings_.start),
+      surroundings_{{settings_.start.environment.source, scene_}},
+      lights_(lights_of(*scene_)),
+      wanted_{settings_.start, first_view()},
       scenes_{{render_.snapshot().status.revision, wanted_}},
       watched_until_(Clock::now() + watched_time) {}
 
@@ -62,7 +80,7 @@ void Viewer::tend() {
                           now.picture->revision != now.status.revision && scenes_.contains(now.picture->revision);
   if (is_refused) {
     problem_ = now.status.problem;
-    submit(scenes_.at(now.picture->revision), /*is_moving=*/false);
+    submit(scenes_.at(now.picture->revision).scene, /*is_moving=*/false);
   }
   render_.pause(is_paused_ || !is_watched());
 }
@@ -82,7 +100,7 @@ void Viewer::look() {
 
 RenderOptions Viewer::edited_options(const ViewerEdit& edit) const {
   const RenderOptions& start = settings_.start.options;
-  RenderOptions options = wanted_.options;
+  RenderOptions options = wanted_.scene.options;
   if (edit.method) {
     options.integrator = find_method(*edit.method).name;
     options.set = *edit.method == start.integrator.value_or(first_method_) ? start.set : decltype(options.set)();
@@ -94,12 +112,66 @@ RenderOptions Viewer::edited_options(const ViewerEdit& edit) const {
   return options;
 }
 
+std::vector<std::string> Viewer::environments() const {
+  std::vector<std::string> sources{""};
+  for (std::string& name : environment_names()) sources.push_back(std::move(name));
+  const std::string& start = settings_.start.environment.source;
+  if (std::find(sources.begin(), sources.end(), start) == sources.end()) sources.push_back(start);
+  return sources;
+}
+
+std::vector<NamedLight> Viewer::lights() const {
+  const std::lock_guard lock(mutex_);
+  return lights_;
+}
+
+SharedScene Viewer::in_environment(const EnvironmentChoice& choice) {
+  const auto edit = [&](const Scene& scene) {
+    return edit_scene(scene, {.environment = choice, .hash = description_of(*scene_).hash});
+  };
+  SharedScene& first = surroundings_[choice.source];
+  if (!first) first = edit(*scene_);
+  return description_of(*first).environment == choice ? first : edit(*first);
+}
+
+// Factors stay with lights that are the same in both environments.
+void Viewer::edit_environment(ViewerScene& next, const EnvironmentChoice& choice) {
+  const std::vector<std::string> known = environments();
+  if (std::find(known.begin(), known.end(), choice.source) == known.end())
+    throw Error(fmt::format("environment {}: expected one of those that the page offers", printable(choice.source)));
+  next.environment = choice.source.empty() ? EnvironmentChoice() : choice;
+  next.environment.up = settings_.start.environment.up;
+  const std::vector<NamedLight> now = lights_of(*in_environment(next.environment));
+  const auto has = [](const std::vector<NamedLight>& lights, const NamedLight& light) {
+    return std::any_of(lights.begin(), lights.end(),
+                       [&](const NamedLight& other) { return other.id == light.id && other.words == light.words; });
+  };
+  for (const NamedLight& light : lights_)
+    if (!has(now, light)) next.changes.lights.erase(light.id);
+}
+
+void Viewer::edit_lens(ViewerScene& next, const ViewerEdit& edit) const {
+  LensChanges& lens = next.changes.lens;
+  if (edit.lens.fov) lens.fov = edit.lens.fov;
+  if (edit.lens.focus) lens.focus = edit.lens.focus;
+  if (edit.lens.aperture) lens.aperture = edit.lens.aperture;
+  if (lens.aperture && !*lens.aperture) lens.focus.reset();
+  if (!edit.focus_at) return;
+  const auto& crop = next.options.crop;
+  const Vec2 corner = crop ? Vec2((*crop)[0], (*crop)[1]) : Vec2(0);
+  const ViewDescription view = view_of(*scene_, next.changes, next.options);
+  lens.focus = LensChanges::Focus(focus_at(view, *scene_, next.options, corner + *edit.focus_at));
+}
+
 std::uint64_t Viewer::apply(const ViewerEdit& edit) {
   if (edit.look) check(*edit.look);
   const std::lock_guard lock(mutex_);
-  ViewerScene next{edit.home ? settings_.start.changes : wanted_.changes, edited_options(edit)};
-  if (edit.look) next.changes.look = edit.look;
+  const ViewerScene& now = wanted_.scene;
+  ViewerScene next{edit.home ? settings_.start.changes : now.changes, edited_options(edit), now.environment};
+  if (edit.look) move_camera(next.changes, *edit.look);
+  if (edit.environment) edit_environment(next, *edit.environment);
   if (edit.lights) next.changes.lights = *edit.lights;
+  edit_lens(next, edit);
   if (edit.size) check_view(view_of(*scene_, next.changes, next.options), next.options);
   const std::uint64_t revision = submit(std::move(next), edit.moving);
   problem_.clear();
@@ -110,13 +182,20 @@ std::uint64_t Viewer::apply(const ViewerEdit& edit) {
 
 std::uint64_t Viewer::submit(ViewerScene next, bool is_moving) {
   RenderEdit edit{.is_moving = is_moving};
-  if (next.changes.look != wanted_.changes.look) edit.view = view_of(*scene_, next.changes, next.options);
-  if (next.changes.lights != wanted_.changes.lights)
-    edit.scene = [scene = scale_lights(scene_, next.changes.lights)] { return scene; };
-  const RenderOptions &before = wanted_.options, &now = next.options;
+  const RenderOptions &before = wanted_.scene.options, &now = next.options;
+  const SceneChanges &old = wanted_.scene.changes, &changes = next.changes;
+  const bool is_relit = next.environment != wanted_.scene.environment;
+  // What the middle of a picture sees depends on its shape.
+  if (changes.look != old.look || changes.lens != old.lens || now.resolution != before.resolution)
+    edit.view = view_of(*scene_, changes, now);
+  if (changes.lights != old.lights || is_relit) {
+    const SharedScene scene = in_environment(next.environment);
+    edit.scene = [lit = scale_lights(scene, changes.lights)] { return lit; };
+    if (is_relit) lights_ = lights_of(*scene);
+  }
   if (now.integrator != before.integrator || now.set != before.set || now.resolution != before.resolution)
     edit.options = endless(now);
-  wanted_ = std::move(next);
+  wanted_ = {std::move(next), edit.view.value_or(wanted_.view)};
   const std::uint64_t revision = render_.edit(std::move(edit));
   scenes_[revision] = wanted_;
   return revision;
@@ -170,7 +249,7 @@ nlohmann::json Viewer::about(const InteractiveSnapshot& snapshot) {
   using enum InteractivePhase;
   const InteractivePicture& picture = *snapshot.picture;
   const StateSummary& state = picture.state;
-  const ViewerScene& scene = scenes_.at(picture.revision);
+  const auto& [scene, view] = scenes_.at(picture.revision);
   const SceneChanges& changes = scene.changes;
   const auto photons = nlohmann::json::parse(state.settings)["identity"]["photons"].get<std::uint64_t>();
   const InteractivePhase phase = snapshot.status.phase;
@@ -191,7 +270,12 @@ nlohmann::json Viewer::about(const InteractiveSnapshot& snapshot) {
           {"full_size", picture.full_size},
           {"limitation", picture.limitation},
           {"camera", to_json(changes.look.value_or(home(picture.image)), is_mirrored_)},
-          {"moved", changes.look.has_value()},
+          {"moved", changes.look.has_value() || changes.lens != settings_.start.changes.lens},
+          {"lens", to_json(changes.lens, view)},
+          {"environment",
+           {{"source", scene.environment.source},
+            {"rotation", scene.environment.rotation},
+            {"scale", scene.environment.scale}}},
           {"lights", lights},
           {"paused", is_paused_},
           {"finished", phase == finished || phase == out_of_time},

@@ -213,6 +213,15 @@ Document::Document(std::string_view bytes, std::filesystem::path folder, std::st
   scene.filename = name_;
 }
 
+void Document::start_again() {
+  scene = {};
+  scene.filename = name_;
+  warnings_ = {};
+  embedded_.clear();
+  embedded_bytes_ = 0;
+  for (const Value& image : std::exchange(embedded_images_, {})) embedded_image(image);
+}
+
 std::size_t Document::count(std::string_view array) const {
   const auto values = root().find_array(array);
   return values ? values->size() : 0;
@@ -292,6 +301,7 @@ description::Index Document::embedded_image(const Value& image) {
   if (embedded_bytes_ > most_image_bytes)
     throw image.error("the images are larger than " + std::to_string(most_image_bytes) + " bytes together");
   const auto index = static_cast<description::Index>(scene.embedded_images.size());
+  embedded_images_.push_back(image);
   scene.embedded_images.push_back({image.location().file, std::move(*bytes)});
   return embedded_.emplace(image.pointer(), index).first->second;
 }

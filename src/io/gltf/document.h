@@ -29,6 +29,8 @@ class Document {
   Document& operator=(const Document&) = delete;
 
   SceneDescription scene;
+  /// Begins another description of the same file. Embedded images keep their indices.
+  void start_again();
 
   Value root() const { return {json_, "", name_}; }
   const std::string& name() const { return name_; }
@@ -93,6 +95,7 @@ class Document {
   std::map<std::size_t, std::string> buffers_;
   std::map<std::size_t, std::string> decompressed_;
   std::map<std::string, description::Index> embedded_;  // by the image's pointer
+  std::vector<Value> embedded_images_;                  // by index
   std::size_t embedded_bytes_ = 0;
   CountedWarnings warnings_;
 };

@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <span>
 #include <utility>
 #include <vector>
@@ -425,14 +426,26 @@ class SceneReader {
 
 }  // namespace
 
+File::File(std::string_view bytes, std::filesystem::path folder, const std::string& name, FileReader read_file,
+           const FileAccess* access)
+    : document_(std::make_unique<Document>(bytes, std::move(folder), name, std::move(read_file), access)),
+      access_(access) {
+  check_version(*document_);
+}
+File::~File() = default;
+
+ModelFile File::read(const Choice& choice) {
+  const bool is_first = !std::exchange(has_been_read_, true);
+  if (!is_first) document_->start_again();
+  check_extensions(*document_);
+  StandIns lacking = SceneReader(*document_).read(choice);
+  if (access_ != nullptr && (is_first || access_->skip_missing)) report_missing_files(document_->scene, *access_);
+  return {std::move(document_->scene), std::move(lacking)};
+}
+
 ModelFile read(std::string_view bytes, std::filesystem::path folder, const std::string& name, FileReader read_file,
                const Choice& choice, const FileAccess* access) {
-  Document document(bytes, std::move(folder), name, std::move(read_file), access);
-  check_version(document);
-  check_extensions(document);
-  StandIns lacking = SceneReader(document).read(choice);
-  if (access != nullptr) report_missing_files(document.scene, *access);
-  return {std::move(document.scene), std::move(lacking)};
+  return File(bytes, std::move(folder), name, std::move(read_file), access).read(choice);
 }
 
 }  // namespace lanthorn::gltf

@@ -16,6 +16,7 @@
 #include <tuple>
 #include <vector>
 
+#include "film/display.h"
 #include "image/image_encoder.h"
 #include "image/image_file.h"
 #include "lanthorn/error.h"
@@ -157,6 +158,13 @@ TEST_F(ImageFormats, JpegAndTiffShowWhatPngDoes) {
     }
   const DisplaySettings display{.exposure = 1, .curve = ToneCurve::agx};
   const Image shown = displayed(image, display);
+  for (std::size_t i = 0; i < shown.pixels.size(); i += 3) {
+    const Rgb expected = to_display({image.pixels[i], image.pixels[i + 1], image.pixels[i + 2]}, display);
+    constexpr float tolerance = 1e-6f;  // far below a step of 8 or 16 bits
+    ASSERT_NEAR(shown.pixels[i], expected.r, tolerance);
+    ASSERT_NEAR(shown.pixels[i + 1], expected.g, tolerance);
+    ASSERT_NEAR(shown.pixels[i + 2], expected.b, tolerance);
+  }
   for (const auto& [name, step, type] :
        std::vector<std::tuple<std::string, float, OIIO::TypeDesc>>{{"a.tif", 0.5f / 65535, OIIO::TypeUInt16},
                                                                    {"a.TIFF", 0.5f / 65535, OIIO::TypeUInt16},

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
+#include <string>
 #include <variant>
 
 #include "io/own_environments.h"
@@ -11,6 +13,8 @@
 #include "lanthorn/ibl.h"
 #include "lanthorn/image_file.h"
 #include "lanthorn/scene.h"
+#include "lanthorn/session.h"
+#include "lanthorn/state.h"
 #include "light/infinite_light.h"
 #include "math/octahedral.h"
 #include "scene/scene.h"
@@ -158,8 +162,14 @@ TEST_F(Environment, TakesThePlaceOfEnvironmentsAlone) {
 }
 
 TEST_F(Environment, AnotherOneIsAnotherScene) {
-  const auto hash = [&](const EnvironmentChoice& choice) { return read("model.gltf", choice).hash; };
-  const std::uint64_t plain = hash({});
+  const auto hash = [&](const EnvironmentChoice& choice) {
+    RenderOptions options;
+    options.integrator = "path";
+    const Session session(build_scene(read("model.gltf", choice)), options);
+    const auto settings = nlohmann::json::parse(summarize(session.state()).settings);
+    return settings["identity"]["scene_hash"].get<std::string>();
+  };
+  const std::string plain = hash({});
   EXPECT_EQ(hash({.source = "studio"}), hash({.source = "studio"}));
   EXPECT_NE(hash({.source = "studio"}), plain);
   EXPECT_NE(hash({.source = "studio"}), hash({.source = "overcast"}));
@@ -168,6 +178,21 @@ TEST_F(Environment, AnotherOneIsAnotherScene) {
   const SceneDescription scene = read("model.gltf", {.source = file(equirectangular())});
   ASSERT_EQ(scene.files.size(), 1u);
   EXPECT_TRUE(scene.files.begin()->second.hash);
+}
+
+TEST_F(Environment, TheScenesOwnComesBack) {
+  const SceneDescription own = read("zup.pbrt", {});
+  SceneDescription scene = own;
+  replace_environment(scene, {.source = file(equirectangular())});
+  replace_environment(scene, {.source = "overcast", .rotation = 10});
+  ASSERT_EQ(scene.lights.size(), 3u);
+  EXPECT_TRUE(scene.files.empty()) << "the first picture's file is none of the scene's any more";
+  EXPECT_EQ(scene.warnings.size(), own.warnings.size() + 1) << "one line says which way is up";
+  replace_environment(scene, {});
+  ASSERT_EQ(scene.lights.size(), 4u);
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(scene.lights[i].node.index(), own.lights[i].node.index());
+  EXPECT_FALSE(std::get<description::InfiniteLight>(scene.lights[1].node).texels);
+  EXPECT_EQ(scene.environment, EnvironmentChoice());
 }
 
 // The user names the file, not the scene.

@@ -158,6 +158,26 @@ TEST(StandIns, RoomsAreSeenFromInsideByALampInThem) {
   EXPECT_TRUE(lit.area_lights.empty());
 }
 
+// The user's environment takes the place of the studio alone: camera and lamp are as without it.
+TEST(StandIns, TheUsersEnvironmentMovesNoCamera) {
+  const Vec3 half(4, 1.5f, 3);
+  for (const bool is_room : {true, false}) {
+    const auto scene_with = [&](bool gets_environment) {
+      SceneDescription scene = scene_of(is_room ? room(half, {sphere({1, -0.5f, 0}, 1)}) : std::vector{sphere({}, 1)});
+      add_stand_ins(scene, {.camera = true, .light = true, .gets_environment = gets_environment});
+      return scene;
+    };
+    const SceneDescription own = scene_with(false), lit = scene_with(true);
+    EXPECT_EQ(lit.view.camera.camera_to_world.start, own.view.camera.camera_to_world.start);
+    EXPECT_EQ(lit.shapes.size(), own.shapes.size());
+    EXPECT_EQ(lit.area_lights.size(), is_room ? 1u : 0u);
+    EXPECT_TRUE(lit.view.film.measures_exposure);
+    EXPECT_EQ(
+        lit.warnings.back().message,
+        is_room ? own.warnings.back().message : "the file has no camera: a view of all of it from the front stands in");
+  }
+}
+
 TEST(StandIns, ChestsEmptyRoomsAndOpenBoxesAreSeenFromOutside) {
   const Vec3 half(4, 1.5f, 3), chest(2, 2, 2);
   const Shape ball = sphere({1, -0.5f, 0}, 1);

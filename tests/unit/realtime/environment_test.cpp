@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -133,7 +134,8 @@ Material "conductor" "spectrum eta" "metal-Cu-eta" "spectrum k" "metal-Cu-k" "fl
   description::SphericalTexels texels{64, 32, {}};
   for (int i = 0; i < 64 * 32; ++i)
     texels.rows.push_back(sky((static_cast<float>(i % 64) + 0.5f) / 64, (static_cast<float>(i / 64) + 0.5f) / 32));
-  std::get<description::InfiniteLight>(description.lights.at(0).node).texels = texels;
+  std::get<description::InfiniteLight>(description.lights.at(0).node).texels =
+      std::make_shared<const description::SphericalTexels>(texels);
   return Scene(std::move(description));
 }
 

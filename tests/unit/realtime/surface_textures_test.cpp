@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -85,7 +86,8 @@ Material "diffuse" "rgb reflectance" [.1 .1 .1]
                 polar = pi * (static_cast<float>(i / 64) + 0.5f) / 32;
     sky.rows.push_back({1 + 0.9f * std::sin(azimuth), 1 + 0.9f * std::cos(azimuth), 1 + 0.9f * std::cos(polar)});
   }
-  std::get<description::InfiniteLight>(description.lights.at(0).node).texels = sky;
+  std::get<description::InfiniteLight>(description.lights.at(0).node).texels =
+      std::make_shared<const description::SphericalTexels>(sky);
   const Scene scene(std::move(description));
   RenderOptions options = test::options_for("splitsum", 1);
   options.color = ColorMode::rgb;

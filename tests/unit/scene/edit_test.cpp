@@ -81,6 +81,7 @@ void expect_equal(const Scene& a, const Scene& b) {
   HashRng rng(7);
   for (std::uint32_t i = 0; i < a.lights().size(); ++i) {
     EXPECT_EQ(power(a.lights()[i]), power(b.lights()[i])) << i;
+    EXPECT_EQ(a.light_media(i).inside, b.light_media(i).inside) << i;
     EXPECT_EQ(a.light_location(i).line, b.light_location(i).line);
     const auto from = [&](const Scene& scene) {
       return sample_direct(scene.lights()[i], {0.3f, 0.2f, 0.1f}, {0.3f, 0.6f}, w);
@@ -209,6 +210,63 @@ TEST(SceneEdit, ImagesAreNotReadAgain) {
                        ".", "image.pbrt"));
   std::filesystem::remove(image);
   EXPECT_NO_THROW(edit_scene(*scene, {}));
+}
+
+// Three environments around other lights, and a medium that emits: those keep their order, and it comes last.
+SceneDescription under_many_skies() {
+  return read_pbrt_string(R"(
+Camera "perspective"
+MakeNamedMedium "flame" "string type" "homogeneous" "rgb Le" [2 1 .5] "rgb sigma_a" [1 1 1] "rgb sigma_s" [.1 .1 .1]
+WorldBegin
+LightSource "point" "point3 from" [0 3 0] "rgb I" [1 2 3]
+LightSource "infinite" "rgb L" [.1 .2 .3]
+LightSource "distant" "rgb L" [3 2 1]
+LightSource "infinite" "rgb L" [.3 .2 .1]
+LightSource "spot" "rgb I" [1 1 4]
+LightSource "infinite" "rgb L" [0 0 .1]
+Shape "trianglemesh" "point3 P" [-4 0 -4  4 0 -4  4 0 4  -4 0 4] "integer indices" [0 1 2 0 2 3]
+MediumInterface "flame" ""
+Material "interface"
+Shape "sphere"
+)",
+                          ".", "skies.pbrt");
+}
+
+TEST(SceneEdit, AnEnvironmentIsLikeThatOfTheDescription) {
+  for (SceneDescription (*describe_scene)() : {&describe, &under_many_skies}) {
+    const SharedScene scene = build_scene(describe_scene());
+    const auto expect_like_built = [&](const Scene& edited, const EnvironmentChoice& choice) {
+      SceneDescription wanted = describe_scene();
+      replace_environment(wanted, choice);
+      expect_equal(edited, *build_scene(std::move(wanted)));
+    };
+    SharedScene edited = scene;
+    for (const EnvironmentChoice& choice :
+         {EnvironmentChoice{.source = "studio"}, EnvironmentChoice{.source = "studio", .rotation = 70, .scale = 3},
+          EnvironmentChoice{.source = "overcast", .up = UpAxis::z}, EnvironmentChoice{}}) {
+      edited = edit_scene(*edited, {.environment = choice});
+      expect_like_built(*edited, choice);
+      expect_like_built(*edit_scene(*scene, {.environment = choice}), choice);
+    }
+    expect_equal(*edited, *scene);
+  }
+}
+
+TEST(SceneEdit, AnEnvironmentIsReadOnce) {
+  const test::TemporaryDir dir;
+  const std::string sky = dir.write("sky.pfm", "PF\n2 1\n-1\n" + std::string(24, '\x3f'));
+  const SharedScene scene = build_scene(describe());
+  const auto image_of = [](const SharedScene& s) {
+    for (const Light& light : s->lights())
+      if (const auto* environment = std::get_if<ImageInfiniteLight>(&light)) return environment->image;
+    return static_cast<const SphericalImage*>(nullptr);
+  };
+  const SharedScene first = edit_scene(*scene, {.environment = EnvironmentChoice{.source = sky}});
+  std::filesystem::remove(sky);
+  const SharedScene turned = edit_scene(*first, {.environment = EnvironmentChoice{.source = sky, .rotation = 90}});
+  ASSERT_NE(image_of(first), nullptr);
+  EXPECT_EQ(image_of(turned), image_of(first));
+  EXPECT_THROW(edit_scene(*scene, {.environment = EnvironmentChoice{.source = sky}}), Error);
 }
 
 TEST(SceneEdit, WhatNeedsANewSceneIsRefused) {

@@ -6,7 +6,7 @@ const canvas = byId('picture'), stage = byId('stage'), context = canvas.getConte
 
 // What is shown: the last frame {about, halves}, how it is shown, and the camera as the page moves it.
 let frame = null, layer = 'color', display = {exposure: 0, curve: 'none', auto: false}, camera = null, upward = null;
-let fieldOfView = 45, lights = {}, moving = false, frameTimes = [];
+let lights = {}, moving = false, frameTimes = [];
 
 // Numbers
 
@@ -192,6 +192,8 @@ function takeChanges(about) {
   take(byId('method'), about.integrator);
   take(byId('width'), about.full_size[0]);
   take(byId('height'), about.full_size[1]);
+  takeLens(about.lens, take);
+  takeEnvironment(about.environment);
   if (!upward) upward = nearestAxis(camera.up);
   for (const [name, {slider, show}] of Object.entries(sliders)) {
     const factor = about.lights[name] ?? 1;
@@ -199,6 +201,36 @@ function takeChanges(about) {
     slider.value = stopsOf(factor);
     show(factor);
   }
+}
+
+const shortened = (x) => x === null ? '' : Number(x.toPrecision(4));
+function takeLens({fov, aperture, focus, focuses_middle}, take) {
+  byId('fov').disabled = byId('aperture').disabled = fov === null;
+  for (const id of ['focus', 'focus-middle', 'focus-pick']) byId(id).disabled = focus === null;
+  take(byId('fov'), shortened(fov));
+  take(byId('focus'), shortened(focus));
+  const name = aperture === null ? 'off' : `${shortened(aperture)}`, select = byId('aperture');
+  if (![...select.options].some((option) => option.value === name)) select.append(new Option(`f/${name}`, name));
+  select.value = name;
+  byId('focus-middle').setAttribute('aria-pressed', focus !== null && focuses_middle);
+  if (focus === null) pick(false);
+}
+function takeEnvironment({source, rotation, scale}) {
+  if (listedSource !== null && listedSource !== source) listLights();
+  listedSource = source;
+  environment = {source, rotation, scale};
+  byId('environment-source').disabled = false;
+  byId('environment-source').value = source;
+  byId('environment-place').hidden = source === '';
+  byId('environment-rotation').value = rotation;
+  byId('environment-scale').value = stopsOf(scale);
+  showEnvironment();
+}
+function showEnvironment() {
+  const {rotation, scale} = environment;
+  byId('environment-rotation-text').textContent = `${Number(rotation.toPrecision(4))}°`;
+  byId('environment-scale-text').textContent = factorText(scale);
+  byId('environment-scale').setAttribute('aria-valuetext', factorText(scale));
 }
 
 const nearestAxis = (v) => {
@@ -272,7 +304,8 @@ function showProgress(about) {
 
 let pending = null, isSending = false, knownRevision = 0;
 async function edit(change) {
-  pending = {...pending, ...change};
+  const lens = 'lens' in change ? change.lens && {...pending?.lens, ...change.lens} : pending?.lens;
+  pending = {...pending, ...change, lens};
   if (isSending) return;
   isSending = true;
   while (pending) {
@@ -326,7 +359,7 @@ function turn(x, y) {
 function shift(x, y) {
   if (!camera) return null;
   const {right, up} = axes(), distance = length(sub(camera.target, camera.eye));
-  const perPixel = 2 * distance * Math.tan(fieldOfView * Math.PI / 360) / Math.min(canvas.clientWidth, canvas.clientHeight);
+  const perPixel = 2 * distance * Math.tan((frame.about.lens.fov ?? 40) * Math.PI / 360) / Math.min(canvas.clientWidth, canvas.clientHeight);
   const by = add(scale(right, -x * perPixel), scale(up, y * perPixel));
   return {...camera, eye: add(camera.eye, by), target: add(camera.target, by)};
 }
@@ -335,7 +368,7 @@ function approach(factor) {
   return {...camera, eye: add(camera.target, scale(sub(camera.eye, camera.target), factor))};
 }
 const steer = (next, goesOn = false) => next && moveCamera(next, goesOn);
-const home = () => edit({home: true, camera: undefined, lights: undefined, moving: false});
+const home = () => edit({home: true, camera: undefined, lens: undefined, lights: undefined, moving: false});
 
 // Pointers
 
@@ -345,6 +378,7 @@ const middle = () => scale([...pointers.values()].reduce(add), 1 / pointers.size
 const spread = () => pointers.size < 2 ? 0 : length(sub(...pointers.values()));
 
 canvas.addEventListener('pointerdown', (event) => {
+  if (isPicking) return focusAt(event);
   canvas.setPointerCapture(event.pointerId);
   canvas.focus({preventScroll: true});
   pointers.set(event.pointerId, [event.clientX, event.clientY]);
@@ -371,7 +405,7 @@ canvas.addEventListener('pointerleave', () => {
   readOut();
 });
 canvas.addEventListener('contextmenu', (event) => event.preventDefault());
-canvas.addEventListener('dblclick', home);
+canvas.addEventListener('dblclick', () => Date.now() - pickedAt > 500 && home());
 canvas.addEventListener('wheel', (event) => {
   event.preventDefault();
   const lines = event.deltaMode === 1 ? 16 : 1;
@@ -402,6 +436,7 @@ canvas.addEventListener('keydown', (event) => {
   else if (event.key === '+' || event.key === '=') steer(approach(0.9));
   else if (event.key === '-') steer(approach(1 / 0.9));
   else if (event.key === 'Home') home();
+  else if (event.key === 'Escape' && isPicking) pick(false);
   else if (event.key === '[' || event.key === ']') chooseExposure(display.exposure + (event.key === ']' ? 0.5 : -0.5));
   else if (event.key === 'l' || event.key === 'L') nextLayer();
   else if (event.key === ' ') byId('pause').click();
@@ -483,10 +518,66 @@ byId('save-png').addEventListener('click', (event) => {
 });
 byId('save-exr').addEventListener('click', (event) => save(event.target, 'picture.exr'));
 
+// Lens
+
+let isPicking = false, pickedAt = 0;
+function pick(now) {
+  isPicking = now;
+  canvas.classList.toggle('picking', now);
+  byId('focus-pick').setAttribute('aria-pressed', now);
+  if (!now) return;
+  canvas.focus({preventScroll: true});
+  say('Click a point of the picture to focus on it');
+}
+function focusAt(event) {
+  const box = canvas.getBoundingClientRect(), full = frame.about.full_size;
+  const share = [(event.clientX - box.left) / box.width, (event.clientY - box.top) / box.height];
+  event.preventDefault();
+  pickedAt = Date.now();
+  pick(false);
+  edit({lens: {focus_at: share.map((s, i) => s * full[i])}});
+}
+/// Numbers are sent when they are complete.
+function onNumber(id, change) {
+  byId(id).addEventListener('input', (event) => { event.target.dataset.typed = '1'; });
+  byId(id).addEventListener('change', (event) => {
+    delete event.target.dataset.typed;
+    if (event.target.value !== '') change(Number(event.target.value));
+  });
+}
+/// A camera that frames its subject by itself would move with its field of view.
+onNumber('fov', (fov) => {
+  const {eye, target, up} = camera;
+  edit({lens: {fov}, ...frame.about.lens.frames_subject && {camera: {eye, target, up}}});
+});
+onNumber('focus', (focus) => edit({lens: {focus, focus_at: undefined}}));
+byId('aperture').replaceChildren(new Option('Off: all is sharp', 'off'),
+    ...[1.4, 2, 2.8, 4, 5.6, 8, 11, 16, 22, 32].map((f) => new Option(`f/${f}`, `${f}`)));
+byId('aperture').addEventListener('change', ({target: {value}}) => edit({lens: {aperture: value === 'off' ? value : Number(value)}}));
+byId('focus-middle').addEventListener('click', () => edit({lens: {focus: 'auto', focus_at: undefined}}));
+byId('focus-pick').addEventListener('click', () => pick(!isPicking));
+
+// Environment
+
+let environment = null, listedSource = null;  // the one whose lights are listed
+function changeEnvironment(change, isMoving) {
+  if (!environment) return;
+  environment = {...environment, ...change};
+  showEnvironment();
+  edit({environment, moving: isMoving});
+}
+byId('environment-source').addEventListener('change', (event) => changeEnvironment({source: event.target.value, rotation: 0, scale: 1}, false));
+for (const [event, isMoving] of [['input', true], ['change', false]]) {
+  byId('environment-rotation').addEventListener(event, ({target}) => changeEnvironment({rotation: Number(target.value)}, isMoving));
+  byId('environment-scale').addEventListener(event, ({target}) => changeEnvironment({scale: factorOf(Number(target.value))}, isMoving));
+}
+
 // Lights: sliders in stops; the lowest is off.
 
-const darkest = -6, sliders = {};
+const darkest = -6;
+let sliders = {};
 const stopsOf = (factor) => factor > 0 ? Math.max(darkest + 0.1, Math.log2(factor)) : darkest;
+const factorText = (factor) => factor === 0 ? 'off' : `× ${Number(factor.toPrecision(3))}`;
 const factorOf = (stops) => stops <= darkest ? 0 : Number((2 ** stops).toPrecision(4));
 
 function lightRow({name, description}) {
@@ -503,7 +594,7 @@ function lightRow({name, description}) {
   label.append(detail);
   Object.assign(slider, {type: 'range', min: darkest, max: 4, step: 0.1, value: 0});
   const show = (factor) => {
-    shown.textContent = factor === 0 ? 'off' : `× ${Number(factor.toPrecision(3))}`;
+    shown.textContent = factorText(factor);
     slider.setAttribute('aria-valuetext', factor === 0 ? 'off' : `${Number(factor.toPrecision(3))} times`);
   };
   const change = (isMoving) => {
@@ -520,6 +611,21 @@ function lightRow({name, description}) {
   sliders[name] = {slider, show};
   return row;
 }
+function showLights(known) {
+  sliders = {};
+  lights = {};
+  const none = document.createElement('p');
+  none.className = 'note';
+  none.textContent = 'No lights that can be dimmed';
+  byId('light-list').replaceChildren(...known.length > 0 ? known.map(lightRow) : [none]);
+}
+/// Another environment is another light.
+async function listLights() {
+  const response = await fetch('scene');
+  if (!response.ok) return;
+  showLights((await response.json()).lights);
+  if (frame) takeChanges(frame.about);
+}
 byId('lights-reset').addEventListener('click', () => {
   lights = {};
   edit({lights: {}, moving: false});
@@ -528,24 +634,19 @@ byId('lights-reset').addEventListener('click', () => {
 // Method and size: a refused one goes back to what the picture has.
 
 byId('method').addEventListener('change', (event) => edit({method: event.target.value}));
-for (const id of ['width', 'height']) {
-  byId(id).addEventListener('input', (event) => { event.target.dataset.typed = '1'; });
-  byId(id).addEventListener('change', (event) => {
-    delete event.target.dataset.typed;
-    edit({size: ['width', 'height'].map((side) => Math.round(Number(byId(side).value)))});
-  });
-}
+for (const id of ['width', 'height'])
+  onNumber(id, () => edit({size: ['width', 'height'].map((side) => Math.round(Number(byId(side).value)))}));
 
 function showScene(scene) {
   document.title = `${scene.title} – Lanthorn`;
   byId('title').textContent = scene.title;
-  fieldOfView = scene.field_of_view;
   byId('method').replaceChildren(...scene.methods.map(({name, description}) => {
     const option = new Option(name, name);
     option.title = description;
     return option;
   }));
-  if (scene.lights.length > 0) byId('light-list').replaceChildren(...scene.lights.map(lightRow));
+  byId('environment-source').replaceChildren(...scene.environments.map(({source, label}) => new Option(label, source)));
+  showLights(scene.lights);
   display.curve = byId('curve').value = scene.curve;
   display.auto = byId('auto').checked = scene.measures_exposure;
   setExposure(scene.exposure);
