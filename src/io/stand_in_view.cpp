@@ -51,14 +51,17 @@ ViewFrame frame_of(const Viewpoint& from) { return view_from(from.azimuth, from.
 struct Candidate {
   Viewpoint from;
   OutsideView view;
+  bool is_behind_ground = false;
+
+  double amount() const { return is_behind_ground ? 0 : view.amount(); }
 };
 
 const Viewpoint& best_viewpoint(const std::vector<const Candidate*>& candidates) {
   constexpr double much_more = 1.6, more = 1.15;
-  double most = much_more * candidates[0]->view.amount();
+  double most = much_more * candidates[0]->amount();
   const Candidate* best = candidates[0];
   for (const Candidate* candidate : candidates)
-    if (const double amount = candidate->view.amount(); amount > most) {
+    if (const double amount = candidate->amount(); amount > most) {
       most = more * amount;
       best = candidate;
     }
@@ -181,12 +184,13 @@ struct Outside {
   Outside(const ModelSamples& model, std::span<const Candidate> candidates) : is_seen(model.samples.size()) {
     constexpr float tolerance = 0.05f;
     double all = 0;
-    for (const auto& [from, view] : candidates)
-      for (const std::size_t i : view.in_front()) {
+    for (const Candidate& candidate : candidates)
+      for (const std::size_t i : candidate.view.in_front()) {
+        const bool is_back = candidate.view.is_back(i);
         is_seen[i] = 1;
         ++all;
-        if (view.is_back(i)) ++backs;
-        if (view.is_back(i) || model.is_on_box(i, tolerance)) ++dull;
+        if (is_back) ++backs;
+        if (is_back || model.is_on_box(i, tolerance)) ++dull;
       }
     backs /= all;
     dull /= all;
@@ -314,7 +318,8 @@ std::optional<StandInView> best_view_inside(const ModelSamples& model, std::span
 
 }  // namespace
 
-StandInView stand_in_view(const SceneDescription& scene, const OneSided& one_sided, bool has_own_light) {
+StandInView stand_in_view(const SceneDescription& scene, const OneSided& one_sided, bool has_own_light,
+                          const std::optional<Vec3>& side_of_ground) {
   ModelSamples model(scene, one_sided);
   constexpr float largest = 1e18f;  // squares of distances must fit into floats
   if (model.samples.empty() || !(model.radius > 0) || !(model.radius < largest))
@@ -322,12 +327,18 @@ StandInView stand_in_view(const SceneDescription& scene, const OneSided& one_sid
   if (has_own_light) model.lit = lit_sides(scene, model);
   const Walls walls(model);
   const bool is_open_room = walls.make_an_open_room();
+  // Or so near to its plane that it is seen edge-on.
+  const auto is_behind_ground = [&](const Viewpoint& viewpoint) {
+    constexpr float least_cosine = 0.1f;
+    return side_of_ground && dot(frame_of(viewpoint).towards_eye, *side_of_ground) < least_cosine;
+  };
   std::vector<Viewpoint> from(viewpoints.begin(), viewpoints.end());
-  if (is_open_room && walls.is_open(1, 1)) from.push_back(from_above);
-  if (is_open_room && walls.is_open(1, 0)) from.push_back(from_below);
+  if (is_open_room && walls.is_open(1, 1) && !is_behind_ground(from_above)) from.push_back(from_above);
+  if (is_open_room && walls.is_open(1, 0) && !is_behind_ground(from_below)) from.push_back(from_below);
   std::vector<Candidate> candidates;
   candidates.reserve(from.size());
-  for (const Viewpoint& viewpoint : from) candidates.push_back({viewpoint, OutsideView(model, frame_of(viewpoint))});
+  for (const Viewpoint& viewpoint : from)
+    candidates.push_back({viewpoint, OutsideView(model, frame_of(viewpoint)), is_behind_ground(viewpoint)});
   const bool is_dark_outside = is_lit_inside_alone(model, candidates);
   if (auto inside = best_view_inside(model, std::span(candidates).first(viewpoints.size()), is_dark_outside))
     return *inside;

@@ -41,7 +41,10 @@ struct StandInView {
 /// - the scene's own lights reach hardly anything that is seen from outside: lamps inside.
 /// Empty rooms whose walls have outsides, and open boxes, are seen from outside.
 ///
+/// From outside, the camera stands on this side of grounds that are not part of the scene (see `Grounds`).
+///
 /// Nothing depends on the model's size.
-StandInView stand_in_view(const SceneDescription& scene, const OneSided& one_sided, bool has_own_light);
+StandInView stand_in_view(const SceneDescription& scene, const OneSided& one_sided, bool has_own_light,
+                          const std::optional<Vec3>& side_of_ground = {});
 
 }  // namespace lanthorn

@@ -6,6 +6,7 @@
 #include <utility>
 #include <variant>
 
+#include "io/grounds.h"
 #include "io/lit_sides.h"
 #include "io/own_environments.h"
 #include "io/surfaces.h"
@@ -98,9 +99,13 @@ void add_stand_ins(SceneDescription& scene, const StandIns& lacking) {
   scene.view.film.measures_exposure = !lacking.light;
   if (!lacking.camera && !lacking.light) return;
   std::optional<StandInView> view;
+  bool has_ground = false;
   if (lacking.camera) {
-    view = stand_in_view(scene, lacking.one_sided, !lacking.light);
+    Grounds grounds(scene);
+    has_ground = grounds.side().has_value();
+    view = stand_in_view(scene, lacking.one_sided, !lacking.light, grounds.side());
     add_camera(scene, *view);
+    grounds.put_back(scene);
   }
   const bool is_inside = view && view->inside, hides_lights = view && view->hides_lights;
   if (lacking.light && is_inside) {
@@ -113,7 +118,11 @@ void add_stand_ins(SceneDescription& scene, const StandIns& lacking) {
   warning.location.file = scene.filename;
   const std::string no_camera =
       lacking.has_blind_camera ? "the file has no camera that sees anything" : "the file has no camera";
-  const std::string shown = view ? std::string(is_inside ? "a view " : "a view of all of it ") + view->name : "";
+  const std::string shown = view ? std::string(is_inside    ? "a view "
+                                               : has_ground ? "a view of all but the ground "
+                                                            : "a view of all of it ") +
+                                       view->name
+                                 : "";
   const std::string lit = is_inside ? "lit by a lamp in the room" : "in a studio of three soft lamps";
   if (hides_lights)
     warning.message = no_camera +
