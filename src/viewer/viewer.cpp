@@ -150,6 +150,8 @@ class Viewer {
   StageSums stages_;
   EyePathSpacing eye_path_spacing_;
   MovingResolution moving_resolution_;
+  // Of a frame that was drawn while something moves: when it began, and its share of the resolution.
+  std::optional<std::pair<ViewerClock::time_point, double>> moving_frame_;
   bool shown_is_exact_ = true;  // the last frame
   std::shared_ptr<const InteractivePicture> offline_;
   // A file with a camera and with the lights and objects of a moment.
@@ -308,7 +310,7 @@ void Viewer::draw_frame() {
   renderer_.draw(view, settings);
   picture.add(renderer_, view.imaging_ratio);
   FrameReport report = renderer_.report();
-  if (!is_exact) moving_resolution_.learn(seconds_since(start), share);
+  if (!is_exact) moving_frame_.emplace(start, share);
   eye_path_spacing_.learn(report, spacing);
   stages_.add(report);
   panel_.stages = stages_.means();
@@ -487,6 +489,8 @@ ViewerReport Viewer::run() {
     draw();
     update_information();
     present();
+    if (const auto moving = std::exchange(moving_frame_, {}))
+      moving_resolution_.learn(seconds_since(moving->first), moving->second);
     apply_wishes();
     constexpr double smoothing = 0.1;
     const double ms = 1e3 * seconds_since(start);

@@ -234,7 +234,9 @@ std::string milliseconds(double ms) {
 
 void draw_times(const Panel& panel) {
   heading("Frame");
-  if (!ImGui::BeginTable("times", 2, ImGuiTableFlags_SizingStretchProp)) return;
+  if (!ImGui::BeginTable("times", 2)) return;
+  ImGui::TableSetupColumn("what", ImGuiTableColumnFlags_WidthStretch, 2);
+  ImGui::TableSetupColumn("amount", ImGuiTableColumnFlags_WidthStretch, 1);
   if (panel.is_offline) {
     row("Passes", std::to_string(panel.frames));
   } else {
