@@ -15,6 +15,7 @@
 #include "console.h"
 #include "frames.h"
 #include "lanthorn/error.h"
+#include "lanthorn/image_file.h"
 #include "lanthorn/scene.h"
 #include "lanthorn/session.h"
 #include "lanthorn/text.h"
@@ -102,21 +103,54 @@ void explain_black(const RenderCommand& a, const Scene& scene, const ViewDescrip
   warn("{}: the picture is black: {}", output.string(), reason_for_black(scene, view));
 }
 
+// How the frames of a film are alike: all have the exposure that was measured from the first one, and where the file
+// has no camera that sees anything, that of the frame before.
+struct Film {
+  std::optional<float> exposure{};
+  std::optional<description::Camera> camera{};
+  DVec3 origin{0.0};  ///< of the camera's space
+
+  void keep_exposure(OutputSettings& settings) const {
+    if (!exposure) return;
+    settings.display.exposure = *exposure;
+    settings.measures_exposure = false;
+    settings.hints = false;
+  }
+  void keep_camera(SceneDescription& scene) {
+    const bool stands_in = scene.view.camera.subject.has_value();
+    if (!stands_in || !camera) {
+      camera = scene.view.camera;
+      origin = scene.origin;
+      return;
+    }
+    const Transform moved = translate(origin - scene.origin);
+    scene.view.camera = *camera;
+    AnimatedTransform& to_world = scene.view.camera.camera_to_world;
+    to_world = {moved * to_world.start, moved * to_world.end, to_world.start_time, to_world.end_time};
+  }
+};
+
+std::optional<float> exposure_measured(const RenderCommand& a, const Session& session) {
+  if (!a.output.measures_exposure.value_or(summarize(session.state()).measures_exposure)) return {};
+  return measured_exposure(session.picture());
+}
+
 // What is checked before the render, and read for it once.
 struct Prepared {
   SharedScene scene;
   std::vector<fs::path> outputs;
 };
 
-Prepared prepare(const RenderCommand& a) {
+Prepared prepare(const RenderCommand& a, Film& film) {
   SceneDescription description = read_scene(a.scene, a.reading);
+  film.keep_camera(description);
   check_view(description.view, a.options);
   std::vector<fs::path> outputs = choose_outputs(a, a.scene, description);
   check_files(a, a.scene, description, outputs);
   return {scale_lights(build_scene(std::move(description)), a.changes.lights), std::move(outputs)};
 }
 
-void render_view(const RenderCommand& a, const Prepared& prepared, const ViewDescription& view) {
+void render_view(const RenderCommand& a, const Prepared& prepared, const ViewDescription& view, Film& film) {
   const auto& [scene, outputs] = prepared;
   Session session(scene, view, a.options);
   if (!a.resume.empty()) session.resume(open_state(a.resume), a.resume);
@@ -144,6 +178,7 @@ void render_view(const RenderCommand& a, const Prepared& prepared, const ViewDes
   }
   if (onlookers.tev) onlookers.tev->show(session.picture());
   save_render(a, a.options, outputs, *scene, session.state(), statistics);
+  if (!film.exposure) film.exposure = exposure_measured(a, session);
   explain_black(a, *scene, view, outputs.front(), session);
   if (statistics.out_of_memory)
     throw Error(
@@ -158,16 +193,23 @@ ViewDescription first_view(const RenderCommand& a, const Scene& scene) { return 
 // The scene is read and built once: the camera alone moves.
 void render_turntable(const RenderCommand& a) {
   const FrameRange frames = frames_of(a);
-  Prepared prepared = prepare(of_frame(a, frames.begin));
+  Film film;
+  Prepared prepared = prepare(of_frame(a, frames.begin), film);
   const Scene& scene = *prepared.scene;
   std::vector<ViewDescription> views = turntable(first_view(a, scene), scene, *a.turntable);
   for (std::uint64_t i = frames.begin; i < frames.end && !stop_requested(); ++i) {
-    const RenderCommand one = of_frame(a, i);
+    RenderCommand one = of_frame(a, i);
+    film.keep_exposure(one.output);
     prepared.outputs = choose_outputs(one, a.scene, description_of(scene));
     check_files(one, a.scene, description_of(scene), prepared.outputs);
     focus(views[i], a.changes.lens, scene, a.options);
-    render_view(one, prepared, views[i]);
+    render_view(one, prepared, views[i], film);
   }
+}
+
+void render_frame(const RenderCommand& a, Film& film) {
+  const Prepared prepared = prepare(a, film);
+  render_view(a, prepared, first_view(a, *prepared.scene), film);
 }
 
 void run_render(const RenderCommand& a) {
@@ -176,14 +218,12 @@ void run_render(const RenderCommand& a) {
   const ThreadLimit limit(a.threads);
   if (a.frames || a.turntable) check_frames(a);
   if (a.turntable) return render_turntable(a);
-  if (!a.frames) {
-    const Prepared prepared = prepare(a);
-    return render_view(a, prepared, first_view(a, *prepared.scene));
-  }
+  Film film;
+  if (!a.frames) return render_frame(a, film);
   for (std::uint64_t i = a.frames->begin; i < a.frames->end && !stop_requested(); ++i) {
-    const RenderCommand one = of_frame(a, i);
-    const Prepared prepared = prepare(one);
-    render_view(one, prepared, first_view(one, *prepared.scene));
+    RenderCommand one = of_frame(a, i);
+    film.keep_exposure(one.output);
+    render_frame(one, film);
   }
 }
 

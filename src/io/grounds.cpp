@@ -58,7 +58,7 @@ std::vector<Part> parts_of(const SceneDescription& scene) {
 // Towards the things, which are beside the ground. Zero if the box is thin along no axis, or the scene is not: then it
 // is a wall of a room.
 Vec3 side_of_ground(const Bounds& box, const Bounds& things, const Bounds& scene) {
-  constexpr float far_larger = 8;
+  constexpr float far_larger = 4;
   Vec3 side(0);
   const auto axis = thin_axis(box);
   const float size = size_of(box), largest = std::max(size_of(things), axis ? scene.extent()[*axis] : 0.0f);

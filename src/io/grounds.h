@@ -13,8 +13,8 @@
 namespace lanthorn {
 
 /// Takes grounds out of a scene, so that a view can frame what stands on them. A ground is a mesh that is flat along an
-/// axis of the world, along which the whole scene is flat, too, and whose bounding box is at least eight times as large
-/// as that of all meshes but the grounds: in a view of everything, these would be specks. All grounds of a scene are on
+/// axis of the world, along which the whole scene is flat, too, and whose bounding box is at least four times as large
+/// as that of all meshes but the grounds: in a view of everything, these would be small. All grounds of a scene are on
 /// the same side of the other meshes.
 class Grounds {
  public:

@@ -149,6 +149,7 @@ TEST(StandIns, ThingsOnALargePlainAreFramed) {
     return seen({square(at, right, up), sphere(Point(0), 1)}, {{}, false});
   };
   EXPECT_LT(width(on({0, -1, 0}, 4.0f * x, -4.0f * z)), 0.5f * alone);
+  EXPECT_NEAR(width(on({0, -1, 0}, 6.0f * x, -6.0f * z)), alone, 0.1f * alone);
   EXPECT_NEAR(width(on({0, -1, 0}, 50.0f * x, -50.0f * z)), alone, 0.1f * alone);
   EXPECT_GT(eye_of(on({0, 0, -1}, 50.0f * x, 50.0f * y)).z, 1);
   const SceneDescription before = on({0, 0, 1}, 50.0f * x, 50.0f * y);
