@@ -49,7 +49,7 @@ std::vector<Part> parts_of(const SceneDescription& scene) {
     const Bounds& object = objects[scene.instances[i].object];
     if (!object.empty()) parts.push_back({scene.instances[i].object_to_world.start.bounds(object), i, true});
   }
-  std::erase_if(parts, [](const Part& part) { return part.box.empty(); });
+  std::erase_if(parts, [](const Part& part) { return part.box.empty() || !std::isfinite(size_of(part.box)); });
   std::stable_sort(parts.begin(), parts.end(),
                    [](const Part& a, const Part& b) { return size_of(a.box) > size_of(b.box); });
   return parts;

@@ -23,6 +23,7 @@ using namespace description;
 struct Viewpoint {
   float azimuth = 0, elevation = 15;
   const char* name = "from the front";
+  Direction up{0, 1, 0};  // of the model
 };
 // The first is the front; the nearer to it the better.
 constexpr std::array<Viewpoint, 16> viewpoints{{{0, 15, "from the front"},
@@ -43,7 +44,7 @@ constexpr std::array<Viewpoint, 16> viewpoints{{{0, 15, "from the front"},
                                                 {-135, 40, "from behind, left and above"}}};
 
 // Into rooms that are open there. From below: the front of a model with z up, seen from a little above.
-constexpr Viewpoint from_above{0, 75, "from above"}, from_below{0, -75, "from below, with z up"};
+constexpr Viewpoint from_above{0, 75, "from above"}, from_below{0, -75, "from below, with z up", {0, 0, 1}};
 
 ViewFrame frame_of(const Viewpoint& from) { return view_from(from.azimuth, from.elevation); }
 
@@ -311,7 +312,8 @@ std::optional<StandInView> best_view_inside(const ModelSamples& model, std::span
       const double amount = amount_seen(model, room, frame);
       if (amount <= most) continue;
       most = amount;
-      best = {frame, view_inside, "from inside", with_lamp(model, rooms, room)};
+      best = StandInView{
+          .frame = frame, .field_of_view = view_inside, .name = "from inside", .inside = with_lamp(model, rooms, room)};
     }
   return best;
 }
@@ -323,7 +325,7 @@ StandInView stand_in_view(const SceneDescription& scene, const OneSided& one_sid
   ModelSamples model(scene, one_sided);
   constexpr float largest = 1e18f;  // squares of distances must fit into floats
   if (model.samples.empty() || !(model.radius > 0) || !(model.radius < largest))
-    return {frame_of(viewpoints[0]), view_outside, viewpoints[0].name, {}};
+    return {.frame = frame_of(viewpoints[0]), .field_of_view = view_outside, .name = viewpoints[0].name};
   if (has_own_light) model.lit = lit_sides(scene, model);
   const Walls walls(model);
   const bool is_open_room = walls.make_an_open_room();
@@ -344,7 +346,11 @@ StandInView stand_in_view(const SceneDescription& scene, const OneSided& one_sid
     return *inside;
   if (is_dark_outside) model.lit.clear();
   const Viewpoint& best = best_viewpoint(with_most_meshes(scene, model, candidates, is_open_room));
-  return {frame_of(best), view_outside, best.name, {}, is_dark_outside};
+  return {.frame = frame_of(best),
+          .field_of_view = view_outside,
+          .name = best.name,
+          .up = best.up,
+          .hides_lights = is_dark_outside};
 }
 
 }  // namespace lanthorn

@@ -22,7 +22,8 @@ struct StandInView {
   ViewFrame frame;
   float field_of_view = 40;  ///< degrees
   const char* name = "";     ///< "from the front"
-  std::optional<Inside> inside;
+  Direction up{0, 1, 0};     ///< of the model, as this view takes it
+  std::optional<Inside> inside{};
   bool hides_lights = false;  ///< the scene's own lights, inside of its meshes, reach nothing that is seen from outside
 };
 

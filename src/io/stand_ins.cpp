@@ -56,7 +56,7 @@ void add_lamp(SceneDescription& scene, const StandInView::Inside& room) {
   ball.location.file = scene.filename;
 }
 
-void add_studio(SceneDescription& scene) {
+void add_studio(SceneDescription& scene, const Direction& up) {
   constexpr int width = 256, height = width / 2;
   const auto texels = static_cast<std::size_t>(width) * height;
   InfiniteLight studio;
@@ -71,12 +71,12 @@ void add_studio(SceneDescription& scene) {
       studio.texels->rows.push_back({radiance, radiance, radiance});
     }
   const Vec3 seen = scene.view.camera.camera_to_world.start.vector({0, 0, -1});
-  const Vec3 level(seen.x, 0, seen.z);
+  const Vec3 level = seen - dot(seen, up) * up;
   const Direction towards = length_squared(level) > 0 ? normalize(level) : Direction(0, 0, 1);
   Light& light = scene.lights.emplace_back();
   light.node = std::move(studio);
-  light.light_to_world = Transform(Mat4(glm::vec4(towards, 0), glm::vec4(cross({0, 1, 0}, towards), 0),
-                                        glm::vec4(0, 1, 0, 0), glm::vec4(0, 0, 0, 1)));
+  light.light_to_world =
+      Transform(Mat4(glm::vec4(towards, 0), glm::vec4(cross(up, towards), 0), glm::vec4(up, 0), glm::vec4(0, 0, 0, 1)));
   light.location.file = scene.filename;
 }
 
@@ -112,7 +112,7 @@ void add_stand_ins(SceneDescription& scene, const StandIns& lacking) {
     add_lamp(scene, *view->inside);
     scene.view.film.measures_exposure = true;  // walls may be close to the lamp
   } else if (lacking.light || hides_lights) {
-    add_studio(scene);
+    add_studio(scene, view ? view->up : Direction(0, 1, 0));
   }
   Warning& warning = scene.warnings.emplace_back();
   warning.location.file = scene.filename;

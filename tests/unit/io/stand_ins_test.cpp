@@ -450,6 +450,19 @@ TEST(StandInRooms, AreFramedAlikeAtAnySize) {
   EXPECT_LT(eye_of(tiny).z, 3e-4f);
 }
 
+// Where the view takes z to be up, the studio's lamps are there, too.
+TEST(StandInRooms, WithZUpAreLitFromThere) {
+  std::vector<Shape> shapes = room(
+      {1, 1, 1}, {sphere({0.5f, -0.4f, 0.3f}, 0.2f), sphere({-0.5f, 0.4f, 0.1f}, 0.2f), sphere({0, 0, -0.5f}, 0.2f)});
+  for (const auto& [wall, up] : {std::pair<std::size_t, Vec3>{6, {0, 0, 1}}, {8, {0, 1, 0}}}) {
+    std::vector<Shape> open = shapes;
+    open.erase(open.begin() + static_cast<std::ptrdiff_t>(wall));
+    const SceneDescription scene = seen(open, {{0}, false});
+    ASSERT_EQ(scene.lights.size(), 1u);
+    EXPECT_LT(length(scene.lights[0].light_to_world.vector({0, 0, 1}) - up), 1e-6f) << scene.warnings.back().message;
+  }
+}
+
 // A house without a floor, as many models are, is seen from outside: from below nothing more is seen.
 TEST(StandInRooms, HousesWithoutAFloorAreNotSeenFromBelow) {
   std::vector<Shape> house = room({2, 1, 1.5f}, {});
