@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <glm/vector_relational.hpp>
 #include <numbers>
 #include <string_view>
 #include <variant>
@@ -85,21 +86,32 @@ void rotate_camera(Camera& camera, const Transform& rotation, const Point& pivot
   to_world = {map * to_world.start, map * to_world.end, to_world.start_time, to_world.end_time};
 }
 
-Bounds bounds_of(const SceneModel& model, const Transform& from_world) {
+// What a camera frames, in the space that `from_world` maps to: points in its box. Grounds are larger than that, and
+// not framed.
+Bounds framed_by(const Camera& camera, const SceneModel& model, const Transform& from_world) {
+  constexpr float slack = 1e-3f;
+  const Transform to_camera = camera.camera_to_world.start.inverted();
+  const Vec3 extent = camera.subject->extent(), margin(slack * std::max({extent.x, extent.y, extent.z}));
+  const Vec3 low = camera.subject->min - margin, high = camera.subject->max + margin;
   Bounds bounds;
   for (const SceneModel::Instance& instance : model.instances) {
-    const Transform map = from_world * instance.to_world;
+    const Transform map = from_world * instance.to_world, to_box = to_camera * instance.to_world;
     for (std::size_t m = instance.first_mesh; m < instance.first_mesh + instance.mesh_count; ++m)
-      for (const Point& p : model.meshes[m].positions) bounds.extend(map.point(p));
+      for (const Point& p : model.meshes[m].positions) {
+        const Point at = to_box.point(p);
+        if (glm::all(glm::greaterThanEqual(at, low)) && glm::all(glm::lessThanEqual(at, high)))
+          bounds.extend(map.point(p));
+      }
   }
-  return bounds;
+  return bounds.empty() ? (from_world * camera.camera_to_world.start).bounds(*camera.subject) : bounds;
 }
 
 void orbit_camera(ViewDescription& view, const Orbit& orbit, const Scene& scene) {
   Camera& camera = view.camera;
+  const Camera before = camera;
   const CameraAxes axes(camera);
   rotate_camera(camera, rotation(axes, orbit), pivot_of(camera, axes, scene));
-  if (camera.subject) camera.subject = bounds_of(model_of(scene), camera.camera_to_world.start.inverted());
+  if (camera.subject) camera.subject = framed_by(before, model_of(scene), camera.camera_to_world.start.inverted());
 }
 
 PerspectiveCamera& perspective(Camera& camera, const char* option) {
@@ -190,19 +202,20 @@ float focus_at(const ViewDescription& view, const Scene& scene, const ViewOption
 
 std::vector<ViewDescription> turntable(const ViewDescription& view, const Scene& scene, std::size_t count) {
   const CameraAxes axes(view.camera);
-  const Point pivot = pivot_of(view.camera, axes, scene), centre = summarize(scene).bounds.centre();
+  const Point pivot = pivot_of(view.camera, axes, scene);
   std::vector<ViewDescription> views(count, view);
   for (std::size_t i = 0; i < count; ++i) {
     const float yaw = 360 * static_cast<float>(i) / static_cast<float>(count);
     rotate_camera(views[i].camera, rotation(axes, {yaw, 0}), view.camera.subject ? Point(0) : pivot);
   }
   if (!view.camera.subject) return views;
-  // One box for all places, around the middle of the scene.
+  // One box for all places, around the middle of what is framed.
   const SceneModel model = model_of(scene);
+  const Point centre = framed_by(view.camera, model, {}).centre();
   Vec3 half(0);
   for (const ViewDescription& placed : views) {
     const Transform to_camera = placed.camera.camera_to_world.start.inverted();
-    const Bounds box = bounds_of(model, to_camera);
+    const Bounds box = framed_by(view.camera, model, to_camera);
     half = glm::max(half, glm::max(box.max - to_camera.point(centre), to_camera.point(centre) - box.min));
   }
   for (ViewDescription& placed : views) {

@@ -16,6 +16,7 @@
 #include "console.h"
 #include "frames.h"
 #include "lanthorn/error.h"
+#include "lanthorn/image_file.h"
 #include "lanthorn/scene.h"
 #include "lanthorn/session.h"
 #include "lanthorn/text.h"
@@ -104,6 +105,39 @@ void explain_black(const RenderCommand& a, const Scene& scene, const ViewDescrip
   warn("{}: the picture is black: {}", output.string(), reason_for_black(scene, view));
 }
 
+// How the frames of a film are alike: all have the exposure that was measured from the first one, and where the file
+// has no camera that sees anything, that of the frame before. What was said of one is not said again.
+struct Film {
+  SaidLines said{};
+  std::optional<float> exposure{};
+  std::optional<description::Camera> camera{};
+  DVec3 origin{0.0};  ///< of the camera's space
+
+  void keep_exposure(OutputSettings& settings) const {
+    if (!exposure) return;
+    settings.display.exposure = *exposure;
+    settings.measures_exposure = false;
+    settings.hints = false;
+  }
+  void keep_camera(SceneDescription& scene) {
+    const bool stands_in = scene.view.camera.subject.has_value();
+    if (!stands_in || !camera) {
+      camera = scene.view.camera;
+      origin = scene.origin;
+      return;
+    }
+    const Transform moved = translate(origin - scene.origin);
+    scene.view.camera = *camera;
+    AnimatedTransform& to_world = scene.view.camera.camera_to_world;
+    to_world = {moved * to_world.start, moved * to_world.end, to_world.start_time, to_world.end_time};
+  }
+};
+
+std::optional<float> exposure_measured(const RenderCommand& a, const Session& session) {
+  if (!a.output.measures_exposure.value_or(summarize(session.state()).measures_exposure)) return {};
+  return measured_exposure(session.picture());
+}
+
 // What is checked before the render, and read for it once.
 struct Prepared {
   SharedScene scene;  // without --light
@@ -111,14 +145,15 @@ struct Prepared {
 };
 
 // `like`: the scene of another moment, or null.
-Prepared prepare(const RenderCommand& a, SceneDescription description, const SharedScene& like = {}) {
+Prepared prepare(const RenderCommand& a, SceneDescription description, Film& film, const SharedScene& like = {}) {
+  film.keep_camera(description);
   check_view(description.view, a.options);
   std::vector<fs::path> outputs = choose_outputs(a, a.scene, description);
   check_files(a, a.scene, description, outputs);
   return {build_scene(std::move(description), like), std::move(outputs)};
 }
 
-void render_view(const RenderCommand& a, const Prepared& prepared, const ViewDescription& view, SaidLines& said) {
+void render_view(const RenderCommand& a, const Prepared& prepared, const ViewDescription& view, Film& film) {
   const std::vector<fs::path>& outputs = prepared.outputs;
   const SharedScene scene = scale_lights(prepared.scene, a.changes.lights);
   Session session(scene, view, a.options);
@@ -132,8 +167,8 @@ void render_view(const RenderCommand& a, const Prepared& prepared, const ViewDes
   if (const auto viewer = viewer_of(a)) onlookers.tev.emplace(*viewer, printable(outputs.front().filename().string()));
   set_stage(Stage::rendering);
   if (onlookers.checkpoints && !a.quiet) announce_checkpoints(*onlookers.checkpoints);
-  announce_color(a, session.state(), said);
-  report_warnings(session.warnings(), said);
+  announce_color(a, session.state(), film.said);
+  report_warnings(session.warnings(), film.said);
 
   StopRule stop = session.plan();
   stop.interrupted = &stop_requested();
@@ -147,6 +182,7 @@ void render_view(const RenderCommand& a, const Prepared& prepared, const ViewDes
   }
   if (onlookers.tev) onlookers.tev->show(session.picture());
   save_render(a, a.options, outputs, *scene, session.state(), statistics);
+  if (!film.exposure) film.exposure = exposure_measured(a, session);
   explain_black(a, *scene, view, outputs.front(), session);
   if (statistics.out_of_memory)
     throw Error(
@@ -162,16 +198,17 @@ ViewDescription first_view(const RenderCommand& a, const Scene& scene) { return 
 void render_turntable(const RenderCommand& a) {
   const FrameRange frames = frames_of(a);
   const RenderCommand first = of_frame(a, frames.begin);
-  Prepared prepared = prepare(first, read_scene(first.scene, first.reading));
-  SaidLines said;
+  Film film;
+  Prepared prepared = prepare(first, read_scene(first.scene, first.reading), film);
   const Scene& scene = *prepared.scene;
   std::vector<ViewDescription> views = turntable(first_view(a, scene), scene, *a.turntable);
   for (std::uint64_t i = frames.begin; i < frames.end && !stop_requested(); ++i) {
-    const RenderCommand one = of_frame(a, i);
+    RenderCommand one = of_frame(a, i);
+    film.keep_exposure(one.output);
     prepared.outputs = choose_outputs(one, a.scene, description_of(scene));
     check_files(one, a.scene, description_of(scene), prepared.outputs);
     focus(views[i], a.changes.lens, scene, a.options);
-    render_view(one, prepared, views[i], said);
+    render_view(one, prepared, views[i], film);
   }
 }
 
@@ -179,11 +216,12 @@ void render_turntable(const RenderCommand& a) {
 void render_animation(const RenderCommand& a) {
   SceneFile file(a.scene, a.reading);
   SharedScene last;
-  SaidLines said;
+  Film film;
   for (std::uint64_t i = a.frames->begin; i < a.frames->end && !stop_requested(); ++i) {
-    const RenderCommand one = of_frame(a, i);
-    const Prepared prepared = prepare(one, file.at(one.reading.at), std::exchange(last, nullptr));
-    render_view(one, prepared, first_view(one, *prepared.scene), said);
+    RenderCommand one = of_frame(a, i);
+    film.keep_exposure(one.output);
+    const Prepared prepared = prepare(one, file.at(one.reading.at), film, std::exchange(last, nullptr));
+    render_view(one, prepared, first_view(one, *prepared.scene), film);
     last = prepared.scene;
   }
 }
@@ -195,9 +233,9 @@ void run_render(const RenderCommand& a) {
   if (a.frames || a.turntable) check_frames(a);
   if (a.turntable) return render_turntable(a);
   if (a.frames) return render_animation(a);
-  const Prepared prepared = prepare(a, read_scene(a.scene, a.reading));
-  SaidLines said;
-  render_view(a, prepared, first_view(a, *prepared.scene), said);
+  Film film;
+  const Prepared prepared = prepare(a, read_scene(a.scene, a.reading), film);
+  render_view(a, prepared, first_view(a, *prepared.scene), film);
 }
 
 }  // namespace

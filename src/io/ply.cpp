@@ -306,6 +306,8 @@ class BodyReader {
         read_vertices(element);
       else if (element.name == "face" && !has_faces_)
         read_faces(element);
+      else if (element.name == "tristrips")
+        read_strips(element);
       else
         skip(element);
     }
@@ -378,25 +380,37 @@ class BodyReader {
   }
 
   void read_faces(const Element& element) {
+    require_memory(static_cast<double>(element.count) * sizeof(faces.triangles[0]), body_.place(), "the mesh");
+    faces.triangles.reserve(static_cast<std::size_t>(element.count));
+    read_corners(element, [&](const Property& p) { read_face(p); });
+  }
+
+  // The scans of Stanford and of Cyberware have their triangles so.
+  void read_strips(const Element& element) {
+    read_corners(element, [&](const Property& p) { read_strip(p); });
+  }
+
+  // Calls `read` for each list of vertex_indices.
+  template <class Read>
+  void read_corners(const Element& element, const Read& read) {
     has_faces_ = true;
     const auto is_corners = [](const Property& p) {
       return p.count_type && (p.name == "vertex_indices" || p.name == "vertex_index");
     };
     if (std::count_if(element.properties.begin(), element.properties.end(), is_corners) != 1)
       body_.fail("the faces need one list of vertex_indices");
-    require_memory(static_cast<double>(element.count) * sizeof(faces.triangles[0]), body_.place(), "the mesh");
-    faces.triangles.reserve(static_cast<std::size_t>(element.count));
     for (std::uint64_t i = 0; i < element.count; ++i)
       for (const Property& p : element.properties) {
         if (is_corners(p))
-          read_face(p);
+          read(p);
         else
           skip(p);
       }
   }
 
-  std::uint32_t corner(Number type) {
-    const double index = body_.number(type);
+  std::uint32_t corner(Number type) { return vertex_index(body_.number(type)); }
+
+  std::uint32_t vertex_index(double index) {
     if (!(index >= 0 && index < 4294967295.0) || index != std::floor(index))
       body_.fail("a face has an impossible vertex index");
     const auto result = static_cast<std::uint32_t>(index);
@@ -427,8 +441,30 @@ class BodyReader {
     }
   }
 
+  // Each corner makes a triangle with the two before it, wound the other way in turn; -1 begins a new strip. Triangles
+  // of which two corners are the same only lead from place to place.
+  void read_strip(const Property& p) {
+    const std::uint64_t count = list_length(p);
+    std::array<std::uint32_t, 2> last{};
+    std::uint64_t length = 0;
+    for (std::uint64_t i = 0; i < count; ++i) {
+      const double index = body_.number(p.type);
+      if (index == -1) {
+        length = 0;
+        continue;
+      }
+      const std::uint32_t next = vertex_index(index);
+      if (length >= 2 && last[0] != last[1] && last[0] != next && last[1] != next) {
+        const bool is_turned = length % 2 == 1;
+        faces.triangles.push_back({last[is_turned ? 1 : 0], last[is_turned ? 0 : 1], next});
+      }
+      last = {last[1], next};
+      ++length;
+    }
+  }
+
   void check_indices() const {
-    const bool any = !faces.triangles.empty() || !faces.quads.empty() || faces.degenerate > 0;
+    const bool any = !faces.triangles.empty() || !faces.quads.empty() || faces.degenerate > 0 || largest_index_ > 0;
     if (any && largest_index_ >= vertices.positions.size())
       body_.fail("a face uses vertex " + std::to_string(largest_index_) + ", but there are " +
                  std::to_string(vertices.positions.size()));
@@ -439,14 +475,13 @@ class BodyReader {
   std::uint32_t largest_index_ = 0;
 };
 
+bool is_finite(const Point& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
+
 // Removes faces with a corner that is not finite. Returns their number.
 template <class Face>
 std::size_t erase_not_finite(std::vector<Face>& faces, const std::vector<Point>& positions) {
   return std::erase_if(faces, [&](const Face& face) {
-    return std::any_of(face.begin(), face.end(), [&](std::uint32_t i) {
-      const Point& p = positions[i];
-      return !std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z);
-    });
+    return std::any_of(face.begin(), face.end(), [&](std::uint32_t i) { return !is_finite(positions[i]); });
   });
 }
 
@@ -465,6 +500,11 @@ PlyMesh assemble(Vertices vertices, Faces faces) {
     mesh.warnings.emplace_back("the mesh has no faces: left out");
     return mesh;
   }
+  // No face uses these any more. They lie where one is, so that the mesh gets no larger.
+  const Point place =
+      vertices.positions[mesh.triangles.triangles.empty() ? mesh.quads.patches[0][0] : mesh.triangles.triangles[0][0]];
+  std::replace_if(
+      vertices.positions.begin(), vertices.positions.end(), [](const Point& p) { return !is_finite(p); }, place);
   if (!mesh.quads.patches.empty()) {
     const bool shared = !mesh.triangles.triangles.empty();
     mesh.quads.positions = shared ? vertices.positions : std::move(vertices.positions);

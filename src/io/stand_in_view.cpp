@@ -23,6 +23,7 @@ using namespace description;
 struct Viewpoint {
   float azimuth = 0, elevation = 15;
   const char* name = "from the front";
+  Direction up{0, 1, 0};  // of the model
 };
 // The first is the front; the nearer to it the better.
 constexpr std::array<Viewpoint, 16> viewpoints{{{0, 15, "from the front"},
@@ -43,7 +44,7 @@ constexpr std::array<Viewpoint, 16> viewpoints{{{0, 15, "from the front"},
                                                 {-135, 40, "from behind, left and above"}}};
 
 // Into rooms that are open there. From below: the front of a model with z up, seen from a little above.
-constexpr Viewpoint from_above{0, 75, "from above"}, from_below{0, -75, "from below, with z up"};
+constexpr Viewpoint from_above{0, 75, "from above"}, from_below{0, -75, "from below, with z up", {0, 0, 1}};
 
 ViewFrame frame_of(const Viewpoint& from) { return view_from(from.azimuth, from.elevation); }
 
@@ -51,14 +52,17 @@ ViewFrame frame_of(const Viewpoint& from) { return view_from(from.azimuth, from.
 struct Candidate {
   Viewpoint from;
   OutsideView view;
+  bool is_behind_ground = false;
+
+  double amount() const { return is_behind_ground ? 0 : view.amount(); }
 };
 
 const Viewpoint& best_viewpoint(const std::vector<const Candidate*>& candidates) {
   constexpr double much_more = 1.6, more = 1.15;
-  double most = much_more * candidates[0]->view.amount();
+  double most = much_more * candidates[0]->amount();
   const Candidate* best = candidates[0];
   for (const Candidate* candidate : candidates)
-    if (const double amount = candidate->view.amount(); amount > most) {
+    if (const double amount = candidate->amount(); amount > most) {
       most = more * amount;
       best = candidate;
     }
@@ -181,12 +185,13 @@ struct Outside {
   Outside(const ModelSamples& model, std::span<const Candidate> candidates) : is_seen(model.samples.size()) {
     constexpr float tolerance = 0.05f;
     double all = 0;
-    for (const auto& [from, view] : candidates)
-      for (const std::size_t i : view.in_front()) {
+    for (const Candidate& candidate : candidates)
+      for (const std::size_t i : candidate.view.in_front()) {
+        const bool is_back = candidate.view.is_back(i);
         is_seen[i] = 1;
         ++all;
-        if (view.is_back(i)) ++backs;
-        if (view.is_back(i) || model.is_on_box(i, tolerance)) ++dull;
+        if (is_back) ++backs;
+        if (is_back || model.is_on_box(i, tolerance)) ++dull;
       }
     backs /= all;
     dull /= all;
@@ -307,33 +312,45 @@ std::optional<StandInView> best_view_inside(const ModelSamples& model, std::span
       const double amount = amount_seen(model, room, frame);
       if (amount <= most) continue;
       most = amount;
-      best = {frame, view_inside, "from inside", with_lamp(model, rooms, room)};
+      best = StandInView{
+          .frame = frame, .field_of_view = view_inside, .name = "from inside", .inside = with_lamp(model, rooms, room)};
     }
   return best;
 }
 
 }  // namespace
 
-StandInView stand_in_view(const SceneDescription& scene, const OneSided& one_sided, bool has_own_light) {
+StandInView stand_in_view(const SceneDescription& scene, const OneSided& one_sided, bool has_own_light,
+                          const std::optional<Vec3>& side_of_ground) {
   ModelSamples model(scene, one_sided);
   constexpr float largest = 1e18f;  // squares of distances must fit into floats
   if (model.samples.empty() || !(model.radius > 0) || !(model.radius < largest))
-    return {frame_of(viewpoints[0]), view_outside, viewpoints[0].name, {}};
+    return {.frame = frame_of(viewpoints[0]), .field_of_view = view_outside, .name = viewpoints[0].name};
   if (has_own_light) model.lit = lit_sides(scene, model);
   const Walls walls(model);
   const bool is_open_room = walls.make_an_open_room();
+  // Or so near to its plane that it is seen edge-on.
+  const auto is_behind_ground = [&](const Viewpoint& viewpoint) {
+    constexpr float least_cosine = 0.1f;
+    return side_of_ground && dot(frame_of(viewpoint).towards_eye, *side_of_ground) < least_cosine;
+  };
   std::vector<Viewpoint> from(viewpoints.begin(), viewpoints.end());
-  if (is_open_room && walls.is_open(1, 1)) from.push_back(from_above);
-  if (is_open_room && walls.is_open(1, 0)) from.push_back(from_below);
+  if (is_open_room && walls.is_open(1, 1) && !is_behind_ground(from_above)) from.push_back(from_above);
+  if (is_open_room && walls.is_open(1, 0) && !is_behind_ground(from_below)) from.push_back(from_below);
   std::vector<Candidate> candidates;
   candidates.reserve(from.size());
-  for (const Viewpoint& viewpoint : from) candidates.push_back({viewpoint, OutsideView(model, frame_of(viewpoint))});
+  for (const Viewpoint& viewpoint : from)
+    candidates.push_back({viewpoint, OutsideView(model, frame_of(viewpoint)), is_behind_ground(viewpoint)});
   const bool is_dark_outside = is_lit_inside_alone(model, candidates);
   if (auto inside = best_view_inside(model, std::span(candidates).first(viewpoints.size()), is_dark_outside))
     return *inside;
   if (is_dark_outside) model.lit.clear();
   const Viewpoint& best = best_viewpoint(with_most_meshes(scene, model, candidates, is_open_room));
-  return {frame_of(best), view_outside, best.name, {}, is_dark_outside};
+  return {.frame = frame_of(best),
+          .field_of_view = view_outside,
+          .name = best.name,
+          .up = best.up,
+          .hides_lights = is_dark_outside};
 }
 
 }  // namespace lanthorn

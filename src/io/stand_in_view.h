@@ -22,7 +22,8 @@ struct StandInView {
   ViewFrame frame;
   float field_of_view = 40;  ///< degrees
   const char* name = "";     ///< "from the front"
-  std::optional<Inside> inside;
+  Direction up{0, 1, 0};     ///< of the model, as this view takes it
+  std::optional<Inside> inside{};
   bool hides_lights = false;  ///< the scene's own lights, inside of its meshes, reach nothing that is seen from outside
 };
 
@@ -41,7 +42,10 @@ struct StandInView {
 /// - the scene's own lights reach hardly anything that is seen from outside: lamps inside.
 /// Empty rooms whose walls have outsides, and open boxes, are seen from outside.
 ///
+/// From outside, the camera stands on this side of grounds that are not part of the scene (see `Grounds`).
+///
 /// Nothing depends on the model's size.
-StandInView stand_in_view(const SceneDescription& scene, const OneSided& one_sided, bool has_own_light);
+StandInView stand_in_view(const SceneDescription& scene, const OneSided& one_sided, bool has_own_light,
+                          const std::optional<Vec3>& side_of_ground = {});
 
 }  // namespace lanthorn

@@ -8,6 +8,7 @@
 #include <utility>
 #include <variant>
 
+#include "io/grounds.h"
 #include "io/lit_sides.h"
 #include "io/own_environments.h"
 #include "io/surfaces.h"
@@ -57,7 +58,7 @@ void add_lamp(SceneDescription& scene, const StandInView::Inside& room) {
   ball.location.file = scene.filename;
 }
 
-void add_studio(SceneDescription& scene) {
+void add_studio(SceneDescription& scene, const Direction& up) {
   constexpr int width = 256, height = width / 2;
   const auto texels = static_cast<std::size_t>(width) * height;
   InfiniteLight studio;
@@ -73,17 +74,17 @@ void add_studio(SceneDescription& scene) {
     }
   studio.texels = std::make_shared<const SphericalTexels>(std::move(picture));
   const Vec3 seen = scene.view.camera.camera_to_world.start.vector({0, 0, -1});
-  const Vec3 level(seen.x, 0, seen.z);
+  const Vec3 level = seen - dot(seen, up) * up;
   const Direction towards = length_squared(level) > 0 ? normalize(level) : Direction(0, 0, 1);
   Light& light = scene.lights.emplace_back();
   light.node = std::move(studio);
-  light.light_to_world = Transform(Mat4(glm::vec4(towards, 0), glm::vec4(cross({0, 1, 0}, towards), 0),
-                                        glm::vec4(0, 1, 0, 0), glm::vec4(0, 0, 0, 1)));
+  light.light_to_world =
+      Transform(Mat4(glm::vec4(towards, 0), glm::vec4(cross(up, towards), 0), glm::vec4(up, 0), glm::vec4(0, 0, 0, 1)));
   light.location.file = scene.filename;
 }
 
 // What stands in. The user's environment is not one of these things.
-std::string message_of(const StandIns& lacking, const std::optional<StandInView>& view) {
+std::string message_of(const StandIns& lacking, const std::optional<StandInView>& view, bool has_ground) {
   const bool is_inside = view && view->inside, hides_lights = view && view->hides_lights;
   const bool has_studio = !lacking.gets_environment && !is_inside;
   const std::string studio = "a studio of three soft lamps";
@@ -92,7 +93,11 @@ std::string message_of(const StandIns& lacking, const std::optional<StandInView>
   if (hides_lights) text += ", and its lights are enclosed in closed meshes, whose outside they do not light";
   const bool has_lamp = lacking.light && is_inside, is_in_studio = (lacking.light || hides_lights) && has_studio;
   if (lacking.light && (has_lamp || is_in_studio)) text += " and no light";
-  text += std::string(is_inside ? ": a view " : ": a view of all of it ") + view->name;
+  const char* shown = is_inside    ? ": a view "
+                      : has_ground ? ": a view of all but the ground "
+                                   : ": a view of all of it ";
+  text += shown;
+  text += view->name;
   if (has_lamp) text += ", lit by a lamp in the room,";
   if (is_in_studio) text += ", in " + studio + ",";
   return text + " stands in";
@@ -117,17 +122,21 @@ void add_stand_ins(SceneDescription& scene, const StandIns& lacking) {
   scene.view.film.measures_exposure = !lacking.light || lacking.gets_environment;
   if (!lacking.camera && !lacking.light) return;
   std::optional<StandInView> view;
+  bool has_ground = false;
   if (lacking.camera) {
-    view = stand_in_view(scene, lacking.one_sided, !lacking.light);
+    Grounds grounds(scene);
+    has_ground = grounds.side().has_value();
+    view = stand_in_view(scene, lacking.one_sided, !lacking.light, grounds.side());
     add_camera(scene, *view);
+    grounds.put_back(scene);
   }
   if (lacking.light && view && view->inside) {
     add_lamp(scene, *view->inside);
     scene.view.film.measures_exposure = true;  // walls may be close to the lamp
   } else if (lacking.light || (view && view->hides_lights)) {
-    add_studio(scene);
+    add_studio(scene, view ? view->up : Direction(0, 1, 0));
   }
-  const std::string message = message_of(lacking, view);
+  const std::string message = message_of(lacking, view, has_ground);
   if (!message.empty()) scene.warnings.push_back({{scene.filename}, message});
 }
 

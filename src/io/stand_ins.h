@@ -33,8 +33,8 @@ struct ModelFile {
 /// stands, and takes the place of the studio alone.
 ///
 /// The camera has a field of view of 40 degrees and +y up, and frames all triangle meshes whatever the film's aspect
-/// ratio, from the best side (see `stand_in_view`). In a closed room it stands inside, with 60 degrees, and an
-/// invisible lamp lights the room in place of a missing light.
+/// ratio but grounds, from the best side (see `Grounds` and `stand_in_view`). In a closed room it stands inside, with
+/// 60 degrees, and an invisible lamp lights the room in place of a missing light.
 ///
 /// The light is a studio: an environment of three large soft lamps and a grey gradient, turned to the camera. A white
 /// wall there has about radiance 1, so that its pictures need no exposure; those in the scene's own light measure it.

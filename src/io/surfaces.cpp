@@ -55,13 +55,19 @@ std::vector<Bounds> bounds_of(const SceneDescription& scene, std::span<const Tra
   std::vector<Bounds> bounds(from_world.size());
   for (const Shape& shape : scene.shapes) extend(bounds, shape, from_world);
   std::vector<Bounds> objects(scene.objects.size());
-  const std::array own_space{Transform()};
   for (std::size_t i = 0; i < objects.size(); ++i)
-    for (const Shape& shape : scene.objects[i].shapes) extend({&objects[i], 1}, shape, own_space);
+    for (const Bounds& shape : bounds_of(scene.objects[i].shapes)) objects[i].extend(shape);
   for (const Instance& instance : scene.instances)
     if (const Bounds& object = objects[instance.object]; !object.empty())
       for (std::size_t i = 0; i < bounds.size(); ++i)
         bounds[i].extend((from_world[i] * instance.object_to_world.start).bounds(object));
+  return bounds;
+}
+
+std::vector<Bounds> bounds_of(const std::vector<Shape>& shapes) {
+  std::vector<Bounds> bounds(shapes.size());
+  const std::array own_space{Transform()};
+  for (std::size_t i = 0; i < shapes.size(); ++i) extend({&bounds[i], 1}, shapes[i], own_space);
   return bounds;
 }
 

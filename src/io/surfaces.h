@@ -18,6 +18,8 @@ namespace lanthorn {
 /// A box around all triangle meshes where they are when the shutter opens, in the space that `from_world` maps to.
 /// Boxes of instances are those of their objects.
 Bounds bounds_of(const SceneDescription& scene, const Transform& from_world = {});
+/// Of each shape by itself, in the space that shapes are placed in; empty for shapes of other kinds.
+std::vector<Bounds> bounds_of(const std::vector<description::Shape>& shapes);
 /// In several spaces.
 std::vector<Bounds> bounds_of(const SceneDescription& scene, std::span<const Transform> from_world);
 

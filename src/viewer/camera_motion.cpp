@@ -61,6 +61,12 @@ CameraPose pose_of(const Transform& camera_to_world, float distance) {
   return pose;
 }
 
+CameraPose framing_pose(const description::Camera& camera, const Point& eye) {
+  const Transform& given = camera.camera_to_world.start;
+  const float distance = std::sqrt(distance_squared(given.point(camera.subject->centre()), eye));
+  return pose_of(translate(eye - given.point(Point(0))) * given, distance);
+}
+
 description::Camera placed(description::Camera camera, const CameraPose& pose) {
   camera.camera_to_world = AnimatedTransform(pose.camera_to_world);
   camera.subject.reset();

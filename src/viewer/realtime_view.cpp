@@ -159,7 +159,7 @@ void EyePathSpacing::learn(const FrameReport& report, int spacing) {
 
 void MovingResolution::learn(double seconds, double share) {
   // Steps, so that textures are seldom made anew. A frame may take somewhat more or less time than it should.
-  constexpr double wanted = 0.08, slack = 1.3, step = 0.8;
+  constexpr double wanted = 0.075, slack = 1.3, step = 0.8;
   constexpr int coarsest = 6;  // steps: a quarter of the width
   if (seconds > slack * wanted || seconds < wanted / slack) {
     const double fitting = share * std::sqrt(wanted / std::max(seconds, 1e-4));

@@ -57,12 +57,12 @@ class EyePathSpacing {
   int pixels_ = 1;
 };
 
-/// The resolution of frames while the eye or a thing moves, so that there are about 12 of them a second.
+/// The resolution of frames while the eye or a thing moves, so that there are 10 to 17 of them a second.
 class MovingResolution {
  public:
   /// Of width and height.
   double share() const { return share_; }
-  /// From what a frame took that had this share.
+  /// From what a frame took that had this share, until it was shown.
   void learn(double seconds, double share);
 
  private:

@@ -75,14 +75,12 @@ float first_distance(const Scene& scene, const View& view, const Picker& picker)
   return std::max(std::sqrt(distance_squared(ray.origin, sphere.centre)), 0.1f * sphere.radius);
 }
 
-// A camera that frames a subject, standing where it would go.
-CameraPose first_pose(const ViewDescription& description, const View& view, float distance) {
-  const CameraPose given = pose_of(description.camera.camera_to_world.start, distance);
-  if (!description.camera.subject) return given;
+// What the camera turns around is what it frames, or else what is in the middle of the picture.
+CameraPose first_pose(const ViewDescription& description, const Scene& scene, const View& view, const Picker& picker) {
+  const description::Camera& camera = description.camera;
+  if (!camera.subject) return pose_of(camera.camera_to_world.start, first_distance(scene, view, picker));
   const Vec2 middle(0.5f * static_cast<float>(view.window.width()), 0.5f * static_cast<float>(view.window.height()));
-  CameraPose framing = given;
-  framing.camera_to_world = translate(ray_through(view, middle).origin - eye_of(given)) * given.camera_to_world;
-  return framing;
+  return framing_pose(camera, ray_through(view, middle).origin);
 }
 
 ToneSettings::Curve window_curve(ToneCurve curve) {
@@ -150,6 +148,8 @@ class Viewer {
   StageSums stages_;
   EyePathSpacing eye_path_spacing_;
   MovingResolution moving_resolution_;
+  // Of a frame that was drawn while something moves: when it began, and its share of the resolution.
+  std::optional<std::pair<ViewerClock::time_point, double>> moving_frame_;
   bool shown_is_exact_ = true;  // the last frame
   std::shared_ptr<const InteractivePicture> offline_;
   // A file with a camera and with the lights and objects of a moment.
@@ -170,7 +170,7 @@ Viewer::Viewer(const SharedScene& scene, const ViewDescription& description, con
       view_(view_in(*scene, description_, options.render)),
       picker_(*scene),
       scene_(scene, options.light_factors),
-      interaction_(first_pose(description_, view_, first_distance(*scene, view_, picker_)),
+      interaction_(first_pose(description_, *scene, view_, picker_),
                    metres_per_second_share * scene->bounding_sphere().radius),
       original_(scene),
       shown_scene_(scene),
@@ -308,7 +308,7 @@ void Viewer::draw_frame() {
   renderer_.draw(view, settings);
   picture.add(renderer_, view.imaging_ratio);
   FrameReport report = renderer_.report();
-  if (!is_exact) moving_resolution_.learn(seconds_since(start), share);
+  if (!is_exact) moving_frame_.emplace(start, share);
   eye_path_spacing_.learn(report, spacing);
   stages_.add(report);
   panel_.stages = stages_.means();
@@ -489,6 +489,8 @@ ViewerReport Viewer::run() {
     draw();
     update_information();
     present();
+    if (const auto moving = std::exchange(moving_frame_, {}))
+      moving_resolution_.learn(seconds_since(moving->first), moving->second);
     apply_wishes();
     constexpr double smoothing = 0.1;
     const double ms = 1e3 * seconds_since(start);

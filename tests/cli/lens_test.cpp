@@ -147,6 +147,20 @@ TEST_F(Lens, ATurntableStaysEquallyFarAway) {
   EXPECT_LT(glm::length(eye_of(views[4]) + eye_of(views[0]) - 2.0f * Point(5, eye_of(views[0]).y, 0)), 1e-2f);
 }
 
+// The same bar on a ground that is far larger is framed as if it stood alone, from everywhere.
+TEST_F(Lens, GroundsAreNotFramed) {
+  dir_.write("stage.obj", bytes("bar.obj") + "o ground\nusemtl g\nv -90 -.5 -90\nv 90 -.5 -90\nv 90 -.5 90\n" +
+                              "v -90 -.5 90\nf 9 12 11 10\n");
+  const SharedScene bar = scene("bar.obj"), stage = scene("stage.obj");
+  const auto expect_alike = [&](const ViewDescription& a, const ViewDescription& b, int i) {
+    EXPECT_LT(glm::length(eye_of(a) - eye_of(b)), 0.02f * glm::length(eye_of(a) - Point(5, 0, 0))) << i;
+  };
+  expect_alike(changed(*bar, {.orbit = Orbit{40, 10}}), changed(*stage, {.orbit = Orbit{40, 10}}), -1);
+  const std::vector<ViewDescription> alone = turntable(description_of(*bar).view, *bar, 4),
+                                     staged = turntable(description_of(*stage).view, *stage, 4);
+  for (std::size_t i = 0; i < 4; ++i) expect_alike(alone[i], staged[i], static_cast<int>(i));
+}
+
 TEST_F(Lens, BadOptionsSayWhatWasExpected) {
   dir_.write("flat.pbrt", "Camera \"orthographic\"\nWorldBegin\nLightSource \"infinite\"\nShape \"sphere\"\n");
   refuse(quick("flat.pbrt", {"--fov", "30", "-o", "a.png"}), "--fov: the scene's camera is no perspective camera");
@@ -174,12 +188,52 @@ TEST_F(Lens, CamerasAreChosenByName) {
 }
 
 TEST_F(Lens, FramesAreThePicturesOfTheirMoments) {
-  succeed(quick("moves.gltf", {"--frames", "11:13@8", "-o", "f.###.exr", "-o", "f.###.png", "--json", "f.###.json"}));
-  EXPECT_EQ(files(), (Words{"bar.obj", "f.011.exr", "f.011.json", "f.011.png", "f.012.exr", "f.012.json", "f.012.png",
+  succeed(quick("moves.gltf", {"--frames", "1:3@8", "-o", "f.###.exr", "-o", "f.###.png", "--json", "f.###.json"}));
+  EXPECT_EQ(files(), (Words{"bar.obj", "f.001.exr", "f.001.json", "f.001.png", "f.002.exr", "f.002.json", "f.002.png",
                             "moves.gltf", "tiny.pbrt"}));
-  succeed(quick("moves.gltf", {"--at", "1.5", "-o", "one.exr"}));
-  expect_equal_files("f.012.exr", "one.exr");
-  EXPECT_NE(bytes("f.011.exr"), bytes("f.012.exr"));
+  succeed(quick("moves.gltf", {"--at", "0.25", "-o", "one.exr"}));
+  expect_equal_files("f.002.exr", "one.exr");
+  EXPECT_NE(bytes("f.001.exr"), bytes("f.002.exr"));
+}
+
+double brightness(const Image& image) {
+  double sum = 0;
+  for (const float value : image.pixels) sum += static_cast<double>(value);
+  return sum / static_cast<double>(image.pixels.size());
+}
+
+// A ball in the light of a lamp behind the camera; its dark side is not made bright.
+TEST_F(Lens, PicturesOfATurntableHaveOneExposure) {
+  dir_.write("moon.pbrt",
+             "LookAt 0 0 5  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" 30\nFilm \"rgb\"\nWorldBegin\n"
+             "LightSource \"distant\" \"point3 from\" [0 0 1] \"point3 to\" [0 0 0] \"rgb L\" [8 8 8]\n"
+             "LightSource \"infinite\" \"rgb L\" [.1 .1 .1]\nShape \"sphere\"\n");
+  Words words = quick("moon.pbrt", {"--turntable", "2", "--exposure", "auto", "-o", "m.#.png"});
+  std::erase(words, "-q");
+  const std::string said = succeed(words).out;
+  EXPECT_TRUE(contains(said, "m.0.png: --exposure "));
+  EXPECT_FALSE(contains(said, "m.1.png: --exposure "));
+  EXPECT_LT(brightness(read_image(path("m.1.png"))), 0.5 * brightness(read_image(path("m.0.png"))));
+}
+
+// A triangle that moves to the right, in a file without a camera, moves in the picture.
+TEST_F(Lens, FramesWithoutACameraHaveThatOfTheFirst) {
+  nlohmann::json file = nlohmann::json::parse(bytes("moves.gltf"));
+  file.erase("cameras");
+  for (nlohmann::json& node : file["nodes"]) node.erase("camera");
+  dir_.write("free.gltf", file.dump());
+  succeed(quick("free.gltf", {"--frames", "0:2@4", "-o", "f.#.exr"}));
+  const auto column = [&](const std::string& name) {
+    const Image seen = *select_layer(read_image(path(name)), "albedo");
+    double sum = 0, weight = 0;
+    for (int y = 0; y < seen.height; ++y)
+      for (int x = 0; x < seen.width; ++x) {
+        sum += x * static_cast<double>(seen.at(x, y, 0));
+        weight += static_cast<double>(seen.at(x, y, 0));
+      }
+    return sum / weight;
+  };
+  EXPECT_GT(column("f.1.exr"), column("f.0.exr") + 2);
 }
 
 // The scene has warnings: of two cameras, and of the studio.

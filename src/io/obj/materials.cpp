@@ -372,11 +372,34 @@ class MaterialFile {
   const Warn& warn_;
 };
 
+SpectrumParameter* reflectance_of(Material& material) {
+  if (auto* diffuse = std::get_if<DiffuseMaterial>(&material.node)) return &diffuse->reflectance;
+  if (auto* plastic = std::get_if<PlasticMaterial>(&material.node)) return &plastic->reflectance;
+  if (auto* coated = std::get_if<CoatedPlasticMaterial>(&material.node)) return &coated->base.reflectance;
+  if (auto* metal = std::get_if<ConductorMaterial>(&material.node))
+    return metal->reflectance ? &*metal->reflectance : nullptr;
+  if (auto* metal = std::get_if<CoatedConductorMaterial>(&material.node))
+    return metal->reflectance ? &*metal->reflectance : nullptr;
+  return nullptr;
+}
+
 }  // namespace
 
 void read_materials(std::string_view text, const std::filesystem::path& folder, const std::string& name,
                     const FileAccess* access, SceneDescription& scene, Materials& materials, const Warn& warn) {
   MaterialFile(text, folder, name, access, scene, materials, warn).read();
+}
+
+void add_vertex_colors(SceneDescription& scene) {
+  const auto add = [&](decltype(SpectrumTexture::node) node, const SourceLocation& location) {
+    scene.spectrum_textures.push_back({std::move(node), location});
+    return SpectrumParameter{0.0f, static_cast<Index>(scene.spectrum_textures.size() - 1)};
+  };
+  for (Material& material : scene.materials)
+    if (SpectrumParameter* reflectance = reflectance_of(material)) {
+      const SpectrumParameter vertices = add(VertexColorTexture{}, material.location);
+      *reflectance = add(ScaleTexture<SpectrumParameter, SpectrumParameter>{*reflectance, vertices}, material.location);
+    }
 }
 
 }  // namespace lanthorn::obj

@@ -32,4 +32,8 @@ using Materials = std::unordered_map<std::string, Surface>;
 void read_materials(std::string_view text, const std::filesystem::path& folder, const std::string& name,
                     const FileAccess* access, SceneDescription& scene, Materials& materials, const Warn& warn);
 
+/// Multiplies the diffuse reflectance of all materials, and that of metals, by the colours of vertices, which are 1 on
+/// meshes without them.
+void add_vertex_colors(SceneDescription& scene);
+
 }  // namespace lanthorn::obj

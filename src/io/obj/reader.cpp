@@ -6,9 +6,11 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <utility>
 
+#include "film/display.h"
 #include "io/counted_warnings.h"
 #include "io/missing_files.h"
 #include "io/obj/materials.h"
@@ -50,6 +52,7 @@ class Reader {
     while (words_.next_line()) read_line(words_.word("a keyword"));
     add_bare_faces();
     for (auto& [key, part] : parts_) add_shape(key.material, part);
+    if (!colors_.empty()) add_vertex_colors(scene_);
     suggest_texture();
     std::vector<Index> lamps;
     for (Index i = 0; i < scene_.area_lights.size(); ++i)
@@ -83,9 +86,7 @@ class Reader {
   void read_line(const Word& key) {
     const std::string_view word = key.text;
     if (word == "v") {
-      positions_.push_back(vec3());
-      if (words_.find_word() && words_.find_word())
-        warn("vertex colours", words_.location(key), "vertex colours are not supported: ignored");
+      read_vertex(key);
     } else if (word == "vn") {
       normals_.push_back(vec3());
     } else if (word == "vt") {
@@ -103,6 +104,33 @@ class Reader {
     } else if (word != "g" && word != "o") {
       warn("obj " + std::string(word), words_.location(key), in_quotes(word) + " is not supported: ignored");
     }
+  }
+
+  // Three numbers after the position are a colour in sRGB, as scanners and sculpting programs write it; a single one is
+  // the weight of a rational curve.
+  void read_vertex(const Word& key) {
+    positions_.push_back(vec3());
+    std::optional<Vec3> color;
+    if (const auto r = words_.find_word(), g = words_.find_word(), b = words_.find_word(); r && g && b) {
+      color = Vec3(component(*r), component(*g), component(*b));
+      if (!std::isfinite(color->x + color->y + color->z)) {
+        color.reset();
+        warn("vertex colours", words_.location(key), "vertex colours that are no numbers count as white");
+      }
+    }
+    if (!color && colors_.empty()) return;
+    colors_.resize(positions_.size(), Vec3(1));
+    if (!color) return;
+    colors_.back() = *color;
+    largest_color_ = std::max({largest_color_, color->x, color->y, color->z});
+  }
+
+  // NaN if the word is no number.
+  static float component(const Word& word) {
+    float value = 0;
+    const char* const end = word.text.data() + word.text.size();
+    const auto [last, error] = std::from_chars(word.text.data(), end, value);
+    return error == std::errc{} && last == end ? value : std::numeric_limits<float>::quiet_NaN();
   }
 
   Vec3 vec3() {
@@ -146,7 +174,7 @@ class Reader {
   }
 
   void warn_of_library(const Error& problem) {
-    warn("mtllib " + problem.message, problem.where, problem.message + ": its materials are grey");
+    warn("mtllib " + problem.message, problem.where, problem.message + ": its materials are left out");
   }
 
   // The error of a file that cannot be read.
@@ -296,6 +324,10 @@ class Reader {
       part.mesh.positions.push_back(positions_[c.v]);
       if (c.vt != none) part.mesh.uvs.push_back(uvs_[c.vt]);
       if (c.vn != none) part.mesh.normals.push_back(normals_[c.vn]);
+      if (!colors_.empty()) {
+        part.mesh.colors.resize(part.mesh.positions.size(), glm::vec4(1));
+        if (c.v < colors_.size()) part.mesh.colors.back() = glm::vec4(colors_[c.v], 1);
+      }
     }
     return it->second;
   }
@@ -303,19 +335,34 @@ class Reader {
   const Surface& surface(const std::string& material, const SourceLocation& place) {
     if (const auto found = materials_.find(material); found != materials_.end()) return found->second;
     if (!material.empty())
-      warn("material " + material, place, "there is no material " + in_quotes(material) + ": grey is used");
+      warn("material " + material, place,
+           "there is no material " + in_quotes(material) +
+               (colors_.empty() ? ": grey is used" : ": the colours of its vertices are used"));
     const auto [it, is_new] = materials_.try_emplace("");
     if (is_new) {
       it->second.material = static_cast<Index>(scene_.materials.size());
-      scene_.materials.emplace_back().location.file = scene_.filename;
+      Material& plain = scene_.materials.emplace_back();
+      plain.location.file = scene_.filename;
+      if (!colors_.empty()) plain.node = DiffuseMaterial{{1.0f, {}}};
     }
     return it->second;
+  }
+
+  // From 0 to 1, or to 255 in files that have larger numbers.
+  void make_colors_linear(std::vector<glm::vec4>& colors) const {
+    const float scale = largest_color_ > 1 ? 1 / 255.0f : 1.0f;
+    for (glm::vec4& color : colors)
+      for (glm::length_t c = 0; c < 3; ++c) color[c] = linear_from_srgb(std::clamp(scale * color[c], 0.0f, 1.0f));
   }
 
   void add_shape(const std::string& material, Part& part) {
     const Surface& s = surface(material, part.location);
     scene_.files.insert(s.files.begin(), s.files.end());
     has_images_ = has_images_ || !s.files.empty();
+    if (!part.mesh.colors.empty()) {
+      part.mesh.colors.resize(part.mesh.positions.size(), glm::vec4(1));
+      make_colors_linear(part.mesh.colors);
+    }
     Shape shape;
     shape.geometry = std::move(part.mesh);
     shape.material = s.material;
@@ -353,7 +400,9 @@ class Reader {
   std::vector<Point> positions_;
   std::vector<Normal> normals_;
   std::vector<Vec2> uvs_;
-  std::string material_;  // current
+  std::vector<Vec3> colors_;  // one per position; empty before the first that has one
+  float largest_color_ = 0;   // component of a colour
+  std::string material_;      // current
   std::map<std::string, std::uint32_t> smoothing_groups_;
   std::uint32_t smoothing_group_ = flat_group;  // current
   bool names_smoothing_groups_ = false, has_images_ = false;

@@ -38,7 +38,10 @@ float share_past(ivec3 texel, vec3 point, vec3 facing, uint triangle, vec3 towar
   return below_point > max(0, 0.25 * behind_seen - slack) ? 1 : 1 - seen.a;
 }
 
-uniform int soft_edges;  // 1: between the four nearest texels
+uniform int soft_edges;  // 1: between nine texels
+
+// Quadratic B-spline weights of the texels before, at and after the nearest one, at `f` from its middle.
+vec3 spline_weights(float f) { return vec3(0.5 * (0.5 - f) * (0.5 - f), 0.75 - f * f, 0.5 * (0.5 + f) * (0.5 + f)); }
 
 // `least_slack`: m; a thousandth of the map's width at the point is allowed in any case.
 float share_lit(int view, vec3 point, vec3 facing, uint triangle, vec3 towards, float least_slack) {
@@ -48,14 +51,24 @@ float share_lit(int view, vec3 point, vec3 facing, uint triangle, vec3 towards, 
   float width = length(views[view].right[uint(layer) - views[view].maps.x].xyz);
   if (views[view].origin.a != view_parallel) width *= length(views[view].origin.xyz - point);
   float slack = max(least_slack, 0.001 * width);
-  if (soft_edges == 0) return share_past(ivec3(place), point, facing, triangle, towards, slack);
-  vec2 corner = floor(place.xy - 0.5), f = place.xy - 0.5 - corner;
-  float share = 0;
-  for (int i = 0; i < 4; ++i) {
-    ivec2 step = ivec2(i & 1, i >> 1), last = textureSize(l_position, 0).xy - 1;
-    float weight = (step.x == 1 ? f.x : 1 - f.x) * (step.y == 1 ? f.y : 1 - f.y);
-    ivec3 texel = ivec3(clamp(ivec2(corner) + step, ivec2(0), last), layer);
-    share += weight * share_past(texel, point, facing, triangle, towards, slack);
+  float at_middle = share_past(ivec3(place), point, facing, triangle, towards, slack);
+  if (soft_edges == 0) return at_middle;
+  // Edges that run across the texels at a slant are then straight: the mean of four texels would still be wavy. Where
+  // the middle and the corners agree there is no edge.
+  vec2 middle = floor(place.xy), f = place.xy - middle - 0.5;
+  vec3 across = spline_weights(f.x), down = spline_weights(f.y);
+  ivec2 last = textureSize(l_position, 0).xy - 1;
+  float share = across[1] * down[1] * at_middle;
+  bool is_even = true;
+  for (int pass = 0; pass < 2; ++pass) {  // corners, then sides
+    if (pass == 1 && is_even) return at_middle;
+    for (int i = 0; i < 4; ++i) {
+      ivec2 step = pass == 0 ? ivec2(i & 1, i >> 1) * 2 : ivec2(i < 2 ? 2 * i : 1, i < 2 ? 1 : 2 * i - 4);
+      ivec3 texel = ivec3(clamp(ivec2(middle) + step - 1, ivec2(0), last), layer);
+      float there = share_past(texel, point, facing, triangle, towards, slack);
+      is_even = is_even && there == at_middle;
+      share += across[step.x] * down[step.y] * there;
+    }
   }
   return share;
 }

@@ -234,13 +234,15 @@ std::string milliseconds(double ms) {
 
 void draw_times(const Panel& panel) {
   heading("Frame");
-  if (!ImGui::BeginTable("times", 2, ImGuiTableFlags_SizingStretchProp)) return;
+  if (!ImGui::BeginTable("times", 2)) return;
+  ImGui::TableSetupColumn("what", ImGuiTableColumnFlags_WidthStretch, 2);
+  ImGui::TableSetupColumn("amount", ImGuiTableColumnFlags_WidthStretch, 1);
   if (panel.is_offline) {
     row("Passes", std::to_string(panel.frames));
     if (!panel.error.empty()) row("Error", panel.error);
   } else {
     row("Frames in the mean", std::to_string(panel.frames));
-    row("Whole frame", milliseconds(panel.frame_milliseconds));
+    if (panel.frame_milliseconds > 0) row("Whole frame", milliseconds(panel.frame_milliseconds));
     for (const FrameStage& stage : panel.stages) row("  " + stage.name, milliseconds(stage.milliseconds));
     for (std::size_t i = 0; i < std::min<std::size_t>(panel.photons_per_bounce.size(), 4); ++i)
       row("Photons, bounce " + std::to_string(i + 1), std::to_string(panel.photons_per_bounce[i]));

@@ -259,7 +259,7 @@ TEST_F(MissingFiles, OfObjScenes) {
                                    "--missing skip renders without them");
   const SceneDescription scene = read_without("a.obj");
   EXPECT_EQ(scene.shapes.size(), 1u);
-  EXPECT_TRUE(contains(all_messages(scene), "no.mtl: no such file: its materials are grey")) << all_messages(scene);
+  EXPECT_TRUE(contains(all_messages(scene), "no.mtl: no such file: its materials are left out")) << all_messages(scene);
   EXPECT_NO_THROW(build_scene(scene));
   dir_.write("a.mtl", "newmtl m\nmap_Kd no.png\n");
   EXPECT_EQ(error_of("a.obj"),

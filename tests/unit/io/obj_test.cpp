@@ -145,9 +145,10 @@ TEST(Mtl, SeveralLibrariesInALine) {
   const SceneDescription scene = read("mtllib none.mtl  a b.mtl m.mtl\n" + triangle + "usemtl red\nf 1 2 3\n",
                                       {{"dir/m.mtl", "newmtl red\nKd 1 0 0\n"}});
   EXPECT_EQ(scene.materials.at(scene.shapes.at(0).material).name, "red");
-  EXPECT_EQ(warnings(scene), (std::vector<std::string>{"t.obj:1:8: dir/none.mtl: no such file: its materials are grey",
-                                                       "t.obj:1:18: dir/a: no such file: its materials are grey",
-                                                       "t.obj:1:20: dir/b.mtl: no such file: its materials are grey"}));
+  EXPECT_EQ(warnings(scene),
+            (std::vector<std::string>{"t.obj:1:8: dir/none.mtl: no such file: its materials are left out",
+                                      "t.obj:1:18: dir/a: no such file: its materials are left out",
+                                      "t.obj:1:20: dir/b.mtl: no such file: its materials are left out"}));
   const SceneDescription blank =
       read("mtllib a b.mtl\n" + triangle + "usemtl red\nf 1 2 3\n", {{"dir/a b.mtl", "newmtl red\nKd 1 0 0\n"}});
   EXPECT_TRUE(warnings(blank).empty());
@@ -163,11 +164,11 @@ TEST(Obj, OpenBoxesAreSeenFromInside) {
 }
 
 TEST(Obj, WhatIsNotReadIsSaidOnce) {
-  const SceneDescription scene = read("mtllib none.mtl\nv 0 0 0 1 0 0\n" + triangle +
+  const SceneDescription scene = read("mtllib none.mtl\nv 0 0 0 1 0 nan\n" + triangle +
                                       "s 1\nl 1 2\nl 2 3\nf 1 2\nusemtl gold\nf 1 2 3\no x\ng y\n");
   EXPECT_EQ(warnings(scene),
-            (std::vector<std::string>{"t.obj:1:8: dir/none.mtl: no such file: its materials are grey",
-                                      "t.obj:2:1: vertex colours are not supported: ignored",
+            (std::vector<std::string>{"t.obj:1:8: dir/none.mtl: no such file: its materials are left out",
+                                      "t.obj:2:1: vertex colours that are no numbers count as white",
                                       "t.obj:7:1: \"l\" is not supported: ignored (and 1 more like it)",
                                       "t.obj:9:1: faces of fewer than three corners are left out",
                                       "t.obj:11:1: there is no material \"gold\": grey is used"}));
@@ -337,6 +338,46 @@ TEST(Mtl, KindsOfMaterials) {
   EXPECT_EQ(mirror.roughness.u.value, 0);
   const auto metal = material<ConductorMaterial>("Kd 1 0.8 0.2\nPm 1\nPr 0.5\n");
   EXPECT_EQ(metal.roughness.u.value, 0.25f);
+}
+
+// The closure at (1/4, 1/4) of the only face, seen from the front. There the corners have the weights 1/2, 1/4, 1/4.
+template <class Closure>
+Closure closure_of(const SceneDescription& description) {
+  const Scene scene(description);
+  const auto at = scene.intersect({{0.25f, 0.25f, 1}, {0, 0, -1}}, Wavelengths::rgb(0.5f));
+  return std::get<Closure>(at.value().bsdf.get());
+}
+void expect_near(const Spectrum& colour, const Rgb& expected, const std::string& what) {
+  EXPECT_NEAR(colour[0], expected.r, 1e-5f) << what;
+  EXPECT_NEAR(colour[1], expected.g, 1e-5f) << what;
+  EXPECT_NEAR(colour[2], expected.b, 1e-5f) << what;
+}
+
+// Colours of vertices are in sRGB, from 0 to 1 or to 255. They multiply Kd, and stand for a missing material.
+TEST(Obj, ColoursOfVerticesMultiplyTheReflectance) {
+  const std::string faces = "f 1 2 3\n";
+  const auto corners = [](const std::string& a, const std::string& b, const std::string& c) {
+    return "v 0 0 0 " + a + "\nv 1 0 0 " + b + "\nv 0 1 0 " + c + "\n";
+  };
+  const std::string primaries = corners("1 0 0", "0 1 0", "0 0 1");
+  expect_near(closure_of<Diffuse>(read(primaries + faces)).reflectance, {0.5f, 0.25f, 0.25f}, "no material");
+  expect_near(closure_of<Diffuse>(read(corners("255 0 0", "0 255 0", "0 0 255") + faces)).reflectance,
+              {0.5f, 0.25f, 0.25f}, "bytes");
+  const float half = 0.21404114f;  // linear value of 0.5
+  expect_near(closure_of<Diffuse>(read(corners("0.5 0.5 0.5", "0.5 0.5 0.5", "0.5 0.5 0.5") + faces)).reflectance,
+              {half, half, half}, "sRGB");
+  expect_near(closure_of<Diffuse>(read(corners("1 0 0", "", "nan 0 0") + faces)).reflectance, {1, 0.5f, 0.5f},
+              "white where there is none");
+  const auto with = [&](const std::string& lines) {
+    return read(primaries + "mtllib m.mtl\nusemtl m\n" + faces, {{"dir/m.mtl", "newmtl m\n" + lines}});
+  };
+  expect_near(closure_of<Diffuse>(with("Kd 0.8 0.4 1\n")).reflectance, {0.4f, 0.1f, 0.25f}, "diffuse");
+  expect_near(closure_of<Plastic>(with("Kd 0.8 0.4 1\nKs 1 1 1\n")).reflectance, {0.4f, 0.1f, 0.25f}, "plastic");
+  // A weight is no colour, and without any colour nothing changes.
+  expect_near(closure_of<Diffuse>(read(corners("1", "1", "1") + faces)).reflectance, {0.5f, 0.5f, 0.5f}, "weights");
+  const SceneDescription plain = read(triangle + faces);
+  EXPECT_TRUE(mesh(plain).colors.empty());
+  EXPECT_TRUE(plain.spectrum_textures.empty());
 }
 
 // As Blender writes a leaf of alpha 0.5, and a robot whose alpha of 0 its own renderer ignores.

@@ -154,6 +154,24 @@ std::string small_file(const std::string& body, const std::string& vertices = "3
          "\nproperty list uchar int vertex_index\nend_header\n" + body;
 }
 
+// The corners of a strip go to and fro across it: every other triangle is wound the other way. -1 begins a new strip;
+// triangles of two corners are left out.
+TEST_P(PlyEncodings, ReadsTriangleStrips) {
+  PlyWriter w(GetParam());
+  w.header("element vertex 6").header("property float x").header("property float y").header("property float z");
+  w.header("element tristrips 2").header("property list int int vertex_indices").header("end_header");
+  for (int i = 0; i < 6; ++i) w.put(static_cast<float>(i / 2)).put(static_cast<float>(i % 2)).put(0.0f).end_row();
+  w.put(std::int32_t{9});
+  for (const std::int32_t i : {0, 1, 2, 3, 3, 4, -1, 2, 3}) w.put(i);
+  w.end_row().put(std::int32_t{4});
+  for (const std::int32_t i : {5, 3, 4, 2}) w.put(i);
+  w.end_row();
+  const PlyMesh mesh = parse_ply(w.text(), "t.ply");
+  EXPECT_EQ(mesh.triangles.triangles, (std::vector<Triangle>{{0, 1, 2}, {2, 1, 3}, {5, 3, 4}, {4, 3, 2}}));
+  EXPECT_TRUE(mesh.quads.patches.empty());
+  EXPECT_TRUE(mesh.warnings.empty());
+}
+
 TEST(Ply, QuadsAloneGiveNoTriangles) {
   const PlyMesh mesh = parse_ply(small_file("0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n", "4"), "q.ply");
   EXPECT_TRUE(mesh.triangles.triangles.empty());
@@ -177,6 +195,7 @@ TEST(Ply, OddFacesAreLeftOutWithWarnings) {
   ASSERT_EQ(mesh.warnings.size(), 2u);
   EXPECT_EQ(mesh.warnings[0], "1 faces of fewer than three corners: left out");
   EXPECT_EQ(mesh.warnings[1], "1 faces with a corner that is not finite: left out");
+  EXPECT_EQ(mesh.triangles.positions.at(3), Point(0)) << "a mesh with such a position could not be built";
   const PlyMesh empty = parse_ply(small_file("0 0 0\n1 0 0\n1 1 0\n2 0 1\n"), "e.ply");
   EXPECT_TRUE(empty.triangles.positions.empty());
   EXPECT_EQ(empty.warnings.back(), "the mesh has no faces: left out");

@@ -126,6 +126,60 @@ std::vector<Shape> room(const Vec3& half, std::vector<Shape> things, int walls =
   things.insert(things.end(), all.begin(), all.begin() + walls);
   return things;
 }
+// Where the corners of a box of this half extent about `centre` lie in a square picture, from 0 to 1.
+Bounds seen_box(const SceneDescription& scene, const Point& centre, float half) {
+  const View view = make_view(scene.view, {.resolution = std::array{100, 100}});
+  Bounds box;
+  for (int i = 0; i < 8; ++i) {
+    const Vec3 corner((i & 1) * 2 - 1, (i & 2) - 1, (i & 4) / 2 - 1);
+    if (const auto at = view.camera.connect(centre + half * corner, {0.5f, 0.5f}, 0.5f))
+      box.extend(Point(at->raster / 100.0f, 0));
+  }
+  return box;
+}
+
+// A ball on a plain that is far larger is framed as if the plain were not there; on one that is not much larger, both
+// are framed. The plain is an instance, or a backdrop behind or before the ball.
+TEST(StandIns, ThingsOnALargePlainAreFramed) {
+  const Vec3 x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
+  const auto width = [](const SceneDescription& scene) { return seen_box(scene, Point(0), 1).extent().x; };
+  const float alone = width(seen({sphere(Point(0), 1)}));
+  EXPECT_GT(alone, 0.5f);
+  const auto on = [&](const Point& at, const Vec3& right, const Vec3& up) {
+    return seen({square(at, right, up), sphere(Point(0), 1)}, {{}, false});
+  };
+  EXPECT_LT(width(on({0, -1, 0}, 4.0f * x, -4.0f * z)), 0.5f * alone);
+  EXPECT_NEAR(width(on({0, -1, 0}, 6.0f * x, -6.0f * z)), alone, 0.1f * alone);
+  EXPECT_NEAR(width(on({0, -1, 0}, 50.0f * x, -50.0f * z)), alone, 0.1f * alone);
+  EXPECT_GT(eye_of(on({0, 0, -1}, 50.0f * x, 50.0f * y)).z, 1);
+  const SceneDescription before = on({0, 0, 1}, 50.0f * x, 50.0f * y);
+  EXPECT_LT(eye_of(before).z, -1);
+  EXPECT_EQ(before.shapes.size(), 2u);
+  EXPECT_EQ(std::get<TriangleMesh>(before.shapes[0].geometry).positions.size(), 4u) << "in its place";
+  SceneDescription instanced = scene_of({sphere(Point(0), 1)});
+  instanced.objects.resize(1);
+  instanced.objects[0].shapes.push_back(square(Point(0), x, y));
+  Instance ground;
+  ground.object_to_world = AnimatedTransform(translate({0, -1, 0}) * rotate(90, {1, 0, 0}) * scale({50, 50, 50}));
+  instanced.instances.push_back(ground);
+  add_stand_ins(instanced, {true, true, {}});
+  EXPECT_NEAR(width(instanced), alone, 0.1f * alone);
+  EXPECT_EQ(instanced.instances.size(), 1u);
+  EXPECT_NE(instanced.warnings.back().message.find("a view of all but the ground "), std::string::npos);
+  // Walls of a room are no grounds, however small the things in it.
+  const SceneDescription in_room = seen(room({9, 9, 9}, {sphere({0, -8.8f, 0}, 0.2f)}, 3), {{}, false});
+  EXPECT_EQ(in_room.warnings.back().message.find("ground"), std::string::npos);
+  const SceneDescription layers =
+      seen({square({0, 1, 0}, 50.0f * x, 50.0f * z), square({0, -1, 0}, 50.0f * x, 50.0f * z), sphere(Point(0), 0.5f)},
+           {{}, false});
+  EXPECT_EQ(layers.warnings.back().message.find("ground"), std::string::npos);
+  // A plain alone, and one with thin poles of its own size, are no grounds.
+  EXPECT_LT(seen_box(seen({square(Point(0), 50.0f * x, -50.0f * z)}), Point(0), 1).extent().x, 0.1f);
+  EXPECT_LT(width(seen({square(Point(0), 50.0f * x, -50.0f * z), sphere(Point(0), 1),
+                        square({0, 40, 0}, 0.1f * x, 40.0f * y)})),
+            0.1f);
+}
+
 bool is_inside(const SceneDescription& scene, const Vec3& half) {
   const Vec3 eye = glm::abs(eye_of(scene));
   return eye.x < half.x && eye.y < half.y && eye.z < half.z;
@@ -414,6 +468,19 @@ TEST(StandInRooms, AreFramedAlikeAtAnySize) {
   // It is seen through its open side, as large as the picture allows.
   EXPECT_GT(eye_of(tiny).z, 6e-5f);
   EXPECT_LT(eye_of(tiny).z, 3e-4f);
+}
+
+// Where the view takes z to be up, the studio's lamps are there, too.
+TEST(StandInRooms, WithZUpAreLitFromThere) {
+  std::vector<Shape> shapes = room(
+      {1, 1, 1}, {sphere({0.5f, -0.4f, 0.3f}, 0.2f), sphere({-0.5f, 0.4f, 0.1f}, 0.2f), sphere({0, 0, -0.5f}, 0.2f)});
+  for (const auto& [wall, up] : {std::pair<std::size_t, Vec3>{6, {0, 0, 1}}, {8, {0, 1, 0}}}) {
+    std::vector<Shape> open = shapes;
+    open.erase(open.begin() + static_cast<std::ptrdiff_t>(wall));
+    const SceneDescription scene = seen(open, {{0}, false});
+    ASSERT_EQ(scene.lights.size(), 1u);
+    EXPECT_LT(length(scene.lights[0].light_to_world.vector({0, 0, 1}) - up), 1e-6f) << scene.warnings.back().message;
+  }
 }
 
 // A house without a floor, as many models are, is seen from outside: from below nothing more is seen.

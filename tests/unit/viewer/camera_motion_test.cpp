@@ -4,8 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
+#include "camera/view.h"
 #include "math/vec.h"
 
 namespace lanthorn::camera_motion_test {
@@ -30,6 +32,20 @@ Vec2 on_screen(const CameraPose& pose, const Point& p) {
 
 class CameraMotion : public testing::TestWithParam<bool> {};
 INSTANTIATE_TEST_SUITE_P(Handedness, CameraMotion, testing::Values(false, true));
+
+// A ring is seen through, and yet turns around its middle.
+TEST(FramingPose, TurnsAroundTheMiddleOfTheSubject) {
+  ViewDescription description;
+  description::Camera& camera = description.camera;
+  camera.node = description::PerspectiveCamera{.fov = 40};
+  camera.camera_to_world = AnimatedTransform(look_at({3, 1, 5}, {0, 1, 0}, {0, 1, 0}).inverted());
+  camera.subject = Bounds{Point(1, -2, -3), Point(2, 1, 1)};
+  const View view = make_view(description, {.resolution = std::array{80, 60}});
+  const Point eye = view.camera.sample_ray({40, 30}, {0.5f, 0.5f}, 0).ray.origin;
+  const CameraPose pose = framing_pose(camera, eye);
+  expect_near(eye_of(pose), eye, 1e-4f);
+  expect_near(pivot_of(pose), camera.camera_to_world.start.point(camera.subject->centre()), 1e-4f);
+}
 
 TEST_P(CameraMotion, OrbitKeepsThePivotTheDistanceAndTheHorizon) {
   const CameraPose before = pose(GetParam());
