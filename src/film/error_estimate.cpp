@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t window_radius = 3;  // pixels; windows are squares
 constexpr std::size_t rows_per_task = 16;
-constexpr double dark = 0.01;         // of the square of the mean, in the denominator of relative errors
+constexpr double dark = 0.01;          // of the square of the mean, in the denominator of relative errors
 constexpr double confidence_z = 1.28;  // 90 % of a normal distribution are below it
 
 // A number for each pixel.
@@ -74,9 +74,7 @@ class PixelPlane {
   }
 
   /// Means over the squares of 2 radius + 1 pixels around each pixel, as far as they are in the picture.
-  PixelPlane smoothed(std::size_t radius = window_radius) const {
-    return along_rows(radius).along_columns(radius);
-  }
+  PixelPlane smoothed(std::size_t radius = window_radius) const { return along_rows(radius).along_columns(radius); }
 
   /// Means over the squares of window_radius + 1 pixels whose first pixel this is; those at the right and lower border
   /// begin earlier.
@@ -163,8 +161,8 @@ struct Surroundings {
     light.for_each_row([&](std::size_t y) {
       for (std::size_t x = 0; x < light.width(); ++x) {
         const std::size_t i = y * light.width() + x;
-        const std::size_t corner = light.choose_corner(
-            x, y, [&](std::size_t k) { return std::max(0.0, squares[k] - square(means[k])); });
+        const std::size_t corner =
+            light.choose_corner(x, y, [&](std::size_t k) { return std::max(0.0, squares[k] - square(means[k])); });
         constexpr double corner_pixels = square(window_radius + 1), significant = square(3);
         if (square(means[corner] - mean[i]) <= significant * variance[i] / corner_pixels) continue;
         is_edge[i] = 1;
@@ -185,10 +183,10 @@ double correlation_factor(const PixelPlane& all_noise) {
   const auto sum_along = [&](std::size_t extent, std::size_t step, auto&& position) {
     double sum = 1;
     for (std::size_t lag = 1; lag < std::min(farthest, extent / 2); ++lag) {
-      const double product = noise.sum(
-          [&](std::size_t i) { return position(i) + lag < extent ? noise[i] * noise[i + lag * step] : 0.0; });
-      const double pairs = static_cast<double>(noise.size()) * static_cast<double>(extent - lag) /
-                           static_cast<double>(extent);
+      const double product =
+          noise.sum([&](std::size_t i) { return position(i) + lag < extent ? noise[i] * noise[i + lag * step] : 0.0; });
+      const double pairs =
+          static_cast<double>(noise.size()) * static_cast<double>(extent - lag) / static_cast<double>(extent);
       // The square of an estimated correlation is too large by the variance of the estimate.
       sum += 2 * std::max(0.0, square(product / (pairs * all)) - 1 / pairs);
     }
@@ -205,8 +203,7 @@ struct PictureSums {
   double spikes = 0, light = 0;
   double correlation = 1, bias_correlation = 1;
 
-  PictureSums(std::size_t width, std::size_t height)
-      : noise(width, height), bias(width, height) {}
+  PictureSums(std::size_t width, std::size_t height) : noise(width, height), bias(width, height) {}
 };
 
 class ErrorMeasurement {
@@ -248,18 +245,20 @@ class ErrorMeasurement {
 
   void add_channel(std::size_t c) {
     const PixelPlane light = PixelPlane::of(pictures_.picture, c);
-    const PixelPlane first = PixelPlane::of(pictures_.halves[0].color, c), second = PixelPlane::of(pictures_.halves[1].color, c);
+    const PixelPlane first = PixelPlane::of(pictures_.halves[0].color, c),
+                     second = PixelPlane::of(pictures_.halves[1].color, c);
     const PixelPlane variance = make([&](std::size_t i) { return share_ * square(first[i] - second[i]); });
     const Surroundings around(light, variance);
-    // What is farther from the mean than noise makes it is structure, with noise of its own.
-    const PixelPlane structure = make([&](std::size_t i) {
-      const double off = square(light[i] - around.mean[i]);
-      return off > around.variance[i] ? 1 - around.variance[i] / off : 0.0;
-    });
+    // What both halves have is structure, with noise of its own; what one has is noise.
+    constexpr std::size_t near = 1;  // pixels
+    const auto off = [&](const PixelPlane& half, std::size_t i) { return half[i] - around.mean[i]; };
+    const PixelPlane both = make([&](std::size_t i) { return off(first, i) * off(second, i); }).smoothed(near);
+    const PixelPlane all = make([&](std::size_t i) { return square(off(light, i)); }).smoothed(near);
+    const PixelPlane structure =
+        make([&](std::size_t i) { return all[i] > 0 ? std::clamp(both[i] / all[i], 0.0, 1.0) : 0.0; });
     const auto mixed = [&](const PixelPlane& wide, const PixelPlane& own) {
       return make([&](std::size_t i) { return wide[i] + structure[i] * (own[i] - wide[i]); });
     };
-    constexpr std::size_t near = 1;  // pixels: what is beside much noise need not have it
     const PixelPlane nearby = variance.smoothed(near);
     const PixelPlane local = make([&](std::size_t i) { return around.is_edge[i] ? around.variance[i] : nearby[i]; });
     const PixelPlane truth = mixed(around.mean, light), noise = mixed(local, variance);
@@ -295,7 +294,8 @@ class ErrorMeasurement {
   }
 
   void add_bias(std::size_t c, const PixelPlane& truth) {
-    const PixelPlane first = PixelPlane::of(pictures_.halves[0].bias, c), second = PixelPlane::of(pictures_.halves[1].bias, c);
+    const PixelPlane first = PixelPlane::of(pictures_.halves[0].bias, c),
+                     second = PixelPlane::of(pictures_.halves[1].bias, c);
     const PixelPlane smooth =
         make([&](std::size_t i) { return weights_[0] * first[i] + weights_[1] * second[i]; }).smoothed();
     const PixelPlane product = make([&](std::size_t i) { return first[i] * second[i]; }).smoothed();

@@ -25,9 +25,9 @@ struct MeasuredError {
   Image bias;            ///< signed, of R, G, B: the picture is too bright by so much
 };
 
-/// The halves differ by noise alone: their difference d has variance σ²/n₁ + σ²/n₂, and the picture has σ²/(n₁ + n₂), so
-/// that n₁ n₂ / (n₁ + n₂)² d² estimates the picture's variance without bias, whatever the correlation of pixels. It has
-/// one degree of freedom, and is averaged over windows that leave edges out (Kuwahara et al. 1976). A pixel that is
+/// The halves differ by noise alone: their difference d has variance σ²/n₁ + σ²/n₂, and the picture has σ²/(n₁ + n₂),
+/// so that n₁ n₂ / (n₁ + n₂)² d² estimates the picture's variance without bias, whatever the correlation of pixels. It
+/// has one degree of freedom, and is averaged over windows that leave edges out (Kuwahara et al. 1976). A pixel that is
 /// farther from the mean of its window than noise makes it keeps a part of its own value and noise (Lee 1980). Where
 /// spikes make the variance, most pixels are nearer to the truth than the variance says; there the distance to the mean
 /// of the window counts, if it is less.

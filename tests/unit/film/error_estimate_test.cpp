@@ -106,7 +106,8 @@ Tried try_pictures(const Field& truth, const Field& sigma, Noise&& noise) {
 }
 
 TEST(ErrorEstimate, EvenNoiseIsMeasured) {
-  const Tried tried = try_pictures(white, [](int, int) { return 0.5; }, independent);
+  const Tried tried = try_pictures(
+      white, [](int, int) { return 0.5; }, independent);
   EXPECT_NEAR(tried.ratio, 1, 0.03);
   EXPECT_GE(tried.kept, 0.8);
   EXPECT_LT(tried.margin, 1.03) << "many pixels make it certain";
@@ -125,15 +126,16 @@ TEST(ErrorEstimate, NoiseOfEdgesStaysThere) {
 
 // Noise in a corner of the picture alone.
 TEST(ErrorEstimate, NoiseOfAPartIsMeasured) {
-  const Tried tried =
-      try_pictures(white, [](int x, int y) { return x < 24 && y < 20 ? 1.0 : 0.01; }, independent);
+  const Tried tried = try_pictures(
+      white, [](int x, int y) { return x < 24 && y < 20 ? 1.0 : 0.01; }, independent);
   EXPECT_NEAR(tried.ratio, 1, 0.05);
   EXPECT_GE(tried.kept, 0.8);
 }
 
 // The estimate is as good, but less certain.
 TEST(ErrorEstimate, CorrelatedNoiseWidensTheBound) {
-  const Tried tried = try_pictures(white, [](int, int) { return 0.5; }, in_blocks);
+  const Tried tried = try_pictures(
+      white, [](int, int) { return 0.5; }, in_blocks);
   EXPECT_NEAR(tried.ratio, 1, 0.06);
   EXPECT_GE(tried.kept, 0.8);
   EXPECT_GT(tried.margin, 1.04);
@@ -150,7 +152,8 @@ TEST(ErrorEstimate, DoesNotDependOnExposure) {
 
 TEST(ErrorEstimate, FewPassesAreNoMeasure) {
   const auto doubt = [](std::array<std::uint64_t, 2> passes) {
-    const Picture picture(white, [](int, int) { return 0.1; }, passes, 1, independent);
+    const Picture picture(
+        white, [](int, int) { return 0.1; }, passes, 1, independent);
     const MeasuredError measured = measure_error(picture.halves);
     EXPECT_EQ(measured.standard_error.pixels.size(), picture.truth.pixels.size());
     EXPECT_FALSE(measured.estimate.is_below(1));
@@ -178,7 +181,8 @@ TEST(ErrorEstimate, BiasIsFoundUnderNoise) {
   constexpr double bias = 0.05;
   double mean = 0;
   for (unsigned seed = 0; seed < 10; ++seed) {
-    Picture picture(white, [](int, int) { return 0.1; }, {24, 40}, seed, independent);
+    Picture picture(
+        white, [](int, int) { return 0.1; }, {24, 40}, seed, independent);
     std::mt19937 rng(seed + 1000);
     std::normal_distribution<double> noise(-bias, 0.3);
     for (HalfPicture& half : picture.halves.halves) {
