@@ -238,6 +238,27 @@ TEST_F(Serve, TheCommandLineRendersTheSamePicture) {
   EXPECT_FALSE(contains(closed, "--environment") || contains(closed, "--focus")) << closed;
 }
 
+TEST_F(Serve, AViewIsFinishedWhenItsErrorIsSmall) {
+  start({"-i", "path", "--noise", "60%"});
+  const nlohmann::json shown = frame(is_finished);
+  EXPECT_TRUE(contains(shown["error"], "below ")) << shown["error"];
+  EXPECT_GT(shown["passes"], 4);
+  EXPECT_FALSE(contains(shown["command"], "--noise")) << shown["command"];
+}
+
+// Not around what is seen between its parts.
+TEST_F(Serve, AModelTurnsAroundItsMiddle) {
+  dir_.write("bars.obj",
+             "v -1 -1 0\nv -.6 -1 0\nv -.6 1 0\nv -1 1 0\nf 1 2 3 4\n"
+             "v .6 -1 0\nv 1 -1 0\nv 1 1 0\nv .6 1 0\nf 5 6 7 8\n"
+             "v -.5 -.5 -3\nv .5 -.5 -3\nv .5 .5 -3\nv -.5 .5 -3\nf 9 10 11 12\n");
+  start({"-p", "1", "-r", "24x16"}, "bars.obj");
+  const nlohmann::json target = frame(is_finished)["camera"]["target"];
+  EXPECT_NEAR(target[0].get<double>(), 0, 1e-3);
+  EXPECT_NEAR(target[1].get<double>(), 0, 1e-3);
+  EXPECT_NEAR(target[2].get<double>(), -1.5, 1e-3);
+}
+
 // A model without camera and light, which has a studio and frames itself.
 TEST_F(Serve, TheCommandLineRendersTheSamePictureOfAModel) {
   dir_.write("model.obj", "v -1 0 0\nv 1 0 0\nv 1 2 0\nv -1 2 .5\nf 1 2 3 4\n");

@@ -23,7 +23,11 @@ using namespace std::chrono_literals;
 
 constexpr std::chrono::milliseconds watched_time = 30s, frame_patience = 10s;
 
-// Distance to the point that the camera orbits: the surface in the middle of the picture, else the scene's centre.
+// Distance to the point that a camera orbits: the middle of what it frames; or else the surface in the middle of the
+// picture, or the scene's centre. Through the hole of a ring, the middle of its picture shows what is far behind it.
+double distance_to_subject(const description::Camera& camera, const DVec3& eye) {
+  return glm::length(DVec3(camera.camera_to_world.start.point(camera.subject->centre())) - eye);
+}
 float distance_to_middle(const Image& image, const Scene& scene, const DVec3& eye) {
   const auto depth = image.find_channel("depth.Z");
   const float seen = depth ? image.at(image.width / 2, image.height / 2, *depth) : 0;
@@ -240,7 +244,9 @@ const LookAt& Viewer::home(const Image& image) {
     const ViewDescription own = view_of(*scene_, moved(settings_.start.changes, {}, {}), options);
     const DVec3& origin = description_of(*scene_).origin;
     const DVec3 eye = look_of(own, options, 1, origin).eye;
-    home_ = look_of(own, options, distance_to_middle(image, *scene_, eye), origin);
+    const float distance = own.camera.subject ? static_cast<float>(distance_to_subject(own.camera, eye - origin))
+                                              : distance_to_middle(image, *scene_, eye);
+    home_ = look_of(own, options, distance, origin);
   }
   return *home_;
 }
