@@ -249,7 +249,7 @@ OptionTable lens_options(LensChanges& lens) {
            .otherwise = "the scene file's"},
           {.names = "--aperture",
            .value = into(lens.aperture, aperture_type()),
-           .brief = "f-number of the lens, such as 2.8: smaller numbers blur more outside the focus; off: all is sharp",
+           .brief = "f-number of the lens, such as 2.8: smaller numbers blur more; off: all is sharp",
            .details = "The scene counts in metres, and the film is 24 mm along its shorter side.",
            .otherwise = "the scene file's, else off"},
           {.names = "--focus",

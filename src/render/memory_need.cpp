@@ -57,7 +57,7 @@ void plan_memory(const Scene& scene, const View& view, const Integrator& integra
   const Limit limit = limit_of(option);
   const MemoryUse use = integrator.memory_use(settings);
   const int width = view.window.width(), height = view.window.height();
-  // At the end the picture stands beside the sums; its values have half their size.
+  // At the end the picture stands beside the sums, with what its error is measured from.
   constexpr double film_bytes = 1.5 * sizeof(std::int64_t);
   const double film =
       static_cast<double>(width) * height * (film_bytes * static_cast<double>(Film::stride(contents)) + use.per_pixel);

@@ -19,6 +19,7 @@ const std::map<std::string, Words> samples{
     {"NUMBER", {"1.25", "0.2"}},
     {"TIME", {"90", "30s", "1.5m"}},
     {"SIZE", {"1048576", "512M"}},
+    {"SHARE", {"0.02", "5%"}},
     {"FILE", {"tiny.pbrt"}},
     {"INTEGRATOR", {"vcm"}},
     {"HOST:PORT", {"localhost:14158"}},
