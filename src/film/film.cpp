@@ -458,13 +458,13 @@ Image Film::resolve_color(std::uint64_t passes, const Rgb& balance) const {
 }
 
 HalfPicture Film::resolve_half(FilmHalf half, std::uint64_t passes, const Rgb& balance) const {
-  const auto& [samples, splats] = halves_[static_cast<std::size_t>(half)];
+  const Half& own = halves_[static_cast<std::size_t>(half)];
   const Image black(width_, height_, {"R", "G", "B"});
   HalfPicture picture{black, contents_.bias ? black : Image()};
   const std::array<float, 3> factors{balance.r, balance.g, balance.b};
   const double step = std::ldexp(1.0, step_exponent_), per_pass = passes > 0 ? step / static_cast<double>(passes) : 0.0;
   for_each_pixel([&](std::uint32_t pixel) {
-    const std::int64_t* sums = &samples[std::size_t{pixel} * samples_stride()];
+    const std::int64_t* sums = &own.samples[std::size_t{pixel} * samples_stride()];
     const double per_sample =
         sums[weight_slot()] != 0 ? step * unit_steps / static_cast<double>(sums[weight_slot()]) : 0;
     for (std::size_t c = 0; c < 3; ++c) {
@@ -472,7 +472,7 @@ HalfPicture Film::resolve_half(FilmHalf half, std::uint64_t passes, const Rgb& b
       for (std::size_t layer = 0; layer < contents_.light.size(); ++layer) {
         light += static_cast<double>(sums[3 * layer + c]);
         if (contents_.splats)
-          splatted += static_cast<double>(splats[std::size_t{pixel} * splats_stride() + 3 * layer + c]);
+          splatted += static_cast<double>(own.splats[std::size_t{pixel} * splats_stride() + 3 * layer + c]);
       }
       const std::size_t place = std::size_t{pixel} * 3 + c;
       picture.color.pixels[place] = factors[c] * static_cast<float>(light * per_sample + splatted * per_pass);

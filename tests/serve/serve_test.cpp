@@ -253,7 +253,7 @@ TEST_F(Serve, AModelTurnsAroundItsMiddle) {
   dir_.write("bars.obj",
              "v -1 -1 0\nv -.6 -1 0\nv -.6 1 0\nv -1 1 0\nf 1 2 3 4\n"
              "v .6 -1 0\nv 1 -1 0\nv 1 1 0\nv .6 1 0\nf 5 6 7 8\n"
-             "v -.5 -.5 -3\nv .5 -.5 -3\nv .5 .5 -3\nv -.5 .5 -3\nf 9 10 11 12\n");
+             "v -1 -1 -3\nv 1 -1 -3\nv 1 1 -3\nv -1 1 -3\nf 9 10 11 12\n");
   start({"-p", "1", "-r", "24x16"}, "bars.obj");
   const std::array<double, 3> middle{0, 0, -1.5};
   const auto target = frame(is_finished)["camera"]["target"].get<std::array<double, 3>>();
