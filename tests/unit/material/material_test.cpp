@@ -498,9 +498,9 @@ TEST(SceneErrors, NameTheirPlace) {
 // Refraction of light that goes straight on is 0/0 there.
 TEST(Materials, AnIndexOfAlmostOneBendsNothing) {
   for (const char* index : {"1", "1.0000001", "0.9999999"}) {
-    const auto at = look(
-        world("Material \"dielectric\" \"float roughness\" 1 \"float eta\" " + std::string(index) + "\nShape \"disk\""),
-        {0, 0, 1}, {0, 0, -1});
+    const Scene scene =
+        world("Material \"dielectric\" \"float roughness\" 1 \"float eta\" " + std::string(index) + "\nShape \"disk\"");
+    const auto at = look(scene, {0, 0, 1}, {0, 0, -1});
     ASSERT_TRUE(at);
     const Bsdf& bsdf = at->bsdf;
     const Vec3 wi = normalize(Vec3(0.3f, 0.2f, 0.9f));
