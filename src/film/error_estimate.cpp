@@ -201,7 +201,7 @@ double correlation_factor(const PixelPlane& all_noise) {
 struct PictureSums {
   PixelPlane noise, bias;  // relative variance and square of the bias, at most 1
   double spikes = 0, light = 0;
-  double correlation = 1, bias_correlation = 1;
+  double correlation = 1;
 
   PictureSums(std::size_t width, std::size_t height) : noise(width, height), bias(width, height) {}
 };
@@ -284,9 +284,8 @@ class ErrorMeasurement {
              distance[i] < 0.5 * spread[i] / (square(around.mean[i]) + dark2_);
     };
     sums_.noise.for_each_row([&](std::size_t y) {
-      for (std::size_t i = y * width_; i < (y + 1) * width_; ++i) {
+      for (std::size_t i = y * width_; i < (y + 1) * width_; ++i)
         sums_.noise.add(i, (is_spiky(i) ? distance[i] : over(variance[i], truth[i])) / channels);
-      }
     });
     sums_.spikes +=
         light.sum([&](std::size_t i) { return is_spiky(i) ? std::max(0.0, light[i] - around.mean[i]) : 0.0; });

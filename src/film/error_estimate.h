@@ -26,11 +26,11 @@ struct MeasuredError {
 };
 
 /// The halves differ by noise alone: their difference d has variance σ²/n₁ + σ²/n₂, and the picture has σ²/(n₁ + n₂),
-/// so that n₁ n₂ / (n₁ + n₂)² d² estimates the picture's variance without bias, whatever the correlation of pixels. It
-/// has one degree of freedom, and is averaged over windows that leave edges out (Kuwahara et al. 1976). A pixel that is
-/// farther from the mean of its window than noise makes it keeps a part of its own value and noise (Lee 1980). Where
-/// spikes make the variance, most pixels are nearer to the truth than the variance says; there the distance to the mean
-/// of the window counts, if it is less.
+/// so that n₁ n₂ / (n₁ + n₂)² d² estimates the picture's variance without bias, whatever the correlation of pixels.
+/// Such squares, over those of the truth, are averaged over the picture; the layer `standard_error` has means of few
+/// pixels. The truth is the mean of a window that has no edge (Kuwahara et al. 1976), and of the distance to it the
+/// part that both halves have. Where spikes make the variance, most pixels are nearer to the truth than it says: there
+/// the distance to the mean of the window counts.
 ///
 /// The halves' estimates of the bias have independent noise, so that their product estimates the square of the bias.
 ///
