@@ -39,15 +39,15 @@ OptionTable lens_options(LensChanges& lens);
 /// there. Throws Error for cameras that cannot be changed so.
 void change_lens(ViewDescription& view, const LensChanges& lens, const Scene& scene, const ViewOptions& options);
 
-/// What a lens is by now, as far as the camera has it.
+/// The numbers of a view's lens. Cameras that have no such number leave it empty.
 struct LensNumbers {
   std::optional<float> fov{};       ///< degrees; none: the camera is not perspective
   std::optional<float> aperture{};  ///< f-number; none: a pinhole, or not perspective
   std::optional<float> focus{};     ///< metres; none: all is sharp
 };
 LensNumbers lens_of(const ViewDescription& view);
-/// The distance along the camera's axis to what a pixel of the whole picture sees, metres. Throws Error if that is
-/// nothing.
+/// Distance in metres, along the camera's axis, to the surface that a pixel of the whole picture sees. Throws Error if
+/// that is nothing.
 float focus_at(const ViewDescription& view, const Scene& scene, const ViewOptions& options, const Vec2& pixel);
 
 /// The view from so many places in equal steps around what the camera looks at, from the view itself to the right. All
