@@ -12,6 +12,7 @@
 namespace lanthorn {
 
 // Each is defined in its integrator's own file, or beside it in its settings.
+IntegratorInfo auto_info();
 IntegratorInfo bdpt_info();
 IntegratorInfo bpm_info();
 IntegratorInfo light_info();
@@ -56,7 +57,7 @@ namespace {
 
 std::vector<IntegratorInfo>& registry() {
   static std::vector<IntegratorInfo> all{
-      probppm_info(), sppm_info(),  ppm_info(), photonmap_info(),        vcm_info(),     bpm_info(), bdpt_info(),
+      auto_info(),    probppm_info(), sppm_info(),  ppm_info(), photonmap_info(),        vcm_info(),     bpm_info(), bdpt_info(),
       path_info(),    light_info(), mlt_info(), reversephotonmap_info(), splitsum_info()};
   return all;
 }

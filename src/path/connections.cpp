@@ -21,8 +21,8 @@ struct Arrival {
   // By the other kind of walk, over that per solid angle and over 1 / distance².
   float density(float pass) const { return cos * pass * flight.collision; }
   // `volume` as this subpath's kind of walk sees it (`VolumeMerging::reversed`); `coherence` of the eye path before.
-  float merging_at(const VolumeMerging& volume, float pass, float coherence) const {
-    return sin < 0 ? merging : coherence * volume.all(flight.collision, pass, flight.pass, sin);
+  float volume_merging(const VolumeMerging& volume, float pass, float coherence) const {
+    return sin < 0 ? 0.0f : coherence * volume.all(flight.collision, pass, flight.pass, sin);
   }
 };
 
@@ -110,9 +110,9 @@ float weight_of(const PathContext& path, const Bidirectional& pass, const Vertex
   const float pdf_walk = l.delta ? 0.0f : event.pdf_walk * passes;
   const float density = at.density(passes);
   const float arrival = chosen * emission.position * emission.direction * density / (pdf * cos_light);
-  const float merging = at.sin < 0 ? 0.0f : at.merging_at(pass.techniques.volume, passes, subpath.coherence());
-  return weight_next_event({{subpath.densities(), at.reverse}, arrival, merging}, event.pmf * l.pdf, pdf_walk,
-                           pass.techniques);
+  const float merging = at.volume_merging(pass.techniques.volume, passes, subpath.coherence());
+  return pass.weigh(sum_of_next_event({end_of_eye_path(subpath.densities(), at.reverse), arrival, 0, merging},
+                                      event.pmf * l.pdf, pdf_walk, pass.techniques));
 }
 
 // A light that an eye walk has come upon.
@@ -130,7 +130,8 @@ float weight_of_hit(const PathContext& path, const Bidirectional& pass, const Wa
     direct = direct * std::fabs(dot(hit.at.normal, hit.to_eye)) / distance_squared(hit.at.position, state.previous);
   const EmissionPdf emission = pdf_emission(light, hit.at, hit.to_eye);
   const float factor = pass.emission.factor(hit.index, hit.at, hit.to_eye, state.last_delta);
-  return weight_hit(subpath.densities(), direct, factor * emission.position * emission.direction, pass.techniques);
+  return pass.weigh(
+      sum_of_hit(subpath.densities(), direct, factor * emission.position * emission.direction, pass.techniques));
 }
 
 template <class Vertex>
@@ -148,13 +149,12 @@ float weight_of_connection(const Bidirectional& pass, const Subpath& subpath, co
   const Techniques& t = pass.techniques;
   const float to_light = eye.forward * light.density(passes) / distance2;
   const float to_eye = light.forward * eye.density(passes) / distance2;
-  const ConnectedEnd at_eye{
-      {subpath.densities(), eye.reverse}, to_eye, eye.merging_at(t.volume, passes, subpath.coherence())};
   const float coherence = subpath.coherence_beyond();
-  const ConnectedEnd at_light{{other.densities, light.reverse, coherence * other.coherence},
-                              to_light,
-                              light.merging_at(t.volume.reversed(), passes, coherence)};
-  return weight_connection(at_eye, at_light, t);
+  const ConnectedEnd at_eye{end_of_eye_path(subpath.densities(), eye.reverse), to_eye, eye.merging,
+                            eye.volume_merging(t.volume, passes, subpath.coherence())};
+  const ConnectedEnd at_light{end_of_light_path(other.densities, light.reverse, coherence * other.coherence), to_light,
+                              light.merging, light.volume_merging(t.volume.reversed(), passes, coherence)};
+  return pass.weigh(sum_of_connection(at_eye, at_light, t));
 }
 
 template <class Vertex>
@@ -186,8 +186,10 @@ float weight_of_lens(const Bidirectional& pass, const Vertex& v, const Subpath& 
   const Arrival at = arrival(pass, v, -seen.from_lens.direction, subpath.flight(), Transport::importance);
   const float passes = FlightDensity::passing(seen.optical_depth);
   const float density = pass.view.camera.density_at(seen.from_lens, seen.distance) * at.density(passes);
-  const float merging = at.sin < 0 && v.state.depth == 1 ? 0.0f : at.merging_at(t.volume.reversed(), passes, 1);
-  return weight_lens({{subpath.densities(), at.reverse, subpath.coherence_beyond()}, density, merging}, t);
+  return pass.weigh(sum_of_lens({end_of_light_path(subpath.densities(), at.reverse, subpath.coherence_beyond()), density,
+                                 v.state.depth == 1 ? 0.0f : at.merging,
+                                 at.volume_merging(t.volume.reversed(), passes, 1)},
+                                t));
 }
 
 }  // namespace

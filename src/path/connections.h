@@ -17,7 +17,12 @@ struct Bidirectional {
   const View& view;
   Techniques techniques;
   const EmissionDensities& emission;
+  TechniqueSum* weighed = nullptr;  ///< gets what each weight is made from
 
+  float weigh(const TechniqueSum& sum) const {
+    if (weighed) *weighed = sum;
+    return sum.weight();
+  }
   float merging_at(const SurfacePoint& at) const { return merges_at(at) ? techniques.merging : 0.0f; }
 };
 

@@ -132,16 +132,22 @@ struct Techniques {
   /// η_VCM = light paths π r² (TR eq. 20): how much denser paths are drawn by merging than by connecting; 0 without
   /// merging. It may differ between pixels, as their radii do: the same pixel, the same η for all techniques.
   float merging = 0;
-  /// Vertices are connected, to lights and the lens too. Photons straight from a light are merged without that only:
+  /// Vertices are connected to lights and to the lens. Photons straight from a light are merged without that only:
   /// next-event estimation finds their light as well, and without the dark edges of merging.
   bool connects = true;
+  float connections = 1;   ///< light paths to whose vertices each eye vertex is connected; may differ between pixels
   VolumeMerging volume{};  ///< photons straight from a light are merged, too
+  float volume_part = 1;   ///< 0 for pixels without merging in media
 };
 
-/// What weights need to know of a subpath up to a vertex: d_VCM = `vcm`, and d_VC = `vc` + `media` + η `vm`.
+/// What weights need to know of a subpath up to a vertex: d_VCM = `end` + c `vcm` and d_VC = `ends` + c `vc` + `media` +
+/// η `vm`, with c light paths that each vertex is connected to. The `end` of a light path are next-event estimation and
+/// the eye path's hit, that of an eye path is the lens.
 struct VertexDensities {
-  float vcm = 0;    ///< the connection of this vertex and the one before, or next-event estimation
-  float vc = 0;     ///< all other ways to connect
+  float end = 0;    ///< at the first vertex: next-event estimation, or the lens
+  float ends = 0;   ///< the same at a later vertex, and the hit of the light
+  float vcm = 0;    ///< the connection of this vertex and the one before
+  float vc = 0;     ///< all connections before
   float media = 0;  ///< all ways to merge in media; of a light path, if the eye path is coherent up to this vertex
   float vm = 0;     ///< all ways to merge on surfaces, over η
 };
@@ -165,7 +171,7 @@ struct SubpathDensities : VertexDensities {
   /// Of an eye path (TR eqs. 31-33), before the geometry of its first vertex. `pdf`: of its first ray, per solid angle.
   static SubpathDensities from_lens(float light_paths, float pdf) {
     SubpathDensities result;
-    result.vcm = light_paths / pdf;
+    result.end = light_paths / pdf;
     return result;
   }
   /// The same of a light path. `traced`: density of its start, per area times per solid angle; `direct`: density of
@@ -173,12 +179,12 @@ struct SubpathDensities : VertexDensities {
   /// do not hit it.
   static SubpathDensities from_light(float traced, float direct, float cos) {
     SubpathDensities result;
-    result.vcm = direct / traced;
-    result.vc = cos / traced;
+    result.end = direct / traced;
+    result.ends = cos / traced;
     return result;
   }
   /// Makes the start of a light path that has come to its first vertex `ratio` times as dense.
-  void start_denser(float ratio) { vc /= ratio; }
+  void start_denser(float ratio) { ends /= ratio; }
 
   /// The step over a vertex: towards the next one, before its geometry (TR eqs. 34-36, numerators).
   void scatter(const Scattering& s, bool connects = true) {
@@ -186,25 +192,30 @@ struct SubpathDensities : VertexDensities {
       *this = {};
       return;
     }
+    ends = s.cos / s.pdf * (ends * s.reverse + (connects ? end : 0.0f));
     vc = s.cos / s.pdf * (vc * s.reverse + (connects ? vcm : 0.0f));
     media = s.cos / s.pdf * (s.coherence * media * s.reverse + s.merging_media);
     vm_apart = s.cos / s.pdf * vm * s.reverse;
     vm = vm_apart + (s.merges ? s.cos / s.pdf : 0.0f);
+    end = 0;
     vcm = 1 / s.pdf;
   }
   /// The same through a delta lobe (TR eqs. 53-55).
   void scatter_delta(float cos) {
+    ends *= cos;
     vc *= cos;
     media *= cos;
     vm *= cos;
     vm_apart = vm;
-    vcm = 0;
+    end = vcm = 0;
   }
   /// The flight to the next vertex, before `arrive`; `collision` at the vertex before, and `over_pass`: the part of
   /// merging there that is over the probability of passing this flight.
   void fly(const FlightDensity& flight, float collision, float over_pass) {
     const float ratio = collision / flight.collision;
+    end /= flight.arrival();
     vcm /= flight.arrival();
+    ends *= ratio;
     vc *= ratio;
     media = (media + over_pass / flight.pass) * ratio;
     vm *= ratio;
@@ -215,7 +226,10 @@ struct SubpathDensities : VertexDensities {
   /// whose density is per area already.
   void arrive(float distance2, float cos, bool from_infinity = false) {
     cos = cos > least_cos ? cos : least_cos;
-    vcm *= (from_infinity ? 1.0f : distance2) / cos;
+    const float spread = (from_infinity ? 1.0f : distance2) / cos;
+    end *= spread;
+    vcm *= spread;
+    ends /= cos;
     vc /= cos;
     media /= cos;
     vm /= cos;
@@ -223,59 +237,121 @@ struct SubpathDensities : VertexDensities {
   }
 };
 
+/// The densities of all techniques that make a path, each times its number of samples, over a unit of their own.
+struct TechniqueSum {
+  float own = 1;          ///< of the technique that made it
+  float walk = 0;         ///< next-event estimation, and the eye path's hit
+  float lens = 0;         ///< light vertices connected to the lens
+  float connections = 0;  ///< of vertices of both paths
+  float merging = 0;      ///< on surfaces
+  float media = 0;        ///< merging in media
+
+  float all() const { return walk + lens + connections + merging + media; }
+  /// Of the balance heuristic.
+  float weight() const { return own / all(); }
+};
+
 /// The last vertex of a subpath that a technique joins to the other one.
 struct SubpathEnd {
   const VertexDensities& densities;
   float reverse = 0;    ///< with which the other walk goes on from here to the vertex before, per solid angle
   float coherence = 1;  ///< at a light path: of the eye path up to and including this vertex
+  float TechniqueSum::*end = nullptr;  ///< what the subpath ends with: `lens` of an eye path, `walk` of a light path
 
-  /// r d_VC: all techniques that begin at vertices before, but for the connection to this one.
-  float earlier(const Techniques& t) const {
-    return (densities.vc + (coherence * densities.media + t.merging * densities.vm)) * reverse;
+  /// Adds `factor` times r d_VC: all techniques that begin at vertices before, but for the connection to this one.
+  void add_earlier(float factor, const Techniques& t, TechniqueSum& sum) const {
+    const float back = factor * reverse;
+    sum.*end += back * densities.ends;
+    sum.connections += back * t.connections * densities.vc;
+    sum.media += back * t.volume_part * coherence * densities.media;
+    sum.merging += back * t.merging * densities.vm;
+  }
+  /// Adds `factor` times d_VCM: the connection to this vertex.
+  void add_here(float factor, const Techniques& t, TechniqueSum& sum) const {
+    sum.*end += factor * densities.end;
+    sum.connections += factor * t.connections * densities.vcm;
   }
 };
+inline SubpathEnd end_of_eye_path(const VertexDensities& densities, float reverse) {
+  return {densities, reverse, 1, &TechniqueSum::lens};
+}
+inline SubpathEnd end_of_light_path(const VertexDensities& densities, float reverse, float coherence) {
+  return {densities, reverse, coherence, &TechniqueSum::walk};
+}
 
 /// One end of a connection.
 struct ConnectedEnd : SubpathEnd {
-  float arrival = 0;  ///< with which the other walk comes here, per area; with its flight, so in media per volume
-  float merging = 0;  ///< η of this vertex; in a medium times the coherence of the eye path before it
+  float arrival = 0;       ///< with which the other walk comes here, per area; with its flight, so in media per volume
+  float merging = 0;       ///< η of this vertex, on a surface
+  float volume_merging = 0;  ///< the same in a medium, times the coherence of the eye path before it
 
-  /// η + d_VCM + r d_VC
-  float here_and_earlier(const Techniques& t) const { return merging + (densities.vcm + earlier(t)); }
-  /// w_light, or w_eye: all techniques whose other walk makes this vertex, too (TR eqs. 40, 41).
-  float other_techniques(const Techniques& t) const { return arrival * here_and_earlier(t); }
+  /// Adds `factor` times w_light, or w_eye: all techniques whose other walk makes this vertex, too (TR eqs. 40, 41).
+  void add_other_techniques(float factor, const Techniques& t, TechniqueSum& sum) const {
+    const float there = factor * arrival;
+    sum.merging += there * merging;
+    sum.media += there * t.volume_part * volume_merging;
+    add_here(there, t, sum);
+    add_earlier(there, t, sum);
+  }
 };
 
 /// An eye walk hits a light (TR eq. 43): its last vertex is the point there. `direct`: with which next-event estimation
 /// would have chosen the point, per area (infinite lights: per solid angle); `emission`: with which a light path starts
 /// there in that direction, the product of per area and per solid angle.
-inline float weight_hit(const SubpathDensities& at_light, float direct, float emission, const Techniques& t) {
-  return 1 / (1 + direct * at_light.vcm + emission * (at_light.vc + at_light.media + t.merging * at_light.vm_apart));
+inline TechniqueSum sum_of_hit(const SubpathDensities& at_light, float direct, float emission, const Techniques& t) {
+  return {.walk = 1 + direct * at_light.vcm,
+          .lens = emission * at_light.ends,
+          .connections = emission * t.connections * at_light.vc,
+          .merging = emission * t.merging * at_light.vm_apart,
+          .media = emission * t.volume_part * at_light.media};
 }
 
 /// Next-event estimation (TR eqs. 44, 45), with which the point on the light is chosen with density `pdf_direct`. The
 /// walk would find the light with density `pdf_walk`, 0 if it cannot. `at_eye.arrival`: of a light path that starts at
 /// the point, over the density of next-event estimation; `at_eye.merging`: of photons straight from a light.
-inline float weight_next_event(const ConnectedEnd& at_eye, float pdf_direct, float pdf_walk, const Techniques& t) {
-  return 1 / (1 + pdf_walk / pdf_direct + at_eye.other_techniques(t));
+inline TechniqueSum sum_of_next_event(const ConnectedEnd& at_eye, float pdf_direct, float pdf_walk,
+                                      const Techniques& t) {
+  TechniqueSum sum{.walk = 1 + pdf_walk / pdf_direct};
+  at_eye.add_other_techniques(1, t, sum);
+  return sum;
 }
 
 /// A light vertex connected to the lens (TR eq. 46). `at_light.arrival`: of one pixel's eye paths.
-inline float weight_lens(const ConnectedEnd& at_light, const Techniques& t) {
-  return 1 / (1 + at_light.arrival / t.light_paths * at_light.here_and_earlier(t));
+inline TechniqueSum sum_of_lens(const ConnectedEnd& at_light, const Techniques& t) {
+  TechniqueSum sum{.lens = 1};
+  at_light.add_other_techniques(1 / t.light_paths, t, sum);
+  return sum;
 }
 
-/// Two vertices connected (TR eq. 37).
-inline float weight_connection(const ConnectedEnd& at_eye, const ConnectedEnd& at_light, const Techniques& t) {
-  return 1 / (1 + at_light.other_techniques(t) + at_eye.other_techniques(t));
+/// Two vertices connected (TR eq. 37), once of `connections`: each has the same part of the technique's weight.
+inline TechniqueSum sum_of_connection(const ConnectedEnd& at_eye, const ConnectedEnd& at_light, const Techniques& t) {
+  TechniqueSum sum{.connections = t.connections};
+  at_light.add_other_techniques(1, t, sum);
+  at_eye.add_other_techniques(1, t, sum);
+  return sum;
 }
 
-/// A photon merged into an eye vertex (TR eqs. 38, 39). `own`: η of the estimator, `all`: the sum over all estimators
-/// there, which on surfaces are one; both in a medium times the coherence of the eye path before it.
-inline float weight_merge(const SubpathEnd& at_eye, const SubpathEnd& at_light, float own, float all,
-                          const Techniques& t) {
-  const float here = t.connects ? at_light.densities.vcm + at_eye.densities.vcm : 0.0f;
-  return own / (all + here + (at_light.earlier(t) + at_eye.earlier(t)));
+/// Adds the techniques that begin at or before the ends of two subpaths that meet.
+inline void add_ends(const SubpathEnd& at_eye, const SubpathEnd& at_light, const Techniques& t, TechniqueSum& sum) {
+  for (const SubpathEnd* end : {&at_eye, &at_light}) {
+    if (t.connects) end->add_here(1, t, sum);
+    end->add_earlier(1, t, sum);
+  }
+}
+
+/// A photon merged into an eye vertex on a surface (TR eqs. 38, 39).
+inline TechniqueSum sum_of_merge(const SubpathEnd& at_eye, const SubpathEnd& at_light, const Techniques& t) {
+  TechniqueSum sum{.own = t.merging, .merging = t.merging};
+  add_ends(at_eye, at_light, t, sum);
+  return sum;
+}
+/// The same in a medium. `own`: η of the estimator, `all`: the sum over all estimators there; both times the coherence
+/// of the eye path before the vertex.
+inline TechniqueSum sum_of_volume_merge(const SubpathEnd& at_eye, const SubpathEnd& at_light, float own, float all,
+                                        const Techniques& t) {
+  TechniqueSum sum{.own = t.volume_part * own, .media = t.volume_part * all};
+  add_ends(at_eye, at_light, t, sum);
+  return sum;
 }
 
 }  // namespace lanthorn

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <span>
 
+#include "integrators/vcm/effort_pilot.h"
 #include "photon/gather/radius_schedule.h"
 #include "photon/medium_records.h"
 
@@ -12,20 +13,25 @@ namespace lanthorn {
 
 VcmPreparation::VcmPreparation(const RenderJob& job, const VcmSettings& settings)
     : emission(settings.switches.merging ? choose_emission(settings.emission, settings.photon_use(), job) : Emission()),
-      densities(job.scene, emission.starts()) {
+      densities(job.scene, emission.starts()),
+      effort(job.settings.photons) {
   if (!settings.switches.merging) return;
   radii = FirstMergeRadii(job, settings, emission.get());
   volume_radii = FirstVolumeRadii(job, settings, emission.get());
+  if (!settings.chooses_effort) return;
+  effort = Effort(pilot_light_paths(job));
+  effort = measure_effort(job, settings, *this);
 }
 
 VcmPass::VcmPass(const RenderJob& job_, std::uint32_t number_, const VcmSettings& settings_,
                  const VcmPreparation& prepared, LightVertices& vertices_)
     : job(job_),
       settings(settings_),
+      effort(prepared.effort),
       number(number_),
       draw(draw_for_pass(job, number)),
       light_paths(job.scene,
-                  {job.settings.seed, Stream::light, number, job.settings.photons, prepared.emission.starts()}),
+                  {job.settings.seed, Stream::light, number, prepared.effort.light_paths(), prepared.emission.starts()}),
       volume_kernels(prepared.volume_radii.kernels(settings.alpha, number)),
       beam_share(volume_kernels.uses_beams() ? share_of_beams(light_paths.total()) : 0.0f),
       bidirectional{job.view, {}, prepared.densities},
@@ -50,9 +56,14 @@ void VcmPass::build_merges(PassReport& report) {
   report.volume_radius = volume_kernels.widest_radius();
 }
 
-Bidirectional VcmPass::bidirectional_at(const Vec2& raster) const {
+Bidirectional VcmPass::bidirectional_at(const Vec2& raster, PathMoments* moments) const {
   Bidirectional result = bidirectional;
-  if (settings.switches.merging) result.techniques.merging = result.techniques.light_paths * pi * sqr(radii.at(raster));
+  if (moments) result.weighed = &moments->weighed;
+  Techniques& t = result.techniques;
+  const PlaceEffort here = effort.at(raster);
+  t.connections = here.connections;
+  t.volume_part = here.merges_in_media ? 1.0f : 0.0f;
+  if (settings.switches.merging && here.merges) t.merging = t.light_paths * pi * sqr(radii.at(raster));
   return result;
 }
 
@@ -60,6 +71,11 @@ std::size_t VcmPass::partner(Sampler& of_eye_path) const {
   of_eye_path.seek(1);
   const auto number_of = static_cast<std::size_t>(of_eye_path.next() * bidirectional.techniques.light_paths);
   return std::min(number_of, std::max<std::size_t>(light_paths.total(), 1) - 1);
+}
+
+std::size_t VcmPass::partner(std::size_t first, int i, int count) const {
+  const std::size_t all = std::max<std::size_t>(light_paths.total(), 1);
+  return (first + all * static_cast<std::size_t>(i) / static_cast<std::size_t>(count)) % all;
 }
 
 PathDraw VcmPass::draw_of_eye_path(Sampler& sampler) const {

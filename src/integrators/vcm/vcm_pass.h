@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "integrators/integrator.h"
+#include "integrators/vcm/effort.h"
 #include "integrators/vcm/merge_map.h"
 #include "integrators/vcm/merge_radii.h"
 #include "integrators/vcm/vcm_settings.h"
@@ -25,6 +26,7 @@ struct VcmPreparation {
   EmissionDensities densities;  // points to `emission`
   FirstMergeRadii radii;
   FirstVolumeRadii volume_radii;
+  Effort effort;
 
   VcmPreparation(const RenderJob& job, const VcmSettings& settings);
   VcmPreparation(const VcmPreparation&) = delete;
@@ -35,6 +37,7 @@ struct VcmPreparation {
 struct VcmPass {
   const RenderJob& job;
   const VcmSettings& settings;
+  const Effort& effort;
   std::uint32_t number;
   PassDraw draw;
   LightPaths light_paths;
@@ -61,12 +64,14 @@ struct VcmPass {
   /// Whether the film has the light of paths with `s` vertices from the light and `t` from the eye.
   bool shows(int s, int t) const { return !settings.only || *settings.only == Strategy{s, t}; }
   /// Paths through one place on the film are weighed with one radius, whatever technique made them: with
-  /// η_VCM = N π r² (TR eq. 20).
-  Bidirectional bidirectional_at(const Vec2& raster) const;
+  /// η_VCM = N π r² (TR eq. 20). The same holds for the effort of the place.
+  Bidirectional bidirectional_at(const Vec2& raster, PathMoments* moments = nullptr) const;
 
   /// The number of the light path that an eye path is connected to. The eye path's sampler draws it: a fixed pairing
   /// would give each pixel the light paths of one light.
   std::size_t partner(Sampler& of_eye_path) const;
+  /// Number `i` of `count` light paths, the first of which is `first`: at equal distances among all.
+  std::size_t partner(std::size_t first, int i, int count) const;
   /// Time and wavelengths of an eye path: those of the light path that it is connected to.
   PathDraw draw_of_eye_path(Sampler& sampler) const;
 };

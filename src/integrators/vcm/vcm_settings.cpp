@@ -78,7 +78,8 @@ VcmSettings::VcmSettings(const Parameters& parameters, VcmSwitches techniques)
 FilmContents VcmSettings::film_contents(const Scene& scene) const {
   using technique::hit, technique::nee, technique::splat, technique::vc, technique::vm;
   FilmContents contents = path_layers(scene);
-  contents.decomposition = {{"technique.hit", "technique.nee", "technique.vc", "technique.vm"},
+  if (!chooses_effort)
+    contents.decomposition = {{"technique.hit", "technique.nee", "technique.vc", "technique.vm"},
                             "technique.splat",
                             Decomposition::Shares{"technique.share", {{{vm}, {vc, nee, splat}, {hit}}}}};
   contents.splats = switches.connections;
@@ -95,12 +96,13 @@ MemoryUse VcmSettings::memory_use() const {
   constexpr double spare = 1.25;  // of vectors that grow; measured: 1.02
   const double merged = switches.merging ? bytes_per_photon : 0;
   const double of_vertex = spare * sizeof(LightVertex);
-  return {.per_photon = of_vertex + merged,
-          .per_light_path = bytes_per_light_path,
+  const double most_light_paths = chooses_effort ? 4 : 1;  // over those of `RenderSettings::photons`
+  return {.per_photon = most_light_paths * (of_vertex + merged),
+          .per_light_path = most_light_paths * bytes_per_light_path,
           .per_pixel = sizeof(float),
           .first_depth = 1,
           .media = MediumRecords::points,
-          .per_medium_photon = of_vertex + (switches.merging ? bytes_of_medium_photon(MediumRecords::points) : 0)};
+          .per_medium_photon = most_light_paths * of_vertex + (switches.merging ? bytes_of_medium_photon(MediumRecords::points) : 0)};
 }
 
 IntegratorInfo vcm_info() {
@@ -110,6 +112,20 @@ IntegratorInfo vcm_info() {
           {radius_reduction_info("0.5"), first_radius_info(), roulette_depth_info(), emission_info("auto"),
            merge_volume_info(), volume_radius_info()},
           make<true, true>,
+          fewest_light_paths};
+}
+
+IntegratorInfo auto_info() {
+  return {"auto",
+          "vcm with the light paths, connections and merges that a pilot finds best for each part of the picture",
+          "Grittmann et al. 2022",
+          {},
+          [](const Parameters&) {
+            const IntegratorInfo vcm = vcm_info();
+            VcmSettings settings(Parameters(vcm.parameters, {}, vcm.name), {.connections = true, .merging = true});
+            settings.chooses_effort = true;
+            return make_vertex_connection_and_merging(settings);
+          },
           fewest_light_paths};
 }
 

@@ -41,6 +41,7 @@ inline constexpr std::size_t hit = 0, nee = 1, vc = 2, vm = 3, splat = 4;
 struct VcmSettings {
   VcmSwitches switches;
   std::optional<Strategy> only;  ///< all others are left out of the film
+  bool chooses_effort = false;   ///< numbers of samples are those that a pilot finds best (integrators/vcm/effort.h)
   int roulette_depth = 3;
   // With merging:
   double alpha = 1;  ///< of Knaus & Zwicker 2011: r² shrinks by (i + α) / (i + 1)
@@ -53,7 +54,9 @@ struct VcmSettings {
   FilmContents film_contents(const Scene& scene) const;
   std::string limitation(const Scene& scene) const;
   MemoryUse memory_use() const;
-  PhotonUse photon_use() const { return switches.connections ? PhotonUse::beside_connections : PhotonUse::merging; }
+  PhotonUse photon_use() const {
+    return switches.connections && !chooses_effort ? PhotonUse::beside_connections : PhotonUse::merging;
+  }
   bool merges_in_media() const {
     return std::any_of(volume.begin(), volume.end(), [](bool used) { return used; });
   }

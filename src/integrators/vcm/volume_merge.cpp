@@ -7,6 +7,7 @@
 #include "base/parallel.h"
 #include "integrators/vcm/merge_map.h"
 #include "integrators/vcm/vcm_settings.h"
+#include "photon/flux_classes.h"
 #include "photon/media/volume_estimators.h"
 
 namespace lanthorn {
@@ -86,24 +87,28 @@ class MergeSum {
   // `own(collision, pass_light, pass_eye, sin)`: the estimator's part of `VolumeMerging::all`.
   template <class Own>
   void add(const Meeting& m, const KernelFactor& factor, Own&& own) const {
-    const Techniques& t = context_.techniques;
+    const Techniques& t = context_.bidirectional.techniques;
     const float sin = length(cross(wi_, m.to_light)), p = phase(phase_, wi_, m.to_light);
     const float collision = m.light.flight.collision, by_light = m.light.flight.pass, by_eye = m.eye.flight.pass;
     const float before = context_.subpath.coherence(), up_to_here = before * coherence(phase_);
-    const float weight = weight_merge({m.eye.densities, p}, {m.light.densities, p, up_to_here},
-                                      before * own(t.volume, collision, by_light, by_eye, sin),
-                                      before * t.volume.all(collision, by_light, by_eye, sin), t);
+    const float weight = context_.bidirectional.weigh(sum_of_volume_merge(
+        end_of_eye_path(m.eye.densities, p), end_of_light_path(m.light.densities, p, up_to_here),
+        before * own(t.volume, collision, by_light, by_eye, sin),
+        before * t.volume.all(collision, by_light, by_eye, sin), t));
     const Spectrum light = state_.beta * m.flux * factor.light * (p * weight);
     const bool is_dispersed = m.dispersed || state_.dispersed;
     context_.layers.add(class_of_merge(state_, m.depth, m.caustic), technique::vm, light, is_dispersed);
     context_.layers.add_bias(factor.bias_share * light, is_dispersed);
+    if (!context_.moments) return;
+    context_.moments->add(flux_of(light, is_dispersed, context_.path.w), &TechniqueSum::media);
+    ++context_.moments->work.merges;
   }
 
  private:
   // `flown` (m): since the departure, through this medium.
   VolumeArrival arrive(const PathStart& start, const Departure& departure, const Point& p, float flown, float time,
                        float collision) const {
-    return arrive_in_medium(context_.path.scene, start, departure, context_.techniques, p, time,
+    return arrive_in_medium(context_.path.scene, start, departure, context_.bidirectional.techniques, p, time,
                             extinction_ > 0 ? extinction_ * flown : 0.0f, collision);
   }
 

@@ -13,6 +13,8 @@
 #include "index/ball_bvh.h"
 #include "index/beam_bvh.h"
 #include "integrators/vcm/merge_radii.h"
+#include "integrators/vcm/moments.h"
+#include "path/connections.h"
 #include "path/light_layers.h"
 #include "path/light_vertices.h"
 #include "path/path_context.h"
@@ -24,10 +26,11 @@ namespace lanthorn {
 /// What the merges of an eye path need besides their vertex or flight.
 struct VolumeMergeContext {
   const PathContext& path;
-  const Techniques& techniques;
+  const Bidirectional& bidirectional;
   const Subpath& subpath;  ///< of the eye path
   int max_depth;           ///< scatterings of a whole path
   LightLayers& layers;
+  PathMoments* moments = nullptr;  ///< of a pilot
 };
 
 /// The photons of a pass in media, one set of indices for each medium. Keeps pointers to the light vertices.

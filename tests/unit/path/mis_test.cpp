@@ -67,6 +67,8 @@ RandomPath random_path(HashRng& rng) {
     path.forward.push_back(delta ? 1 : positive());
     path.reverse.push_back(delta ? 1 : positive());
   }
+  if (path.techniques.connects) path.techniques.connections = rng.next() < 0.3f ? 0.0f : 4 * rng.next();
+  path.techniques.volume_part = rng.next() < 0.3f ? 0.0f : 1.0f;
   return path;
 }
 
@@ -92,6 +94,11 @@ double by_eye(const RandomPath& path, int i) {
   return direction_by_eye(path, i) * path.pass[u] * path.collision[u];
 }
 
+float samples_of_connection(const RandomPath& path, int s) {
+  const int k = path.last();
+  return s == k + 1 ? path.techniques.light_paths : s >= 2 ? path.techniques.connections : 1;
+}
+
 // Of technique s = 0 (hit), 1 (next-event estimation), 2 ... k (connection of x_{s-1} and x_s), k + 1 (lens).
 double density_of_connection(const RandomPath& path, int s) {
   const int k = path.last();
@@ -103,7 +110,7 @@ double density_of_connection(const RandomPath& path, int s) {
   if (s == 0 && !path.techniques.connects)
     for (int i = 1; i <= k; ++i)
       if (!is_delta(i)) return 0;
-  double product = s == k + 1 ? static_cast<double>(path.techniques.light_paths) : 1;
+  double product = static_cast<double>(samples_of_connection(path, s));
   for (int i = 0; i < s; ++i) product *= s == 1 ? path.direct_area : by_light(path, i);
   for (int i = s; i <= k; ++i) product *= by_eye(path, i);
   return product;
@@ -130,7 +137,7 @@ double density_of_volume_merge(const RandomPath& path, int m, Kind kind) {
   const auto i = static_cast<unsigned>(m);
   if (!path.in_medium[i]) return 0;
   const VolumeMerging& v = path.techniques.volume;
-  double product = coherence_before(path, m);
+  double product = coherence_before(path, m) * static_cast<double>(path.techniques.volume_part);
   for (int j = 0; j < m; ++j) product *= by_light(path, j);
   for (int j = m + 1; j <= path.last(); ++j) product *= by_eye(path, j);
   switch (kind) {
@@ -214,31 +221,36 @@ float weight_of_connection(const RandomPath& path, const Recursion& r, int s) {
   const auto k = static_cast<unsigned>(path.last());
   const auto f = [](double x) { return static_cast<float>(x); };
   const auto merging = [&](unsigned i) {
-    if (path.in_medium[i]) return volume_merging(path, i);
-    return path.merges[i] && i > 1 ? path.techniques.merging : 0.0f;
+    return !path.in_medium[i] && path.merges[i] && i > 1 ? path.techniques.merging : 0.0f;
   };
+  const auto media = [&](unsigned i) { return path.in_medium[i] ? volume_merging(path, i) : 0.0f; };
   const auto flight = [&](unsigned from, unsigned to) { return path.pass[from] * path.collision[to]; };
   if (s == 0)
-    return weight_hit(r.eye[0], f(path.direct_area), f(path.emission_area * path.emission_direction), path.techniques);
+    return sum_of_hit(r.eye[0], f(path.direct_area), f(path.emission_area * path.emission_direction), path.techniques)
+        .weight();
   if (s == 1) {
     const double direct = path.direct_area * path.distance2[0] / path.cos_n[0];  // per solid angle at x_1
     const double ratio =
         path.emission_area * path.emission_direction * path.cos_p[1] * flight(0, 1) / (direct * path.cos_n[0]);
-    return weight_next_event({{r.eye[1], f(path.forward[1])}, f(ratio), merging(1)}, f(direct),
-                             path.can_be_hit ? f(path.reverse[1] * path.pass[0]) : 0.0f, path.techniques);
+    return sum_of_next_event({end_of_eye_path(r.eye[1], f(path.forward[1])), f(ratio), merging(1), media(1)},
+                             f(direct), path.can_be_hit ? f(path.reverse[1] * path.pass[0]) : 0.0f, path.techniques)
+        .weight();
   }
   if (s == path.last() + 1)
-    return weight_lens({{r.light[k], f(path.reverse[k]), f(path.coherence[k])},
-                        f(path.lens_density * path.cos_n[k] * flight(k, k)),
-                        merging(k)},
-                       path.techniques);
+    return sum_of_lens({end_of_light_path(r.light[k], f(path.reverse[k]), f(path.coherence[k])),
+                        f(path.lens_density * path.cos_n[k] * flight(k, k)), merging(k), media(k)},
+                       path.techniques)
+        .weight();
   const auto i = static_cast<unsigned>(s);
   const double forward = path.reverse[i] * path.cos_n[i - 1] * flight(i - 1, i - 1) / path.distance2[i - 1];
   const double back = path.forward[i - 1] * path.cos_p[i] * flight(i - 1, i) / path.distance2[i - 1];
-  return weight_connection(
-      {{r.eye[i], f(path.forward[i])}, f(back), merging(i)},
-      {{r.light[i - 1], f(path.reverse[i - 1]), f(coherence_before(path, s - 2))}, f(forward), merging(i - 1)},
-      path.techniques);
+  return path.techniques.connections *
+         sum_of_connection(
+             {end_of_eye_path(r.eye[i], f(path.forward[i])), f(back), merging(i), media(i)},
+             {end_of_light_path(r.light[i - 1], f(path.reverse[i - 1]), f(coherence_before(path, s - 2))), f(forward),
+              merging(i - 1), media(i - 1)},
+             path.techniques)
+             .weight();
 }
 
 TEST(Mis, RecursiveWeightsAreRatiosOfDensities) {
@@ -269,14 +281,17 @@ TEST(Mis, RecursiveWeightsAreRatiosOfDensities) {
       const float before = f(coherence_before(path, m));
       const auto check = [&](double density, float own, float all) {
         if (density == 0) return;
-        const double weight = static_cast<double>(weight_merge(
-            {r.eye[i], f(path.forward[i])}, {r.light[i], f(path.reverse[i]), f(coherence_before(path, m - 1))}, own,
-            all, path.techniques));
+        const SubpathEnd at_eye = end_of_eye_path(r.eye[i], f(path.forward[i]));
+        const SubpathEnd at_light = end_of_light_path(r.light[i], f(path.reverse[i]), f(coherence_before(path, m - 1)));
+        const auto weight = static_cast<double>(
+            (all > 0 ? sum_of_volume_merge(at_eye, at_light, own, all, path.techniques)
+                     : sum_of_merge(at_eye, at_light, path.techniques))
+                .weight());
         ASSERT_NEAR(weight, density / total, 1e-4) << "path " << n << " of " << k << ", merged at " << m;
         sum += weight;
         in_media += path.in_medium[i] ? 1 : 0;
       };
-      check(merges[i], path.techniques.merging, path.techniques.merging);
+      check(merges[i], 0, 0);
       if (!path.in_medium[i]) continue;
       const VolumeMerging& v = path.techniques.volume;
       const float collision = f(path.collision[i]), light = f(path.pass[i - 1]), eye = f(path.pass[i]);

@@ -1,0 +1,59 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// How many samples each technique of vertex connection and merging gets, and where on the film.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "camera/view.h"
+#include "math/vec.h"
+
+namespace lanthorn {
+
+/// At a place on the film.
+struct PlaceEffort {
+  std::uint8_t connections = 1;  ///< light paths that each eye vertex is connected to
+  bool merges = true;            ///< on surfaces
+  bool merges_in_media = true;
+
+  bool operator==(const PlaceEffort&) const = default;
+};
+
+/// What the pilot found, for the user.
+struct EffortReport {
+  double light_by_light_paths = 0;  ///< share of the light that light paths find: by the lens, connections and merging
+  double merged_part = 0, connected_part = 0;  ///< shares of the picture
+  double light_paths_per_pixel = 0;
+};
+
+/// The effort of all passes. The same everywhere, or by blocks of pixels.
+class Effort {
+ public:
+  Effort() = default;
+  /// With all techniques everywhere.
+  explicit Effort(std::uint64_t light_paths) : light_paths_(light_paths) {}
+  /// By blocks that divide the window evenly, row by row.
+  Effort(std::uint64_t light_paths, const PixelWindow& window, int columns, std::vector<PlaceEffort> blocks,
+         EffortReport report);
+
+  std::uint64_t light_paths() const { return light_paths_; }  ///< of a pass
+  PlaceEffort at(const Vec2& raster) const { return blocks_.empty() ? PlaceEffort{} : blocks_[block_of(raster)]; }
+  /// One line: what was found, and what was chosen.
+  std::string describe() const;
+
+  /// Precondition: there are blocks.
+  std::size_t block_of(const Vec2& raster) const;
+
+ private:
+  std::uint64_t light_paths_ = 0;
+  PixelWindow window_{};
+  int columns_ = 0, rows_ = 0;
+  std::vector<PlaceEffort> blocks_;
+  EffortReport report_;
+};
+
+}  // namespace lanthorn

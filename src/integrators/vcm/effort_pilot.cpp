@@ -1,0 +1,339 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "integrators/vcm/effort_pilot.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "integrators/vcm/vcm_visitors.h"
+#include "path/eye_pass.h"
+
+namespace lanthorn {
+
+namespace {
+
+constexpr std::uint32_t pilot_passes = 4;
+constexpr int most_cells = 128;     // pilot pixels along a side of the film
+constexpr int cells_per_block = 4;  // along a side of a block
+constexpr std::uint64_t most_pilot_paths = 1u << 16;
+
+// Work in units of a ray of a walk with its scattering. Measured once; what counts is that it is fixed.
+namespace work {
+constexpr double walk_density = 0.15;  // of a ray, where light paths need densities of eye paths
+constexpr double shadow = 0.5, connection = 0.5, lookup = 0.3, merge = 0.05;
+constexpr double stored_vertex = 0.9;  // with its connection to the lens, and sorting
+}  // namespace work
+
+// Numbers of light paths of a pass, over that of all pixels.
+constexpr std::array light_path_choices{0.25f, 0.5f, 1.0f, 2.0f, 4.0f};
+
+// `scale`: from those to multiples of the pilot's number.
+std::vector<EffortCandidate> all_candidates(float scale, bool one_time, bool in_media) {
+  std::vector<EffortCandidate> all{{0, 0, false, false}};
+  for (const float light_paths : light_path_choices)
+    for (const float connections : {0.0f, 1.0f, 4.0f})
+      for (const bool merges : {false, true})
+        for (const bool media : {false, true})
+          if ((one_time || connections <= 1) && (in_media || !media))
+            all.push_back({scale * light_paths, connections, merges, media});
+  return all;
+}
+
+// Sums over the eye paths of a block of pixels.
+struct Block {
+  std::vector<double> moments;  // by candidate
+  double light = 0, from_light_paths = 0;
+  std::vector<double> squares;  // of the pixels' expectations, likewise: products of two passes
+  double paths = 0, pixels = 0;
+  double rays = 0, shadow_rays = 0, connections = 0, lookups = 0, merges = 0;
+};
+
+// One light vertex that the lens sees.
+struct SeenLight {
+  std::uint32_t block;
+  float light;
+  TechniqueSum weighed;
+};
+
+// The pilot's pixels and blocks.
+class Grid {
+ public:
+  explicit Grid(const PixelWindow& window) : window_(window) {
+    const auto along = [](int pixels) {
+      return std::max(1, std::min(most_cells, pixels) / cells_per_block);
+    };
+    columns_ = along(window.width());
+    rows_ = along(window.height());
+  }
+  int columns() const { return columns_; }
+  int rows() const { return rows_; }
+  PixelWindow cells() const { return {0, 0, columns_ * cells_per_block, rows_ * cells_per_block}; }
+  Vec2 raster(const PixelPlace& cell, const Vec2& u) const {
+    const Vec2 step(static_cast<float>(window_.width()) / static_cast<float>(columns_ * cells_per_block),
+                    static_cast<float>(window_.height()) / static_cast<float>(rows_ * cells_per_block));
+    return window_.corner() + step * (Vec2(static_cast<float>(cell.x), static_cast<float>(cell.y)) + u);
+  }
+  std::size_t block_of(int x, int y) const {
+    return static_cast<std::size_t>(y / cells_per_block * columns_ + x / cells_per_block);
+  }
+
+ private:
+  const PixelWindow& window_;
+  int columns_, rows_;
+};
+
+class Pilot {
+ public:
+  Pilot(const RenderJob& job, const VcmSettings& settings, const VcmPreparation& prepared)
+      : job_(job),
+        settings_(settings),
+        grid_(job.view.window),
+        scale_(static_cast<float>(job.settings.photons) / static_cast<float>(pilot_light_paths(job))),
+        candidates_(all_candidates(scale_, draw_for_pass(job, 0).is_of_one_time(), settings.merges_in_media() &&
+                                                                               job.scene.has_scattering_media())),
+        blocks_(static_cast<std::size_t>(grid_.columns() * grid_.rows())),
+        cells_(static_cast<std::size_t>(grid_.cells().width() * grid_.cells().height()) * candidates_.size()),
+        found_(0, job.view.window, grid_.columns(), std::vector<PlaceEffort>(blocks_.size()), {}) {
+    for (Block& block : blocks_) {
+      block.moments.resize(candidates_.size());
+      block.squares.resize(candidates_.size());
+      block.pixels = static_cast<double>(job.view.window.width()) * static_cast<double>(job.view.window.height()) /
+                     static_cast<double>(blocks_.size());
+    }
+    for (std::uint32_t i = 0; i < pilot_passes; ++i) run(i, prepared);
+    const auto width = static_cast<std::size_t>(grid_.cells().width());
+    for (std::size_t i = 0; i < cells_.size(); ++i) {
+      const std::size_t cell = i / candidates_.size();
+      Block& block = blocks_[grid_.block_of(static_cast<int>(cell % width), static_cast<int>(cell / width))];
+      block.squares[i % candidates_.size()] += (sqr(cells_[i].sum) - cells_[i].squares) / (pilot_passes - 1);
+    }
+  }
+
+  Effort best() const;
+
+ private:
+  // Light of a cell by a candidate, over the passes.
+  struct Cell {
+    double sum = 0, squares = 0;
+  };
+  // Variance and work of a choice for each block.
+  struct Plan {
+    std::vector<std::size_t> candidates;
+    double variance = 0, work = 0;
+  };
+
+  void run(std::uint32_t pass, const VcmPreparation& prepared);
+  void trace_light(const VcmPass& pass);
+  void trace_eye(const VcmPass& pass);
+  double work_of(const Block& block, const EffortCandidate& c) const;
+  double variance_of(std::size_t block, std::size_t candidate) const;
+  Plan plan_with(float light_paths) const;
+
+  RenderJob job_;
+  const VcmSettings& settings_;
+  Grid grid_;
+  float scale_;
+  std::vector<EffortCandidate> candidates_;
+  std::vector<Block> blocks_;
+  std::vector<Cell> cells_;
+  Effort found_;  // for places
+  LightVertices vertices_;
+  double light_rays_ = 0, light_vertices_ = 0, light_paths_ = 0;
+};
+
+void Pilot::run(std::uint32_t number, const VcmPreparation& prepared) {
+  constexpr std::uint64_t own_seed = 0x9e3779b97f4a7c15u;
+  RenderSettings of_pilot = job_.settings;
+  of_pilot.seed ^= own_seed;
+  const RenderJob job{job_.scene, job_.view, of_pilot};
+  VcmPass pass(job, number, settings_, prepared, vertices_);
+  trace_light(pass);
+  PassReport report;
+  pass.build_merges(report);
+  trace_eye(pass);
+}
+
+void Pilot::trace_light(const VcmPass& pass) {
+  std::vector<std::vector<SeenLight>> chunks(pass.light_paths.chunk_count());
+  const RayCounts rays =
+      trace_light_paths(pass, nullptr, [&](const LightArrival& light, const LensLight& seen, std::size_t chunk) {
+        TechniqueSum weighed;
+        Bidirectional there = pass.bidirectional_at(seen.raster);
+        there.weighed = &weighed;
+        const float weight = light.weight(there, seen);
+        chunks[chunk].push_back({static_cast<std::uint32_t>(found_.block_of(seen.raster)),
+                                 weight * flux_of(seen.light, seen.dispersed, pass.draw.w), weighed});
+      });
+  light_rays_ += static_cast<double>(rays.walk);
+  light_paths_ += static_cast<double>(pass.light_paths.total());
+  for (std::size_t c = 0; c < chunks.size(); ++c) {
+    light_vertices_ += static_cast<double>(vertices_.chunk(c).vertices.size());
+    for (const SeenLight& seen : chunks[c]) {
+      // Of a pixel: as many eye paths as pilot passes see each cell, but all light paths all pixels.
+      Block& block = blocks_[seen.block];
+      const double share = static_cast<double>(sqr(cells_per_block)) / block.pixels;
+      const double light = static_cast<double>(seen.light);
+      block.light += share * light;
+      block.from_light_paths += share * light;
+      for (std::size_t k = 0; k < candidates_.size(); ++k) {
+        const double ratio = static_cast<double>(
+            std::max(candidates_[k].all(seen.weighed) / seen.weighed.all(), PathMoments::least_ratio));
+        block.moments[k] += share * sqr(light) / ratio;
+      }
+    }
+  }
+}
+
+void Pilot::trace_eye(const VcmPass& pass) {
+  const PixelWindow cells = grid_.cells();
+  const auto width = static_cast<std::size_t>(cells.width()), count = width * static_cast<std::size_t>(cells.height());
+  std::vector<PathMoments> of_cells(count, PathMoments(candidates_));
+  for_each_pixel(cells, [&](const PixelPlace& cell, RayCounts& counts) {
+    Sampler sampler = Sampler::for_pixel(pass.job.settings.seed, Stream::pilot_camera, cell.index, pass.number);
+    const PathDraw draw = pass.draw_of_eye_path(sampler);
+    sampler.seek(0);
+    const Vec2 raster = grid_.raster(cell, sampler.next2());
+    const CameraRay ray = eye_ray(pass.job.view, raster, sampler.next2(), draw.time);
+    LightLayers layers(draw.w);
+    const PathContext path{pass.job.scene, draw.w, sampler, counts, {pass.max_depth(), settings_.roulette_depth}};
+    const RayCounts before = counts;
+    PathMoments& moments = of_cells[cell.index];
+    walk_from_camera(path, ray, pass.job.view.medium,
+                     EyeVisitor(path, pass, raster, pass.partner(sampler), layers, &moments));
+    moments.work.rays = static_cast<std::uint32_t>(counts.walk - before.walk);
+    moments.work.shadow_rays = static_cast<std::uint32_t>(counts.shadow - before.shadow);
+  });
+  for (std::size_t i = 0; i < count; ++i) {
+    const PathMoments& moments = of_cells[i];
+    Block& block = blocks_[grid_.block_of(static_cast<int>(i % width), static_cast<int>(i / width))];
+    for (std::size_t k = 0; k < candidates_.size(); ++k) {
+      block.moments[k] += static_cast<double>(moments.second_moment(k));
+      const auto light = static_cast<double>(moments.light_of(k));
+      Cell& cell = cells_[i * candidates_.size() + k];
+      cell.sum += light;
+      cell.squares += sqr(light);
+    }
+    block.light += static_cast<double>(moments.light);
+    block.from_light_paths += static_cast<double>(moments.light - moments.by_walk);
+    block.paths += 1;
+    block.rays += moments.work.rays;
+    block.connections += moments.work.connections;
+    block.shadow_rays += moments.work.shadow_rays;
+    block.lookups += moments.work.lookups;
+    block.merges += moments.work.merges;
+  }
+}
+
+// Of an eye path.
+double Pilot::work_of(const Block& block, const EffortCandidate& c) const {
+  const double next_events = std::max(0.0, block.shadow_rays - block.connections);
+  double sum = block.rays + work::shadow * next_events;
+  if (c.light_paths > 0) sum += work::walk_density * block.rays;
+  sum += work::connection * block.connections * static_cast<double>(c.connections);
+  if (c.merges || c.merges_in_media)
+    sum += work::lookup * block.lookups + work::merge * block.merges * static_cast<double>(c.light_paths);
+  return sum / block.paths;
+}
+
+// Relative variance of a pixel, with the blocks around.
+double Pilot::variance_of(std::size_t b, std::size_t candidate) const {
+  const int x0 = static_cast<int>(b) % grid_.columns(), y0 = static_cast<int>(b) / grid_.columns();
+  double moment = 0, square = 0, light = 0, paths = 0;
+  for (int y = std::max(0, y0 - 1); y <= std::min(grid_.rows() - 1, y0 + 1); ++y)
+    for (int x = std::max(0, x0 - 1); x <= std::min(grid_.columns() - 1, x0 + 1); ++x) {
+      const Block& block = blocks_[static_cast<std::size_t>(y * grid_.columns() + x)];
+      moment += block.moments[candidate];
+      square += block.squares[candidate];
+      light += block.light;
+      paths += block.paths;
+    }
+  constexpr double least_part = 0.02;  // of a second moment that is variance
+  const double mean = light / paths;
+  const double variance = std::max(moment - square, least_part * moment) / paths;
+  double all = 0, all_paths = 0;
+  for (const Block& block : blocks_) {
+    all += block.light;
+    all_paths += block.paths;
+  }
+  return variance / (sqr(mean) + 0.01 * sqr(all / all_paths) + std::numeric_limits<double>::min());
+}
+
+// The least product of variance and work with so many light paths: each block takes what reduces the sum of its shares
+// of both most, until the shares stay.
+Pilot::Plan Pilot::plan_with(float light_paths) const {
+  std::vector<std::size_t> able;
+  for (std::size_t k = 0; k < candidates_.size(); ++k)
+    if (candidates_[k].light_paths == scale_ * light_paths) able.push_back(k);
+  const double of_light_path = (light_rays_ + work::stored_vertex * light_vertices_) / std::max(1.0, light_paths_);
+  const PixelWindow& window = job_.view.window;
+  const double pixels = static_cast<double>(window.width()) * static_cast<double>(window.height());
+  const double of_light = static_cast<double>(light_paths) * static_cast<double>(job_.settings.photons) / pixels *
+                          of_light_path;  // for each pixel
+  std::vector<std::vector<double>> variance(blocks_.size()), work(blocks_.size());
+  for (std::size_t b = 0; b < blocks_.size(); ++b)
+    for (const std::size_t k : able) {
+      variance[b].push_back(variance_of(b, k));
+      work[b].push_back(work_of(blocks_[b], candidates_[k]));
+    }
+  Plan plan{std::vector<std::size_t>(blocks_.size(), able.back())};
+  std::vector<std::size_t> chosen(blocks_.size(), able.size() - 1);
+  constexpr int rounds = 8;
+  for (int round = 0; round < rounds; ++round) {
+    plan.variance = plan.work = 0;
+    for (std::size_t b = 0; b < blocks_.size(); ++b) {
+      plan.variance += variance[b][chosen[b]] / static_cast<double>(blocks_.size());
+      plan.work += work[b][chosen[b]] / static_cast<double>(blocks_.size());
+    }
+    plan.work += of_light;
+    if (round + 1 == rounds) break;
+    for (std::size_t b = 0; b < blocks_.size(); ++b)
+      for (std::size_t i = 0; i < able.size(); ++i) {
+        const auto cost = [&](std::size_t j) { return variance[b][j] / plan.variance + work[b][j] / plan.work; };
+        if (cost(i) < cost(chosen[b])) chosen[b] = i;
+      }
+  }
+  for (std::size_t b = 0; b < blocks_.size(); ++b) plan.candidates[b] = able[chosen[b]];
+  return plan;
+}
+
+Effort Pilot::best() const {
+  float best_paths = 0;
+  Plan best = plan_with(0);
+  for (const float light_paths : light_path_choices) {
+    Plan plan = plan_with(light_paths);
+    if (!(plan.variance * plan.work < best.variance * best.work)) continue;
+    best = std::move(plan);
+    best_paths = light_paths;
+  }
+  std::vector<PlaceEffort> places;
+  EffortReport report;
+  double light = 0, by_light_paths = 0;
+  const auto share = 1 / static_cast<double>(blocks_.size());
+  for (std::size_t b = 0; b < blocks_.size(); ++b) {
+    const EffortCandidate& c = candidates_[best.candidates[b]];
+    places.push_back({static_cast<std::uint8_t>(c.connections), c.merges, c.merges_in_media});
+    report.merged_part += c.merges || c.merges_in_media ? share : 0;
+    report.connected_part += c.connections > 0 ? share : 0;
+    light += blocks_[b].light;
+    by_light_paths += blocks_[b].from_light_paths;
+  }
+  report.light_by_light_paths = light > 0 ? by_light_paths / light : 0;
+  const auto paths = static_cast<double>(best_paths) * static_cast<double>(job_.settings.photons);
+  const PixelWindow& window = job_.view.window;
+  report.light_paths_per_pixel =
+      paths * job_.settings.parts / (static_cast<double>(window.width()) * static_cast<double>(window.height()));
+  return {static_cast<std::uint64_t>(std::ceil(paths)), window, grid_.columns(), std::move(places), report};
+}
+
+}  // namespace
+
+std::uint64_t pilot_light_paths(const RenderJob& job) { return std::min(job.settings.photons, most_pilot_paths); }
+
+Effort measure_effort(const RenderJob& job, const VcmSettings& settings, const VcmPreparation& prepared) {
+  return Pilot(job, settings, prepared).best();
+}
+
+}  // namespace lanthorn

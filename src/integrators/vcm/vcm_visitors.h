@@ -1,0 +1,238 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// What vertex connection and merging does at the vertices of light paths and of eye paths.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <variant>
+
+#include "integrators/vcm/moments.h"
+#include "integrators/vcm/vcm_pass.h"
+#include "path/connections.h"
+#include "path/light_layers.h"
+#include "path/splat.h"
+#include "photon/flux_classes.h"
+#include "photon/photon_pass.h"
+
+namespace lanthorn {
+
+/// A vertex of a light path that is connected to the lens.
+struct LightArrival {
+  const std::variant<const SurfaceVertex*, const MediumVertex*> vertex;
+  const Subpath& subpath;
+  PathLayers layers;
+
+  /// `bidirectional`: of the place on the film that receives the light.
+  float weight(const Bidirectional& bidirectional, const LensLight& seen) const {
+    return std::visit([&](const auto* v) { return weight_of_seen(bidirectional, *v, subpath, seen); }, vertex);
+  }
+};
+
+/// Step 1: keeps the vertices of a light path, and connects them to the lens: `see(LightArrival, LensLight)`.
+template <class See>
+class LightVisitor {
+ public:
+  LightVisitor(const PathContext& path, const VcmPass& pass, std::uint32_t light, float time, const Film* film,
+               LightVertices::Chunk& chunk, const See& see)
+      : path_(path),
+        pass_(pass),
+        light_(light),
+        time_(time),
+        film_(film),
+        chunk_(chunk),
+        see_(see),
+        subpath_(pass.bidirectional.techniques) {}
+
+  // The path starts (TR eqs. 31-33).
+  void operator()(const EmissionSample& emission) {
+    keeps_beams_ = pass_.beam_share > 0 && keeps_beams(path_.sampler, pass_.beam_share);
+    subpath_.begin_at_light(light_, emission, pass_.bidirectional.emission);
+  }
+  // It has come to a vertex (TR eqs. 34-36; through delta lobes eqs. 53-55).
+  Continuation operator()(const SurfaceVertex& v) {
+    subpath_.arrive(path_, v);
+    if (v.may_scatter && has_non_delta(v.at.bsdf)) keep(v);
+    return Continuation::go_on();
+  }
+  Continuation operator()(const MediumVertex& v) {
+    subpath_.arrive(path_, v);
+    if (v.may_scatter) keep(v);
+    return Continuation::go_on();
+  }
+  void operator()(const FlownSegment& flight) {
+    if (flight.state.medium == MediumId::vacuum) return;
+    if (keeps_beams_ && flight.state.depth < pass_.max_depth())
+      if (auto beam = keep_beam(path_, flight, time_, pass_.beam_share, subpath_)) chunk_.beams.push_back(*beam);
+    subpath_.fly(flight);
+  }
+  void operator()(const EscapeVertex&) {}
+
+ private:
+  // Keeps the vertex, and connects it to the lens (TR eqs. 46, 47).
+  template <class Vertex>
+  void keep(const Vertex& v) {
+    LightVertex& kept = chunk_.vertices.emplace_back(keep_vertex(v, subpath_));
+    kept.flux_class = pass_.class_of_flux(flux_of(v.state.beta, v.state.dispersed, path_.w));
+    if (!pass_.connects() || !pass_.shows(v.state.depth + 1, 1)) return;
+    if (const auto seen = connect_to_lens(path_, pass_.job.view, v, film_))
+      see_(LightArrival{&v, subpath_, layers_of_splat(v)}, *seen);
+  }
+
+  const PathContext& path_;
+  const VcmPass& pass_;
+  std::uint32_t light_;
+  float time_;
+  bool keeps_beams_ = false;
+  const Film* film_;
+  LightVertices::Chunk& chunk_;
+  const See& see_;
+  Subpath subpath_;
+};
+
+/// Step 3: finds the light of an eye path by all techniques but the lens.
+class EyeVisitor {
+ public:
+  // The path starts (TR eqs. 31-33).
+  EyeVisitor(const PathContext& path, const VcmPass& pass, const Vec2& raster, std::size_t partner, LightLayers& layers,
+             PathMoments* moments = nullptr)
+      : path_(path),
+        pass_(pass),
+        bidirectional_(pass.bidirectional_at(raster, moments)),
+        moments_(moments),
+        raster_(raster),
+        partner_(partner),
+        layers_(layers),
+        subpath_(pass.bidirectional.techniques) {
+    subpath_.begin_at_lens(pass.job.view.camera);
+  }
+
+  // It has come to a vertex (TR eqs. 34-36; through delta lobes eqs. 53-55).
+  Continuation operator()(const SurfaceVertex& v) {
+    layers_.see(v);
+    subpath_.arrive(path_, v);
+    if (hits_count(v.state) && pass_.shows(0, v.state.depth + 1))
+      add_hit(v, hit_emitter(path_, bidirectional_, v, subpath_), v.state.depth > 1);
+    if (!v.may_scatter) return Continuation::stop();
+    if (has_non_delta(v.at.bsdf)) {
+      if (pass_.connects()) connect_all(v);
+      if (bidirectional_.techniques.merging > 0 && merges_at(v.at)) merge(v);
+    }
+    return Continuation::go_on();
+  }
+  Continuation operator()(const MediumVertex& v) {
+    layers_.see(v);
+    subpath_.arrive(path_, v);
+    if (!v.may_scatter) return Continuation::stop();
+    if (pass_.connects()) connect_all(v);
+    if (merges_in_media() && subpath_.coherence() > 0) pass_.volume_merges->add_at(volume_context(), v);
+    return Continuation::go_on();
+  }
+  void operator()(const FlownSegment& flight) {
+    if (flight.state.medium == MediumId::vacuum) return;
+    layers_.see(flight);
+    if (merges_in_media()) {
+      subpath_.depart(flight);
+      if (subpath_.coherence() > 0) pass_.volume_merges->add_along(volume_context(), flight);
+    }
+    subpath_.fly(flight);
+  }
+  // It hits a light (TR eqs. 42, 43).
+  void operator()(const EmissionVertex& v) {
+    const bool is_light = path_.scene.volume_light(v.state.medium).has_value();
+    if ((is_light && !hits_count(v.state)) || !pass_.shows(0, v.state.depth + 2)) return;
+    add_hit(v, hit_glow(path_, bidirectional_, v, subpath_), is_light && v.state.depth > 0);
+  }
+  void operator()(const EscapeVertex& v) {
+    if (!hits_count(v.state) || !pass_.shows(0, v.state.depth + 2)) return;
+    subpath_.escape(v.state, v.direction);
+    add_hit(v, hit_environment(path_, bidirectional_, v, subpath_), v.state.depth > 0);
+  }
+
+ private:
+  // Merging alone leaves to the walk what no photon can bring: light seen directly or through delta scatterings.
+  bool hits_count(const WalkState& state) const { return pass_.connects() || state.non_delta == 0; }
+
+  bool merges_in_media() const { return pass_.volume_merges && bidirectional_.techniques.volume_part > 0; }
+
+  // `is_weighed`: other techniques make the light as well.
+  template <class Vertex>
+  void add_hit(const Vertex& v, const Spectrum& light, bool is_weighed) {
+    if (moments_ && !is_weighed) bidirectional_.weigh({.walk = 1});
+    layers_.add_hit(v, light, technique::hit);
+    note(light, v.state.dispersed, &TechniqueSum::walk);
+  }
+  void note(const Spectrum& light, bool dispersed, float TechniqueSum::*technique) {
+    if (moments_) moments_->add(flux_of(light, dispersed, path_.w), technique);
+  }
+
+  // Next-event estimation (TR eqs. 44, 45), and vertex connection (TR eqs. 40, 41).
+  template <class Vertex>
+  void connect_all(const Vertex& v) {
+    const int eye_vertices = v.state.depth + 1;
+    if (pass_.shows(1, eye_vertices)) {
+      const DirectLight direct = next_event(path_, bidirectional_, v, subpath_);
+      layers_.add(class_of_next_event(v.state), technique::nee, direct.radiance, direct.dispersed);
+      note(direct.radiance, direct.dispersed, &TechniqueSum::walk);
+    }
+    const auto connections = static_cast<int>(bidirectional_.techniques.connections);
+    for (int i = 0; i < connections; ++i)
+      for (const LightVertex& other : pass_.vertices.path(pass_.partner(partner_, i, connections))) {
+        if (v.state.depth + other.depth > pass_.max_depth() || !pass_.shows(other.depth + 1, eye_vertices)) continue;
+        const DirectLight light = connect(path_, bidirectional_, v, subpath_, other);
+        layers_.add(PathClass::indirect, technique::vc, light.radiance, light.dispersed);
+        note(light.radiance, light.dispersed, &TechniqueSum::connections);
+        if (moments_) ++moments_->work.connections;
+      }
+  }
+
+  // Vertex merging (TR eqs. 38, 39): a density estimate of the radiance from the photons (Georgiev et al. 2012, eq.
+  // 10), with a weight for each. Photons of all classes of flux have the weights of the first class's radius, so that
+  // those of a path's techniques sum to one.
+  void merge(const SurfaceVertex& v) {
+    const GatherVertex gather(v);
+    const Techniques& t = bidirectional_.techniques;
+    const auto add = [&](const MergePhoton& photon, const PhotonHit& hit, float density, float bias_share) {
+      const SubpathEnd at_eye = end_of_eye_path(subpath_.densities(), hit.pdf_reverse);
+      const SubpathEnd at_light = end_of_light_path(photon.densities, hit.pdf, subpath_.coherence_beyond());
+      const float weight = bidirectional_.weigh(sum_of_merge(at_eye, at_light, t));
+      const Spectrum light = v.state.beta * hit.f * photon.power * (weight * density * hit.ratio);
+      const bool is_dispersed = gather.is_dispersed(photon.dispersed);
+      layers_.add(class_of_merge(v.state, photon.depth, photon.caustic), technique::vm, light, is_dispersed);
+      layers_.add_bias(bias_share * light, is_dispersed);
+      note(light, is_dispersed, &TechniqueSum::merging);
+      if (moments_) ++moments_->work.merges;
+    };
+    if (moments_) ++moments_->work.lookups;
+    pass_.surface_merges->for_each_at(gather, raster_, pass_.max_depth(), add);
+  }
+  VolumeMergeContext volume_context() const {
+    return {path_, bidirectional_, subpath_, pass_.max_depth(), layers_, moments_};
+  }
+
+  const PathContext& path_;
+  const VcmPass& pass_;
+  const Bidirectional bidirectional_;
+  PathMoments* moments_;
+  const Vec2 raster_;
+  std::size_t partner_;
+  LightLayers& layers_;
+  Subpath subpath_;
+};
+
+/// Traces the light paths of a pass. `film`: see `connect_to_lens`.
+template <class See>
+RayCounts trace_light_paths(const VcmPass& pass, const Film* film, const See& see) {
+  pass.vertices.begin(pass.light_paths.chunk_count());
+  const WalkLimits limits{.max_depth = pass.max_depth()};
+  return pass.light_paths.for_each([&](const LightPath& start, Sampler& sampler, RayCounts& counts, std::size_t c) {
+    LightVertices::Chunk& chunk = pass.vertices.chunk(c);
+    const PathContext path{pass.job.scene, pass.draw.w, sampler, counts, limits};
+    const float time = pass.draw.of_path(sampler).time;
+    const auto see_in_chunk = [&](const LightArrival& light, const LensLight& seen) { see(light, seen, c); };
+    walk_from_light(path, start, time, LightVisitor(path, pass, start.index, time, film, chunk, see_in_chunk));
+    chunk.ends.push_back(static_cast<std::uint32_t>(chunk.vertices.size()));
+  });
+}
+
+}  // namespace lanthorn
