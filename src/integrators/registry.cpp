@@ -57,8 +57,8 @@ namespace {
 
 std::vector<IntegratorInfo>& registry() {
   static std::vector<IntegratorInfo> all{
-      auto_info(),    probppm_info(), sppm_info(),  ppm_info(), photonmap_info(),        vcm_info(),     bpm_info(), bdpt_info(),
-      path_info(),    light_info(), mlt_info(), reversephotonmap_info(), splitsum_info()};
+      auto_info(), probppm_info(), sppm_info(),  ppm_info(), photonmap_info(),        vcm_info(),     bpm_info(),
+      bdpt_info(), path_info(),    light_info(), mlt_info(), reversephotonmap_info(), splitsum_info()};
   return all;
 }
 

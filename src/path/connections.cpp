@@ -186,10 +186,10 @@ float weight_of_lens(const Bidirectional& pass, const Vertex& v, const Subpath& 
   const Arrival at = arrival(pass, v, -seen.from_lens.direction, subpath.flight(), Transport::importance);
   const float passes = FlightDensity::passing(seen.optical_depth);
   const float density = pass.view.camera.density_at(seen.from_lens, seen.distance) * at.density(passes);
-  return pass.weigh(sum_of_lens({end_of_light_path(subpath.densities(), at.reverse, subpath.coherence_beyond()), density,
-                                 v.state.depth == 1 ? 0.0f : at.merging,
-                                 at.volume_merging(t.volume.reversed(), passes, 1)},
-                                t));
+  return pass.weigh(
+      sum_of_lens({end_of_light_path(subpath.densities(), at.reverse, subpath.coherence_beyond()), density,
+                   v.state.depth == 1 ? 0.0f : at.merging, at.volume_merging(t.volume.reversed(), passes, 1)},
+                  t));
 }
 
 }  // namespace

@@ -140,9 +140,9 @@ struct Techniques {
   float volume_part = 1;   ///< 0 for pixels without merging in media
 };
 
-/// What weights need to know of a subpath up to a vertex: d_VCM = `end` + c `vcm` and d_VC = `ends` + c `vc` + `media` +
-/// η `vm`, with c light paths that each vertex is connected to. The `end` of a light path are next-event estimation and
-/// the eye path's hit, that of an eye path is the lens.
+/// What weights need to know of a subpath up to a vertex: d_VCM = `end` + c `vcm` and d_VC = `ends` + c `vc` + `media`
+/// + η `vm`, with c light paths that each vertex is connected to. The `end` of a light path are next-event estimation
+/// and the eye path's hit, that of an eye path is the lens.
 struct VertexDensities {
   float end = 0;    ///< at the first vertex: next-event estimation, or the lens
   float ends = 0;   ///< the same at a later vertex, and the hit of the light
@@ -281,8 +281,8 @@ inline SubpathEnd end_of_light_path(const VertexDensities& densities, float reve
 
 /// One end of a connection.
 struct ConnectedEnd : SubpathEnd {
-  float arrival = 0;       ///< with which the other walk comes here, per area; with its flight, so in media per volume
-  float merging = 0;       ///< η of this vertex, on a surface
+  float arrival = 0;  ///< with which the other walk comes here, per area; with its flight, so in media per volume
+  float merging = 0;  ///< η of this vertex, on a surface
   float volume_merging = 0;  ///< the same in a medium, times the coherence of the eye path before it
 
   /// Adds `factor` times w_light, or w_eye: all techniques whose other walk makes this vertex, too (TR eqs. 40, 41).

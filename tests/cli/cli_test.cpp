@@ -21,8 +21,8 @@
 namespace lanthorn::cli_test {
 namespace {
 
-const Words integrators{"probppm",          "sppm",    "ppm", "vcm", "bpm", "bdpt", "path", "light", "mlt", "photonmap",
-                        "reversephotonmap", "splitsum"};
+const Words integrators{"auto",      "probppm",          "sppm",    "ppm", "vcm", "bpm", "bdpt", "path", "light", "mlt",
+                        "photonmap", "reversephotonmap", "splitsum"};
 const Words subcommands{"render", "info",    "compare", "converge", "photons",
                         "ibl",    "convert", "develop", "merge",    "list"};
 

@@ -61,7 +61,7 @@ std::vector<Case> cases() {
   std::vector<Case> all;
   for (const AnalyticScene& scene : scenes())
     for (const char* integrator :
-         {"path", "light", "probppm", "sppm", "ppm", "bdpt", "bpm", "vcm", "mlt", "mlt:over=path"})
+         {"path", "light", "probppm", "sppm", "ppm", "bdpt", "bpm", "vcm", "auto", "mlt", "mlt:over=path"})
       for (const ColorMode color : {ColorMode::rgb, ColorMode::spectral})
         for (const int depth : {2, 3, 5})
           if ((color == ColorMode::spectral) == (depth == 3)) all.push_back({scene, integrator, color, depth});

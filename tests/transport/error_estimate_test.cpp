@@ -91,7 +91,8 @@ TEST_P(NoiseOf, AMethodIsKnownWithinAFifth) {
   for (const MeasuredError& error : runs.said) said += error.estimate.noise / static_cast<double>(runs.said.size());
   EXPECT_NEAR(said / runs.true_noise(), 1, 0.2);
 }
-INSTANTIATE_TEST_SUITE_P(Methods, NoiseOf, testing::Values("path", "light", "bdpt", "vcm", "probppm", "sppm", "mlt"));
+INSTANTIATE_TEST_SUITE_P(Methods, NoiseOf,
+                         testing::Values("path", "light", "bdpt", "vcm", "auto", "probppm", "sppm", "mlt"));
 
 // A radius that does not shrink, so that the bias is far above the noise.
 class BiasOf : public testing::TestWithParam<const char*> {};

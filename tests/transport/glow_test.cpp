@@ -121,7 +121,7 @@ TEST(Glow, FogWithoutEndIsFoundByEyePaths) {
       room);
   EXPECT_EQ(scene.lights().size(), 1u);
   EXPECT_TRUE(scene.has_unlit_glow());
-  expect_agreement(scene, {"light", "bdpt", "vcm", "probppm", "photonmap"}, 1, {"color", "media"});
+  expect_agreement(scene, {"light", "bdpt", "vcm", "auto", "probppm", "photonmap"}, 1, {"color", "media"});
 }
 
 }  // namespace

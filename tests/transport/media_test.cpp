@@ -307,7 +307,8 @@ void expect_agreement(const Scene& scene, const std::vector<std::string>& integr
 
 TEST(Media, IntegratorsAgree) {
   const std::string coefficients = "\"rgb sigma_a\" [0.1 0.2 0.4] \"rgb sigma_s\" [0.3 1 2] \"float g\" [0.5] ";
-  expect_agreement(foggy_room(fog(coefficients)), {"light", "probppm", "bdpt", "vcm", "mlt", "mlt:over=path"}, 2);
+  expect_agreement(foggy_room(fog(coefficients)), {"light", "probppm", "bdpt", "vcm", "auto", "mlt", "mlt:over=path"},
+                   2);
   const std::string box = "\"point3 p0\" [-0.7 -0.7 -0.7] \"point3 p1\" [0.7 0.7 0.7] ";
   expect_agreement(foggy_room(fog(coefficients + box + "\"float density\" 6", "cloud")), {"light", "probppm"}, 1);
   const std::string grid = box + "\"integer nx\" 2 \"integer ny\" 1 \"integer nz\" 1 \"float g\" -0.3 ";
@@ -332,7 +333,7 @@ TEST(Media, GlowLightsWhatIsAroundIt) {
       "Material \"dielectric\"\nTranslate 0.4 0.4 0.2\nShape \"sphere\" \"float radius\" [0.3]\n");
   EXPECT_TRUE(scene.warnings().empty());
   EXPECT_TRUE(media_warnings(scene, make_view(scene.description().view)).empty());
-  expect_agreement(scene, {"light", "probppm", "bdpt", "vcm"}, 2);
+  expect_agreement(scene, {"light", "probppm", "bdpt", "vcm", "auto"}, 2);
 }
 
 // On the right a ball of fog before a black wall: all light comes out of the medium, also where a pane of glass is

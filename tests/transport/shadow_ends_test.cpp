@@ -38,7 +38,8 @@ TEST_P(ShadowEnds, StencilBeforeALampCastsItsShadow) { expect_light(stencil, Get
 TEST_P(ShadowEnds, LightPassesAPaneBeforeALampOnce) { expect_light(pane, GetParam()); }
 TEST_P(ShadowEnds, LampsFarFromTheOriginLightAsMuch) { expect_light(far_away, GetParam()); }
 
-INSTANTIATE_TEST_SUITE_P(Methods, ShadowEnds, testing::Values("path", "light", "bdpt", "vcm", "probppm", "mlt"));
+INSTANTIATE_TEST_SUITE_P(Methods, ShadowEnds,
+                         testing::Values("path", "light", "bdpt", "vcm", "auto", "probppm", "mlt"));
 
 }  // namespace
 }  // namespace lanthorn::shadow_ends_test

@@ -555,7 +555,7 @@ TEST(VolumeMethods, WeightsAreFiniteAtTheLens) {
       "\"rgb sigma_s\" [1 1 1]\nTranslate 10000 10000 10000\n"
       "AttributeBegin MediumInterface \"\" \"fog\" LightSource \"point\" \"point3 from\" [0 0.5 0] AttributeEnd\n"
       "MediumInterface \"fog\" \"\" Material \"interface\" Shape \"sphere\"\n");
-  for (const char* integrator : {"bdpt", "vcm", "vcm:volume=point+beam+photon-beam+beams"}) {
+  for (const char* integrator : {"bdpt", "vcm", "auto", "vcm:volume=point+beam+photon-beam+beams"}) {
     RenderOptions o = options(integrator, 2, 20'000);
     if (test::has_parameter(integrator, "volume-radius")) o.set["volume-radius"] = "0.3";
     EXPECT_TRUE(test::render_state(scene, o).film.report().clean()) << integrator;

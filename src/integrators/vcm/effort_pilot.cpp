@@ -44,7 +44,8 @@ std::vector<EffortCandidate> all_candidates(float scale, bool one_time, bool in_
 
 // Sums over the eye paths of a block of pixels.
 struct Block {
-  std::vector<double> moments;  // by candidate
+  std::vector<double> moments;    // by candidate
+  std::vector<double> variances;  // likewise, of a pixel: relative
   double light = 0, from_light_paths = 0;
   std::vector<double> squares;  // of the pixels' expectations, likewise: products of two passes
   double paths = 0, pixels = 0;
@@ -55,26 +56,35 @@ struct Block {
 struct SeenLight {
   std::uint32_t block;
   float light;
+  double spread;  // the sum over pixels of the squares of the filter
   TechniqueSum weighed;
 };
+
+double spread_of(const View& view, const Vec2& raster) {
+  double sum = 0;
+  const PixelWindow& window = view.window;
+  view.filter.for_each_pixel(raster - window.corner(), window.width(), window.height(),
+                             [&](int, int, float filter) { sum += static_cast<double>(sqr(filter)); });
+  return sum;
+}
 
 // The pilot's pixels and blocks.
 class Grid {
  public:
   explicit Grid(const PixelWindow& window) : window_(window) {
-    const auto along = [](int pixels) {
-      return std::max(1, std::min(most_cells, pixels) / cells_per_block);
-    };
+    const auto along = [](int pixels) { return std::max(1, std::min(most_cells, pixels) / cells_per_block); };
     columns_ = along(window.width());
     rows_ = along(window.height());
   }
   int columns() const { return columns_; }
   int rows() const { return rows_; }
   PixelWindow cells() const { return {0, 0, columns_ * cells_per_block, rows_ * cells_per_block}; }
-  Vec2 raster(const PixelPlace& cell, const Vec2& u) const {
-    const Vec2 step(static_cast<float>(window_.width()) / static_cast<float>(columns_ * cells_per_block),
-                    static_cast<float>(window_.height()) / static_cast<float>(rows_ * cells_per_block));
-    return window_.corner() + step * (Vec2(static_cast<float>(cell.x), static_cast<float>(cell.y)) + u);
+  // The pixel in the middle of a cell.
+  PixelPlace pixel_of(const PixelPlace& cell) const {
+    const auto middle = [](int i, int pixels, int cells) { return (2 * i + 1) * pixels / (2 * cells); };
+    const int x = middle(cell.x, window_.width(), columns_ * cells_per_block);
+    const int y = middle(cell.y, window_.height(), rows_ * cells_per_block);
+    return {window_.x0 + x, window_.y0 + y, static_cast<std::uint32_t>(y * window_.width() + x)};
   }
   std::size_t block_of(int x, int y) const {
     return static_cast<std::size_t>(y / cells_per_block * columns_ + x / cells_per_block);
@@ -92,8 +102,8 @@ class Pilot {
         settings_(settings),
         grid_(job.view.window),
         scale_(static_cast<float>(job.settings.photons) / static_cast<float>(pilot_light_paths(job))),
-        candidates_(all_candidates(scale_, draw_for_pass(job, 0).is_of_one_time(), settings.merges_in_media() &&
-                                                                               job.scene.has_scattering_media())),
+        candidates_(all_candidates(scale_, draw_for_pass(job, 0).is_of_one_time(),
+                                   settings.merges_in_media() && job.scene.has_scattering_media())),
         blocks_(static_cast<std::size_t>(grid_.columns() * grid_.rows())),
         cells_(static_cast<std::size_t>(grid_.cells().width() * grid_.cells().height()) * candidates_.size()),
         found_(0, job.view.window, grid_.columns(), std::vector<PlaceEffort>(blocks_.size()), {}) {
@@ -110,9 +120,11 @@ class Pilot {
       Block& block = blocks_[grid_.block_of(static_cast<int>(cell % width), static_cast<int>(cell / width))];
       block.squares[i % candidates_.size()] += (sqr(cells_[i].sum) - cells_[i].squares) / (pilot_passes - 1);
     }
+    find_variances();
   }
 
   Effort best() const;
+  std::vector<CandidateEstimate> estimates() const;
 
  private:
   // Light of a cell by a candidate, over the passes.
@@ -128,8 +140,10 @@ class Pilot {
   void run(std::uint32_t pass, const VcmPreparation& prepared);
   void trace_light(const VcmPass& pass);
   void trace_eye(const VcmPass& pass);
+  void find_variances();
   double work_of(const Block& block, const EffortCandidate& c) const;
   double variance_of(std::size_t block, std::size_t candidate) const;
+  double work_of_light(float light_paths) const;
   Plan plan_with(float light_paths) const;
 
   RenderJob job_;
@@ -144,12 +158,13 @@ class Pilot {
   double light_rays_ = 0, light_vertices_ = 0, light_paths_ = 0;
 };
 
+// With a seed for each pass: later passes of one seed avoid the samples of those before.
 void Pilot::run(std::uint32_t number, const VcmPreparation& prepared) {
   constexpr std::uint64_t own_seed = 0x9e3779b97f4a7c15u;
   RenderSettings of_pilot = job_.settings;
-  of_pilot.seed ^= own_seed;
+  of_pilot.seed ^= own_seed * (number + 1);
   const RenderJob job{job_.scene, job_.view, of_pilot};
-  VcmPass pass(job, number, settings_, prepared, vertices_);
+  VcmPass pass(job, 0, settings_, prepared, vertices_);
   trace_light(pass);
   PassReport report;
   pass.build_merges(report);
@@ -165,7 +180,8 @@ void Pilot::trace_light(const VcmPass& pass) {
         there.weighed = &weighed;
         const float weight = light.weight(there, seen);
         chunks[chunk].push_back({static_cast<std::uint32_t>(found_.block_of(seen.raster)),
-                                 weight * flux_of(seen.light, seen.dispersed, pass.draw.w), weighed});
+                                 weight * flux_of(seen.light, seen.dispersed, pass.draw.w),
+                                 spread_of(job_.view, seen.raster), weighed});
       });
   light_rays_ += static_cast<double>(rays.walk);
   light_paths_ += static_cast<double>(pass.light_paths.total());
@@ -175,13 +191,13 @@ void Pilot::trace_light(const VcmPass& pass) {
       // Of a pixel: as many eye paths as pilot passes see each cell, but all light paths all pixels.
       Block& block = blocks_[seen.block];
       const double share = static_cast<double>(sqr(cells_per_block)) / block.pixels;
-      const double light = static_cast<double>(seen.light);
+      const auto light = static_cast<double>(seen.light);
       block.light += share * light;
       block.from_light_paths += share * light;
       for (std::size_t k = 0; k < candidates_.size(); ++k) {
         const double ratio = static_cast<double>(
             std::max(candidates_[k].all(seen.weighed) / seen.weighed.all(), PathMoments::least_ratio));
-        block.moments[k] += share * sqr(light) / ratio;
+        block.moments[k] += share * seen.spread * sqr(light) / ratio;
       }
     }
   }
@@ -194,15 +210,13 @@ void Pilot::trace_eye(const VcmPass& pass) {
   for_each_pixel(cells, [&](const PixelPlace& cell, RayCounts& counts) {
     Sampler sampler = Sampler::for_pixel(pass.job.settings.seed, Stream::pilot_camera, cell.index, pass.number);
     const PathDraw draw = pass.draw_of_eye_path(sampler);
-    sampler.seek(0);
-    const Vec2 raster = grid_.raster(cell, sampler.next2());
-    const CameraRay ray = eye_ray(pass.job.view, raster, sampler.next2(), draw.time);
+    const EyeStart start = start_eye_path(pass.job.view, grid_.pixel_of(cell), draw.time, sampler);
     LightLayers layers(draw.w);
     const PathContext path{pass.job.scene, draw.w, sampler, counts, {pass.max_depth(), settings_.roulette_depth}};
     const RayCounts before = counts;
     PathMoments& moments = of_cells[cell.index];
-    walk_from_camera(path, ray, pass.job.view.medium,
-                     EyeVisitor(path, pass, raster, pass.partner(sampler), layers, &moments));
+    walk_from_camera(path, start.camera, pass.job.view.medium,
+                     EyeVisitor(path, pass, start.raster, pass.partner(sampler), layers, &moments));
     moments.work.rays = static_cast<std::uint32_t>(counts.walk - before.walk);
     moments.work.shadow_rays = static_cast<std::uint32_t>(counts.shadow - before.shadow);
   });
@@ -238,27 +252,53 @@ double Pilot::work_of(const Block& block, const EffortCandidate& c) const {
   return sum / block.paths;
 }
 
-// Relative variance of a pixel, with the blocks around.
+void Pilot::find_variances() {
+  double light = 0, paths = 0;
+  for (const Block& block : blocks_) {
+    light += block.light;
+    paths += block.paths;
+  }
+  const double floor = 0.01 * sqr(light / paths) + std::numeric_limits<double>::min();
+  constexpr double least_part = 0.02;  // of a second moment that is variance
+  for (Block& block : blocks_)
+    for (std::size_t k = 0; k < candidates_.size(); ++k) {
+      const double variance = std::max(block.moments[k] - block.squares[k], least_part * block.moments[k]);
+      block.variances.push_back(variance / block.paths / (sqr(block.light / block.paths) + floor));
+    }
+}
+
+// The mean with the blocks around.
 double Pilot::variance_of(std::size_t b, std::size_t candidate) const {
   const int x0 = static_cast<int>(b) % grid_.columns(), y0 = static_cast<int>(b) / grid_.columns();
-  double moment = 0, square = 0, light = 0, paths = 0;
+  double sum = 0;
+  int count = 0;
   for (int y = std::max(0, y0 - 1); y <= std::min(grid_.rows() - 1, y0 + 1); ++y)
-    for (int x = std::max(0, x0 - 1); x <= std::min(grid_.columns() - 1, x0 + 1); ++x) {
-      const Block& block = blocks_[static_cast<std::size_t>(y * grid_.columns() + x)];
-      moment += block.moments[candidate];
-      square += block.squares[candidate];
-      light += block.light;
-      paths += block.paths;
+    for (int x = std::max(0, x0 - 1); x <= std::min(grid_.columns() - 1, x0 + 1); ++x, ++count)
+      sum += blocks_[static_cast<std::size_t>(y * grid_.columns() + x)].variances[candidate];
+  return sum / count;
+}
+
+// Of a pass, for each pixel. `light_paths`: over those of the settings.
+double Pilot::work_of_light(float light_paths) const {
+  const double of_path = (light_rays_ + work::stored_vertex * light_vertices_) / std::max(1.0, light_paths_);
+  const PixelWindow& window = job_.view.window;
+  const double pixels = static_cast<double>(window.width()) * static_cast<double>(window.height());
+  return static_cast<double>(light_paths) * static_cast<double>(job_.settings.photons) / pixels * of_path;
+}
+
+std::vector<CandidateEstimate> Pilot::estimates() const {
+  std::vector<CandidateEstimate> result;
+  for (std::size_t k = 0; k < candidates_.size(); ++k) {
+    EffortCandidate candidate = candidates_[k];
+    candidate.light_paths /= scale_;
+    CandidateEstimate& e = result.emplace_back(CandidateEstimate{candidate, 0, work_of_light(candidate.light_paths)});
+    for (std::size_t b = 0; b < blocks_.size(); ++b) {
+      const Block& block = blocks_[b];
+      e.variance += (block.moments[k] - block.squares[k]) / block.paths / static_cast<double>(blocks_.size());
+      e.work += work_of(blocks_[b], candidates_[k]) / static_cast<double>(blocks_.size());
     }
-  constexpr double least_part = 0.02;  // of a second moment that is variance
-  const double mean = light / paths;
-  const double variance = std::max(moment - square, least_part * moment) / paths;
-  double all = 0, all_paths = 0;
-  for (const Block& block : blocks_) {
-    all += block.light;
-    all_paths += block.paths;
   }
-  return variance / (sqr(mean) + 0.01 * sqr(all / all_paths) + std::numeric_limits<double>::min());
+  return result;
 }
 
 // The least product of variance and work with so many light paths: each block takes what reduces the sum of its shares
@@ -267,11 +307,6 @@ Pilot::Plan Pilot::plan_with(float light_paths) const {
   std::vector<std::size_t> able;
   for (std::size_t k = 0; k < candidates_.size(); ++k)
     if (candidates_[k].light_paths == scale_ * light_paths) able.push_back(k);
-  const double of_light_path = (light_rays_ + work::stored_vertex * light_vertices_) / std::max(1.0, light_paths_);
-  const PixelWindow& window = job_.view.window;
-  const double pixels = static_cast<double>(window.width()) * static_cast<double>(window.height());
-  const double of_light = static_cast<double>(light_paths) * static_cast<double>(job_.settings.photons) / pixels *
-                          of_light_path;  // for each pixel
   std::vector<std::vector<double>> variance(blocks_.size()), work(blocks_.size());
   for (std::size_t b = 0; b < blocks_.size(); ++b)
     for (const std::size_t k : able) {
@@ -287,7 +322,7 @@ Pilot::Plan Pilot::plan_with(float light_paths) const {
       plan.variance += variance[b][chosen[b]] / static_cast<double>(blocks_.size());
       plan.work += work[b][chosen[b]] / static_cast<double>(blocks_.size());
     }
-    plan.work += of_light;
+    plan.work += work_of_light(light_paths);
     if (round + 1 == rounds) break;
     for (std::size_t b = 0; b < blocks_.size(); ++b)
       for (std::size_t i = 0; i < able.size(); ++i) {
@@ -331,6 +366,11 @@ Effort Pilot::best() const {
 }  // namespace
 
 std::uint64_t pilot_light_paths(const RenderJob& job) { return std::min(job.settings.photons, most_pilot_paths); }
+
+std::vector<CandidateEstimate> estimate_candidates(const RenderJob& job, const VcmSettings& settings,
+                                                   const VcmPreparation& prepared) {
+  return Pilot(job, settings, prepared).estimates();
+}
 
 Effort measure_effort(const RenderJob& job, const VcmSettings& settings, const VcmPreparation& prepared) {
   return Pilot(job, settings, prepared).best();

@@ -17,9 +17,9 @@ namespace lanthorn {
 
 /// Numbers of samples by which a place on the film may find its light, as multiples of the pilot's.
 struct EffortCandidate {
-  float light_paths = 1;    ///< of the pass
-  float connections = 1;    ///< light paths that each eye vertex is connected to
-  bool merges = true;       ///< on surfaces
+  float light_paths = 1;  ///< of the pass
+  float connections = 1;  ///< light paths that each eye vertex is connected to
+  bool merges = true;     ///< on surfaces
   bool merges_in_media = true;
 
   /// How many times the pilot's samples the technique has. Merging on surfaces and in media takes part in all light

@@ -80,8 +80,8 @@ FilmContents VcmSettings::film_contents(const Scene& scene) const {
   FilmContents contents = path_layers(scene);
   if (!chooses_effort)
     contents.decomposition = {{"technique.hit", "technique.nee", "technique.vc", "technique.vm"},
-                            "technique.splat",
-                            Decomposition::Shares{"technique.share", {{{vm}, {vc, nee, splat}, {hit}}}}};
+                              "technique.splat",
+                              Decomposition::Shares{"technique.share", {{{vm}, {vc, nee, splat}, {hit}}}}};
   contents.splats = switches.connections;
   contents.bias = switches.merging;
   return contents;
@@ -102,7 +102,8 @@ MemoryUse VcmSettings::memory_use() const {
           .per_pixel = sizeof(float),
           .first_depth = 1,
           .media = MediumRecords::points,
-          .per_medium_photon = most_light_paths * of_vertex + (switches.merging ? bytes_of_medium_photon(MediumRecords::points) : 0)};
+          .per_medium_photon =
+              most_light_paths * of_vertex + (switches.merging ? bytes_of_medium_photon(MediumRecords::points) : 0)};
 }
 
 IntegratorInfo vcm_info() {

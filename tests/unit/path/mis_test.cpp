@@ -232,8 +232,8 @@ float weight_of_connection(const RandomPath& path, const Recursion& r, int s) {
     const double direct = path.direct_area * path.distance2[0] / path.cos_n[0];  // per solid angle at x_1
     const double ratio =
         path.emission_area * path.emission_direction * path.cos_p[1] * flight(0, 1) / (direct * path.cos_n[0]);
-    return sum_of_next_event({end_of_eye_path(r.eye[1], f(path.forward[1])), f(ratio), merging(1), media(1)},
-                             f(direct), path.can_be_hit ? f(path.reverse[1] * path.pass[0]) : 0.0f, path.techniques)
+    return sum_of_next_event({end_of_eye_path(r.eye[1], f(path.forward[1])), f(ratio), merging(1), media(1)}, f(direct),
+                             path.can_be_hit ? f(path.reverse[1] * path.pass[0]) : 0.0f, path.techniques)
         .weight();
   }
   if (s == path.last() + 1)
@@ -245,11 +245,10 @@ float weight_of_connection(const RandomPath& path, const Recursion& r, int s) {
   const double forward = path.reverse[i] * path.cos_n[i - 1] * flight(i - 1, i - 1) / path.distance2[i - 1];
   const double back = path.forward[i - 1] * path.cos_p[i] * flight(i - 1, i) / path.distance2[i - 1];
   return path.techniques.connections *
-         sum_of_connection(
-             {end_of_eye_path(r.eye[i], f(path.forward[i])), f(back), merging(i), media(i)},
-             {end_of_light_path(r.light[i - 1], f(path.reverse[i - 1]), f(coherence_before(path, s - 2))), f(forward),
-              merging(i - 1), media(i - 1)},
-             path.techniques)
+         sum_of_connection({end_of_eye_path(r.eye[i], f(path.forward[i])), f(back), merging(i), media(i)},
+                           {end_of_light_path(r.light[i - 1], f(path.reverse[i - 1]), f(coherence_before(path, s - 2))),
+                            f(forward), merging(i - 1), media(i - 1)},
+                           path.techniques)
              .weight();
 }
 
@@ -283,10 +282,10 @@ TEST(Mis, RecursiveWeightsAreRatiosOfDensities) {
         if (density == 0) return;
         const SubpathEnd at_eye = end_of_eye_path(r.eye[i], f(path.forward[i]));
         const SubpathEnd at_light = end_of_light_path(r.light[i], f(path.reverse[i]), f(coherence_before(path, m - 1)));
-        const auto weight = static_cast<double>(
-            (all > 0 ? sum_of_volume_merge(at_eye, at_light, own, all, path.techniques)
-                     : sum_of_merge(at_eye, at_light, path.techniques))
-                .weight());
+        const auto weight =
+            static_cast<double>((all > 0 ? sum_of_volume_merge(at_eye, at_light, own, all, path.techniques)
+                                         : sum_of_merge(at_eye, at_light, path.techniques))
+                                    .weight());
         ASSERT_NEAR(weight, density / total, 1e-4) << "path " << n << " of " << k << ", merged at " << m;
         sum += weight;
         in_media += path.in_medium[i] ? 1 : 0;

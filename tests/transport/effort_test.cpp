@@ -1,0 +1,93 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// The variance that the pilot of "auto" expects of other numbers of samples, against that of renders with them.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "integrators/vcm/effort_pilot.h"
+#include "integrators/vcm/vcm_pass.h"
+#include "render/picture.h"
+#include "render/plan.h"
+#include "support/render_scene.h"
+
+namespace lanthorn::effort_test {
+namespace {
+
+// The lower part of the picture, without the lamp, whose edges would be most of the variance of every choice.
+constexpr int size = 64, height = 36;
+const std::map<std::string, std::string> fixed{{"radius", "0.04"}, {"alpha", "1"}, {"emission", "power"}};
+
+RenderOptions options_of(const std::string& method, double light_paths, std::uint64_t seed) {
+  RenderOptions options;
+  options.integrator = method;
+  options.resolution = {size, size};
+  options.crop = {0, size - height, size, size};
+  options.passes = 1;
+  options.photons = static_cast<std::uint64_t>(light_paths * size * height);
+  options.seed = seed;
+  if (method == "vcm") options.set = fixed;
+  return options;
+}
+
+// As CandidateEstimate::variance.
+double variance_of(const Scene& scene, const std::string& method, double light_paths) {
+  constexpr unsigned count = 96;
+  std::vector<double> sum(size * height), squares(sum.size());
+  for (unsigned seed = 0; seed < count; ++seed) {
+    const RenderState state = test::render_state(scene, options_of(method, light_paths, seed));
+    const Image color = *select_layer(picture_of(state), "color");
+    for (std::size_t i = 0; i < sum.size(); ++i) {
+      const double light =
+          static_cast<double>(color.pixels[3 * i] + color.pixels[3 * i + 1] + color.pixels[3 * i + 2]);
+      sum[i] += light / count;
+      squares[i] += light * light / count;
+    }
+  }
+  double result = 0;
+  for (std::size_t i = 0; i < sum.size(); ++i)
+    result += (squares[i] - sum[i] * sum[i]) * count / (count - 1) / static_cast<double>(sum.size());
+  return result;
+}
+
+class Estimates : public testing::TestWithParam<const char*> {};
+
+TEST_P(Estimates, OfVarianceAreThoseOfRendersWithinAFifth) {
+  const Scene scene(read_scene(std::string(LANTHORN_SOURCE_DIR "/scenes/") + GetParam()));
+  // The mean of many pilots: one alone has few samples of a picture as small as this.
+  std::vector<CandidateEstimate> all;
+  constexpr unsigned pilots = 24;
+  for (unsigned seed = 0; seed < pilots; ++seed) {
+    const RenderPlan plan = plan_render(scene, scene.description().view, options_of("vcm", 1, seed));
+    const RenderJob job = plan.job(scene);
+    const VcmSettings settings(Parameters(find_integrator("vcm").parameters, fixed, "vcm"), {});
+    VcmPreparation prepared(job, settings);
+    prepared.effort = Effort(pilot_light_paths(job));
+    const std::vector<CandidateEstimate> of_seed = estimate_candidates(job, settings, prepared);
+    if (all.empty()) all.assign(of_seed.size(), {});
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      all[k].candidate = of_seed[k].candidate;
+      all[k].variance += of_seed[k].variance / pilots;
+    }
+  }
+  struct Case {
+    const char* method;
+    float light_paths;
+    bool merges;
+  };
+  for (const Case& c : {Case{"vcm", 1, true}, {"vcm", 0.25f, true}, {"vcm", 4, true}, {"bdpt", 1, false}, {"bdpt", 4, false}}) {
+    const auto found = std::find_if(all.begin(), all.end(), [&](const CandidateEstimate& e) {
+      return e.candidate.light_paths == c.light_paths && e.candidate.connections == 1 && e.candidate.merges == c.merges;
+    });
+    ASSERT_NE(found, all.end());
+    const double variance = variance_of(scene, c.method, static_cast<double>(c.light_paths));
+    EXPECT_NEAR(found->variance / variance, 1, 0.2) << c.method << " with " << c.light_paths << ": " << variance;
+  }
+}
+INSTANTIATE_TEST_SUITE_P(Scenes, Estimates, testing::Values("cornell-caustics.pbrt"));
+
+}  // namespace
+}  // namespace lanthorn::effort_test
