@@ -41,8 +41,7 @@ double variance_of(const Scene& scene, const std::string& method, double light_p
     const RenderState state = test::render_state(scene, options_of(method, light_paths, seed));
     const Image color = *select_layer(picture_of(state), "color");
     for (std::size_t i = 0; i < sum.size(); ++i) {
-      const double light =
-          static_cast<double>(color.pixels[3 * i] + color.pixels[3 * i + 1] + color.pixels[3 * i + 2]);
+      const double light = static_cast<double>(color.pixels[3 * i] + color.pixels[3 * i + 1] + color.pixels[3 * i + 2]);
       sum[i] += light / count;
       squares[i] += light * light / count;
     }
@@ -78,7 +77,8 @@ TEST_P(Estimates, OfVarianceAreThoseOfRendersWithinAFifth) {
     float light_paths;
     bool merges;
   };
-  for (const Case& c : {Case{"vcm", 1, true}, {"vcm", 0.25f, true}, {"vcm", 4, true}, {"bdpt", 1, false}, {"bdpt", 4, false}}) {
+  for (const Case& c :
+       {Case{"vcm", 1, true}, {"vcm", 0.25f, true}, {"vcm", 4, true}, {"bdpt", 1, false}, {"bdpt", 4, false}}) {
     const auto found = std::find_if(all.begin(), all.end(), [&](const CandidateEstimate& e) {
       return e.candidate.light_paths == c.light_paths && e.candidate.connections == 1 && e.candidate.merges == c.merges;
     });
@@ -88,6 +88,47 @@ TEST_P(Estimates, OfVarianceAreThoseOfRendersWithinAFifth) {
   }
 }
 INSTANTIATE_TEST_SUITE_P(Scenes, Estimates, testing::Values("cornell-caustics.pbrt"));
+
+Effort effort_of(const Scene& scene) {
+  const RenderPlan plan = plan_render(scene, scene.description().view, test::options_for("auto", 1, 1));
+  const RenderJob job = plan.job(scene);
+  VcmSettings settings(Parameters(find_integrator("vcm").parameters, {}, "vcm"), {});
+  settings.chooses_effort = true;
+  return VcmPreparation(job, settings).effort;
+}
+
+// A plain under an even sky: light paths bring nothing.
+const std::string plain = R"(
+Film "rgb" "integer xresolution" 32 "integer yresolution" 32
+LookAt 0 -3 2  0 0 0  0 0 1
+Camera "perspective" "float fov" 50
+WorldBegin
+LightSource "infinite" "rgb L" [1 1 1]
+Shape "bilinearmesh" "point3 P" [-9 -9 0  9 -9 0  -9 9 0  9 9 0]
+)";
+
+TEST(Effort, OfAPlainUnderTheSkyIsPathTracing) {
+  const Scene scene = test::scene_from_text(plain);
+  EXPECT_EQ(effort_of(scene).light_paths(), 0u);
+  const Image own = test::render_image(scene, test::options_for("auto", 4, 1));
+  const Image path = test::render_image(scene, test::options_for("path", 4, 1));
+  EXPECT_EQ(select_layer(own, "color")->pixels, select_layer(path, "color")->pixels);
+}
+
+// A glass ball far too small for the pilot: its caustic must not get lost.
+TEST(Effort, MergesEverywhereWhereThereIsGlass) {
+  const Scene scene = test::scene_from_text(plain + R"(
+LightSource "point" "point3 from" [0 0 3] "rgb I" [1 1 1]
+Material "dielectric"
+Translate 1 1 .02
+Shape "sphere" "float radius" .01
+)");
+  const Effort effort = effort_of(scene);
+  EXPECT_GT(effort.light_paths(), 0u);
+  for (int y = 0; y < 32; ++y)
+    for (int x = 0; x < 32; ++x)
+      EXPECT_TRUE(effort.at(Vec2(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f)).merges);
+}
 
 }  // namespace
 }  // namespace lanthorn::effort_test

@@ -20,7 +20,8 @@ constexpr int most_cells = 128;     // pilot pixels along a side of the film
 constexpr int cells_per_block = 4;  // along a side of a block
 constexpr std::uint64_t most_pilot_paths = 1u << 16;
 
-// Work in units of a ray of a walk with its scattering. Measured once; what counts is that it is fixed.
+// Work in units of a ray of a walk with its scattering: rough numbers, fixed so that choices are the same on every
+// machine.
 namespace work {
 constexpr double walk_density = 0.15;  // of a ray, where light paths need densities of eye paths
 constexpr double shadow = 0.5, connection = 0.5, lookup = 0.3, merge = 0.05;
@@ -40,6 +41,11 @@ std::vector<EffortCandidate> all_candidates(float scale, bool one_time, bool in_
           if ((one_time || connections <= 1) && (in_media || !media))
             all.push_back({scale * light_paths, connections, merges, media});
   return all;
+}
+
+bool has_specular_surfaces(const Scene& scene) {
+  const std::vector<Obstacle> obstacles = scene.obstacles();
+  return std::any_of(obstacles.begin(), obstacles.end(), [](const Obstacle& o) { return o.is_specular; });
 }
 
 // Sums over the eye paths of a block of pixels.
@@ -102,6 +108,7 @@ class Pilot {
         settings_(settings),
         grid_(job.view.window),
         scale_(static_cast<float>(job.settings.photons) / static_cast<float>(pilot_light_paths(job))),
+        has_specular_(has_specular_surfaces(job.scene)),
         candidates_(all_candidates(scale_, draw_for_pass(job, 0).is_of_one_time(),
                                    settings.merges_in_media() && job.scene.has_scattering_media())),
         blocks_(static_cast<std::size_t>(grid_.columns() * grid_.rows())),
@@ -144,12 +151,14 @@ class Pilot {
   double work_of(const Block& block, const EffortCandidate& c) const;
   double variance_of(std::size_t block, std::size_t candidate) const;
   double work_of_light(float light_paths) const;
+  bool finds_all_light(const EffortCandidate& c) const;
   Plan plan_with(float light_paths) const;
 
   RenderJob job_;
   const VcmSettings& settings_;
   Grid grid_;
   float scale_;
+  bool has_specular_;
   std::vector<EffortCandidate> candidates_;
   std::vector<Block> blocks_;
   std::vector<Cell> cells_;
@@ -224,8 +233,8 @@ void Pilot::trace_eye(const VcmPass& pass) {
     const PathMoments& moments = of_cells[i];
     Block& block = blocks_[grid_.block_of(static_cast<int>(i % width), static_cast<int>(i / width))];
     for (std::size_t k = 0; k < candidates_.size(); ++k) {
-      block.moments[k] += static_cast<double>(moments.second_moment(k));
-      const auto light = static_cast<double>(moments.light_of(k));
+      block.moments[k] += moments.second_moment(k);
+      const double light = moments.light_of(k);
       Cell& cell = cells_[i * candidates_.size() + k];
       cell.sum += light;
       cell.squares += sqr(light);
@@ -301,12 +310,19 @@ std::vector<CandidateEstimate> Pilot::estimates() const {
   return result;
 }
 
+// Light by way of mirrors and clear glass may be too rare for the pilot, and out of reach of eye paths. Photons find
+// it.
+bool Pilot::finds_all_light(const EffortCandidate& c) const {
+  const bool in_media = candidates_.back().merges_in_media;
+  return !has_specular_ || (c.merges && c.merges_in_media == in_media);
+}
+
 // The least product of variance and work with so many light paths: each block takes what reduces the sum of its shares
 // of both most, until the shares stay.
 Pilot::Plan Pilot::plan_with(float light_paths) const {
   std::vector<std::size_t> able;
   for (std::size_t k = 0; k < candidates_.size(); ++k)
-    if (candidates_[k].light_paths == scale_ * light_paths) able.push_back(k);
+    if (candidates_[k].light_paths == scale_ * light_paths && finds_all_light(candidates_[k])) able.push_back(k);
   std::vector<std::vector<double>> variance(blocks_.size()), work(blocks_.size());
   for (std::size_t b = 0; b < blocks_.size(); ++b)
     for (const std::size_t k : able) {
@@ -335,8 +351,8 @@ Pilot::Plan Pilot::plan_with(float light_paths) const {
 }
 
 Effort Pilot::best() const {
-  float best_paths = 0;
-  Plan best = plan_with(0);
+  float best_paths = has_specular_ ? light_path_choices.front() : 0.0f;
+  Plan best = plan_with(best_paths);
   for (const float light_paths : light_path_choices) {
     Plan plan = plan_with(light_paths);
     if (!(plan.variance * plan.work < best.variance * best.work)) continue;

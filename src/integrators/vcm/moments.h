@@ -6,6 +6,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -61,7 +62,7 @@ class PathMoments {
   float light = 0, by_walk = 0;  ///< X, and the part of it that needs no light path
 
   void add(float c, float TechniqueSum::*technique) {
-    if (!(c > 0)) return;
+    if (!(c > 0) || !std::isfinite(c)) return;
     light += c;
     if (technique == &TechniqueSum::walk) by_walk += c;
     const float all = weighed.all();
@@ -69,15 +70,16 @@ class PathMoments {
       const EffortCandidate& candidate = candidates_[k];
       const float ratio = std::max(candidate.all(weighed) / all, least_ratio);
       const float x = candidate.samples(technique) * c / ratio;
-      sums_[k].light += x;
-      sums_[k].squares += x * x;
-      sums_[k].self += c * c / ratio;
+      Sums& s = sums_[k];
+      s.light += static_cast<double>(x);
+      s.squares += sqr(static_cast<double>(x));
+      s.self += sqr(static_cast<double>(c)) / static_cast<double>(ratio);
     }
   }
   /// An estimate of E[X] for candidate k, but for light that the lens sees.
-  float light_of(std::size_t k) const { return sums_[k].light; }
+  double light_of(std::size_t k) const { return sums_[k].light; }
   /// The estimate of E[X²] for candidate k.
-  float second_moment(std::size_t k) const {
+  double second_moment(std::size_t k) const {
     const Sums& s = sums_[k];
     return s.light * s.light - s.squares + s.self;
   }
@@ -86,7 +88,7 @@ class PathMoments {
 
  private:
   struct Sums {
-    float light = 0, squares = 0, self = 0;
+    double light = 0, squares = 0, self = 0;
   };
   std::span<const EffortCandidate> candidates_;
   std::vector<Sums> sums_;
