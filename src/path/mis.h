@@ -6,7 +6,7 @@
 // - Two techniques, a light sample and the walk's hit: `power_heuristic` (math/power_heuristic.h).
 // - Sets of samples added up without regard to which made what: `over_balanced`.
 // - A sample drawn from one of two densities: `mixture_pdf`.
-// - The techniques of bidirectional methods: `weight_hit` and the functions after it, from sums that `SubpathDensities`
+// - The techniques of bidirectional methods: `sum_of_hit` and the functions after it, from sums that `SubpathDensities`
 //   carries from vertex to vertex. A test compares them with products of densities (tests/unit/path/mis_test.cpp).
 #pragma once
 
@@ -62,9 +62,9 @@ inline float mixture_pdf(float pdf, float other, float share) { return (1 - shar
 // At a delta lobe no technique begins. Both walks have the same delta function in their densities, which cancels: η
 // and d_VCM drop out (TR eqs. 53-55).
 //
-// The code keeps d_VC as vc + media + η vm, so that one light path serves merges of every radius. In g_(i-1)/p_i the
-// distance cancels, and cos_(i-1) / (pdf cos_i) remains: `scatter` has the cosine and the density of the vertex that
-// the walk leaves, `arrive` the cosine of the next one.
+// The code keeps d_VC as ends + c vc + media + η vm, so that one light path serves merges of every radius and any
+// number c of connections. In g_(i-1)/p_i the distance cancels, and cos_(i-1) / (pdf cos_i) remains: `scatter` has the
+// cosine and the density of the vertex that the walk leaves, `arrive` the cosine of the next one.
 //
 // In media the same recursions hold with the densities of flights (`FlightDensity`), and with one more sum, for merging
 // there by points and beams (`VolumeMerging`; Křivánek et al. 2014, "Unifying Points, Beams, and Paths in Volumetric
