@@ -22,8 +22,9 @@ std::size_t Effort::block_of(const Vec2& raster) const {
     return std::clamp(static_cast<int>(x * static_cast<float>(blocks) / static_cast<float>(pixels)), 0, blocks - 1);
   };
   const Vec2 at = raster - window_.corner();
-  return static_cast<std::size_t>(index(at.y, window_.height(), rows_) * columns_ +
-                                  index(at.x, window_.width(), columns_));
+  const int row = index(at.y, window_.height(), rows_), column = index(at.x, window_.width(), columns_);
+  const int block = row * columns_ + column;
+  return static_cast<std::size_t>(block);
 }
 
 std::string Effort::describe() const {

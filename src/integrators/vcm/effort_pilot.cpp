@@ -93,7 +93,8 @@ class Grid {
     return {window_.x0 + x, window_.y0 + y, static_cast<std::uint32_t>(y * window_.width() + x)};
   }
   std::size_t block_of(int x, int y) const {
-    return static_cast<std::size_t>(y / cells_per_block * columns_ + x / cells_per_block);
+    const int block = y / cells_per_block * columns_ + x / cells_per_block;
+    return static_cast<std::size_t>(block);
   }
 
  private:
@@ -282,8 +283,10 @@ double Pilot::variance_of(std::size_t b, std::size_t candidate) const {
   double sum = 0;
   int count = 0;
   for (int y = std::max(0, y0 - 1); y <= std::min(grid_.rows() - 1, y0 + 1); ++y)
-    for (int x = std::max(0, x0 - 1); x <= std::min(grid_.columns() - 1, x0 + 1); ++x, ++count)
-      sum += blocks_[static_cast<std::size_t>(y * grid_.columns() + x)].variances[candidate];
+    for (int x = std::max(0, x0 - 1); x <= std::min(grid_.columns() - 1, x0 + 1); ++x, ++count) {
+      const int near = y * grid_.columns() + x;
+      sum += blocks_[static_cast<std::size_t>(near)].variances[candidate];
+    }
   return sum / count;
 }
 
