@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "camera/view.h"
@@ -19,8 +18,6 @@ struct PlaceEffort {
   std::uint8_t connections = 1;  ///< light paths that each eye vertex is connected to
   bool merges = true;            ///< on surfaces
   bool merges_in_media = true;
-
-  bool operator==(const PlaceEffort&) const = default;
 };
 
 /// What the pilot found, for the user.

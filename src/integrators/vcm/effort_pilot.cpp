@@ -10,6 +10,7 @@
 
 #include "integrators/vcm/vcm_visitors.h"
 #include "path/eye_pass.h"
+#include "photon/guides/rare_light.h"
 
 namespace lanthorn {
 
@@ -41,11 +42,6 @@ std::vector<EffortCandidate> all_candidates(float scale, bool one_time, bool in_
           if ((one_time || connections <= 1) && (in_media || !media))
             all.push_back({scale * light_paths, connections, merges, media});
   return all;
-}
-
-bool has_specular_surfaces(const Scene& scene) {
-  const std::vector<Obstacle> obstacles = scene.obstacles();
-  return std::any_of(obstacles.begin(), obstacles.end(), [](const Obstacle& o) { return o.is_specular; });
 }
 
 // Sums over the eye paths of a block of pixels.

@@ -49,9 +49,9 @@ struct EyeWork {
 ///
 /// The path's light is X = Σ c_i, each c_i by some technique. With the balance heuristic, c = f / Σ n p. If a candidate
 /// has R times the density Σ n p of the path that made c_i, and s times as many samples of the technique, its samples
-/// have c_i / R and are s times as many. Hence E[Σ c²] is Σ c_i² / R: with all techniques of the pilot, those that the
-/// candidate lacks included, which is how paths are found that it would miss. The samples of one eye path are
-/// correlated; products of two of them have the expectation of (s_i c_i / R_i)(s_j c_j / R_j).
+/// have c_i / R and are s times as many. Hence E[Σ c²] is Σ c_i² / R. This sum runs over all techniques of the pilot,
+/// so that it counts paths which the candidate would miss. The samples of one eye path are correlated: the product of
+/// two of them has the expectation of (s_i c_i / R_i)(s_j c_j / R_j).
 class PathMoments {
  public:
   explicit PathMoments(std::span<const EffortCandidate> candidates)

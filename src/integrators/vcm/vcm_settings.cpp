@@ -103,7 +103,7 @@ MemoryUse VcmSettings::memory_use() const {
           .first_depth = 1,
           .media = MediumRecords::points,
           .per_medium_photon =
-              most_light_paths * of_vertex + (switches.merging ? bytes_of_medium_photon(MediumRecords::points) : 0)};
+              most_light_paths * (of_vertex + (switches.merging ? bytes_of_medium_photon(MediumRecords::points) : 0))};
 }
 
 IntegratorInfo vcm_info() {

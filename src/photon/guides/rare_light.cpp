@@ -166,9 +166,13 @@ struct ShareVisitor {
 
 }  // namespace
 
+bool has_specular_surfaces(const Scene& scene) {
+  const std::vector<Obstacle> obstacles = scene.obstacles();
+  return std::any_of(obstacles.begin(), obstacles.end(), [](const Obstacle& o) { return o.is_specular; });
+}
+
 double rare_light_share(const RenderJob& job) {
-  const std::vector<Obstacle> obstacles = job.scene.obstacles();
-  if (std::none_of(obstacles.begin(), obstacles.end(), [](const Obstacle& o) { return o.is_specular; })) return 0;
+  if (!has_specular_surfaces(job.scene)) return 0;
   const PassDraw draw = draw_for_pass(job, 0);
   PilotLight pilot = trace_light(job, draw);
   if (pilot.first.empty()) return 0;

@@ -6,6 +6,9 @@
 
 namespace lanthorn {
 
+/// Whether there are mirrors or clear glass.
+bool has_specular_surfaces(const Scene& scene);
+
 /// Share of the light on visible surfaces and in visible media that path tracing finds by rare chance or never: light
 /// that comes through clear glass or by mirrors, where next-event estimation does not see it, from lights that have no
 /// extent or are so small there that fewer than one in 1000 diffuse directions meets them, or so few that the relative
