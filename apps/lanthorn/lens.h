@@ -46,8 +46,8 @@ struct LensNumbers {
   std::optional<float> focus{};     ///< metres; none: all is sharp
 };
 LensNumbers lens_of(const ViewDescription& view);
-/// Distance in metres, along the camera's axis, to the surface that a pixel of the whole picture sees. Throws Error if
-/// that is nothing.
+/// How far away the surface in a pixel of the whole picture is, m, along the camera's axis. Throws Error if
+/// there is none.
 float focus_at(const ViewDescription& view, const Scene& scene, const ViewOptions& options, const Vec2& pixel);
 
 /// The view from so many places in equal steps around what the camera looks at, from the view itself to the right. All
