@@ -53,9 +53,9 @@ void announce_color(const RenderCommand& a, const RenderState& state, SaidLines&
   if (a.quiet || a.options.color) return;
   const std::string color = nlohmann::json::parse(summarize(state).settings)["identity"]["color"];
   const std::string line =
-      color == "rgb" ? "color rgb: nothing in the scene disperses light (--color spectral: exact spectra)\n"
-                     : "color spectral: glass disperses light, or spectra are measured (--color rgb: less noise)\n";
-  if (said.is_new(line)) say("{}", line);
+      color == "rgb" ? "color rgb: nothing in the scene disperses light (--color spectral: exact spectra)"
+                     : "color spectral: glass disperses light, or spectra are measured (--color rgb: less noise)";
+  if (said.is_new(line)) say("{}\n", line);
 }
 
 // Asked for, or somebody sits before the terminal.
@@ -80,6 +80,26 @@ std::optional<HostPort> viewer_of(const RenderCommand& a) {
   return a.tev.empty() ? std::nullopt : std::optional(parse_host_port(a.tev, "--tev"));
 }
 
+// What auto expects of each choice, with that of the whole picture as one.
+void print_efforts(const StateSummary& state) {
+  const nlohmann::json settings = nlohmann::json::parse(state.settings);
+  const auto findings = settings.find("findings");
+  if (findings == settings.end()) return;
+  const double variance = findings->at("variance").get<double>(), work = findings->at("work").get<double>();
+  say("light paths  connections  merged      variance   work   product\n");
+  const auto row = [&](const nlohmann::json& choice, const std::string& techniques) {
+    const double v = choice.at("variance").get<double>() / variance, w = choice.at("work").get<double>() / work;
+    say("{:11.3g}  {:23}  {:8.3g}  {:5.3g}  {:8.3g}\n", choice.at("light_paths_per_pixel").get<double>(), techniques, v, w,
+        v * w);
+  };
+  row(*findings, "as it pays");
+  for (const nlohmann::json& choice : findings->at("everywhere")) {
+    const bool surfaces = choice.at("merges").get<bool>(), media = choice.at("merges_in_media").get<bool>();
+    const char* merged = surfaces ? (media ? "all" : "surfaces") : (media ? "media" : "-");
+    row(choice, fmt::format("{:11}  {}", choice.at("connections").get<int>(), merged));
+  }
+}
+
 Observer make_observer(const RenderCommand& a, Onlookers& onlookers) {
   Observer observer;
   observer.progress = [&](const RenderState& state, const RenderStatistics& s) {
@@ -89,6 +109,7 @@ Observer make_observer(const RenderCommand& a, Onlookers& onlookers) {
   };
   observer.can_drop = set_can_drop;
   if (!a.quiet) observer.remark = [](const std::string& text) { say("{}\n", text); };
+  if (a.verbose) observer.prepared = [](const RenderState& state) { print_efforts(summarize(state)); };
   if (onlookers.checkpoints)
     observer.checkpoint = [&](const RenderState& state, double since) {
       return onlookers.checkpoints->save_if_due(state, since);

@@ -78,6 +78,9 @@ OptionTable render_command_options(RenderCommand& a) {
   OptionTable table = joined(joined(render_options(a), scene_change_options(a.changes)), std::move(files));
   table = joined(std::move(table), output_options(a.output));
   table.push_back({.names = "-q,--quiet", .value = flag(a.quiet), .brief = "No progress, no closing line"});
+  table.push_back({.names = "-v,--verbose",
+                   .value = flag(a.verbose),
+                   .brief = "Show what auto expects of each choice: variance and work of a pass"});
   return table;
 }
 

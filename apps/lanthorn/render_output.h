@@ -21,7 +21,7 @@ struct RenderFiles {
   std::string json, resume;
   std::optional<double> checkpoint_seconds;
   OutputSettings output;
-  bool quiet = false;
+  bool quiet = false, verbose = false;
 };
 
 /// The files asked for: those of -o, or else the scene's own name with .exr, in the working folder.

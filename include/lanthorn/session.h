@@ -50,6 +50,8 @@ struct Observer {
   std::function<void(bool)> can_drop = [](bool) {};
   /// After the preparation, if the method has found something that the user should know.
   std::function<void(const std::string&)> remark = [](const auto&) {};
+  /// After the preparation. The settings of the state have what it found (`StateSummary::settings`).
+  std::function<void(const RenderState&)> prepared = [](const auto&) {};
   /// After every pass.
   std::function<void(const RenderState&, const RenderStatistics&)> progress = [](const auto&, const auto&) {};
   /// After every pass, with the seconds since the last checkpoint. Returns true if it made one.

@@ -8,9 +8,12 @@
 #include <chrono>
 #include <cstdint>
 #include <new>
+#include <nlohmann/json.hpp>
 #include <optional>
+#include <string>
 
 #include "base/parallel.h"
+#include "integrators/integrator.h"
 #include "lanthorn/error.h"
 #include "render/pass_undo.h"
 #include "render/picture.h"
@@ -134,6 +137,14 @@ bool run_pass(const std::atomic<bool>* flag, bool can_undo, bool& out_of_memory,
   return false;
 }
 
+void keep_findings(const Integrator& integrator, RenderState& state) {
+  const std::string findings = integrator.findings();
+  if (findings.empty()) return;
+  nlohmann::json settings = nlohmann::json::parse(state.settings);
+  settings["findings"] = nlohmann::json::parse(findings);
+  state.settings = settings.dump();
+}
+
 void load_integrator_state(RenderPlan& plan) try {
   if (!plan.state.integrator_state.empty()) plan.integrator->load(plan.state.integrator_state);
 } catch (const Error& problem) {
@@ -155,7 +166,9 @@ RenderStatistics render(const Scene& scene, RenderPlan& plan, const StopRule& st
     if (!run_unless_stopped(stop.drop, [&] { plan.integrator->prepare(job); })) return statistics;
     load_integrator_state(plan);
     plan.is_prepared = true;
+    keep_findings(*plan.integrator, state);
     if (const std::string remark = plan.integrator->remark(); !remark.empty()) observer.remark(remark);
+    observer.prepared(state);
   }
   statistics.prepare_seconds = statistics.seconds = seconds_between(start, Clock::now());
 

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 #include <utility>
 
 namespace lanthorn {
@@ -16,7 +17,7 @@ Effort::Effort(std::uint64_t light_paths, const PixelWindow& window, int columns
       columns_(columns),
       rows_(static_cast<int>(blocks.size()) / columns),
       blocks_(std::move(blocks)),
-      report_(report) {}
+      report_(std::move(report)) {}
 
 std::size_t Effort::block_of(const Vec2& raster) const {
   const auto index = [](float x, int pixels, int blocks) {
@@ -35,6 +36,32 @@ std::string Effort::describe() const {
       "light paths find {} of the light: {:.2g} of them a pixel, merged in {} and connected in {} of the picture",
       percent(report_.light_by_light_paths), report_.light_paths_per_pixel, percent(report_.merged_part),
       percent(report_.connected_part));
+}
+
+std::string Effort::findings() const {
+  nlohmann::json uniform = nlohmann::json::array();
+  for (const UniformEffort& u : report_.uniform)
+    uniform.push_back({{"light_paths_per_pixel", u.light_paths_per_pixel},
+                       {"connections", u.place.connections},
+                       {"merges", u.place.merges},
+                       {"merges_in_media", u.place.merges_in_media},
+                       {"variance", u.variance},
+                       {"work", u.work}});
+  return nlohmann::json{{"light_by_light_paths", report_.light_by_light_paths},
+                        {"light_paths_per_pixel", report_.light_paths_per_pixel},
+                        {"merged_part", report_.merged_part},
+                        {"connected_part", report_.connected_part},
+                        {"variance", report_.variance},
+                        {"work", report_.work},
+                        {"eye_path",
+                         {{"rays", report_.rays},
+                          {"next_events", report_.next_events},
+                          {"connections", report_.connections},
+                          {"lookups", report_.lookups},
+                          {"merges", report_.merges}}},
+                        {"light_path", {{"rays", report_.light_rays}, {"vertices", report_.light_vertices}}},
+                        {"everywhere", std::move(uniform)}}
+      .dump();
 }
 
 }  // namespace lanthorn

@@ -20,11 +20,24 @@ struct PlaceEffort {
   bool merges_in_media = true;
 };
 
+/// What the pilot expects of one choice for the whole picture.
+struct UniformEffort {
+  double light_paths_per_pixel = 0;
+  PlaceEffort place;
+  double variance = 0;  ///< of a pass: relative to the squares of the pixels, in the mean of the picture
+  double work = 0;      ///< of a pass, for each pixel, in rays
+};
+
 /// What the pilot found, for the user.
 struct EffortReport {
   double light_by_light_paths = 0;  ///< share of the light that light paths find: by the lens, connections and merging
   double merged_part = 0, connected_part = 0;  ///< shares of the picture
   double light_paths_per_pixel = 0;
+  double variance = 0, work = 0;  ///< as of UniformEffort, of what was chosen
+  std::vector<UniformEffort> uniform;
+  /// Of an eye path, with one connection at each vertex and one light path a pixel.
+  double rays = 0, next_events = 0, connections = 0, lookups = 0, merges = 0;
+  double light_rays = 0, light_vertices = 0;  ///< of a light path
 };
 
 /// The effort of all passes. The same everywhere, or by blocks of pixels.
@@ -41,6 +54,8 @@ class Effort {
   PlaceEffort at(const Vec2& raster) const { return blocks_.empty() ? PlaceEffort{} : blocks_[block_of(raster)]; }
   /// One line: what was found, and what was chosen.
   std::string describe() const;
+  /// The numbers of the report, as the text of a JSON object.
+  std::string findings() const;
 
   /// Precondition: there are blocks.
   std::size_t block_of(const Vec2& raster) const;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <concepts>
 #include <limits>
 #include <vector>
 
@@ -17,17 +18,33 @@ namespace lanthorn {
 namespace {
 
 constexpr std::uint32_t pilot_passes = 4;
+// The radii of merging shrink. Those of this pass are typical of a render of about 64 passes.
+constexpr std::uint32_t typical_pass = 24;
 constexpr int most_cells = 128;     // pilot pixels along a side of the film
 constexpr int cells_per_block = 4;  // along a side of a block
 constexpr std::uint64_t most_pilot_paths = 1u << 16;
 
-// Work in units of a ray of a walk with its scattering: rough numbers, fixed so that choices are the same on every
-// machine.
+// Work in units of a ray of a walk with its scattering, in a scene of a few triangles. The numbers were fitted to times
+// of path, bdpt and vcm with 1/4, 1 and 4 light paths a pixel in nine scenes; they are fixed, so that choices are the
+// same on every machine.
 namespace work {
-constexpr double walk_density = 0.15;  // of a ray, where light paths need densities of eye paths
-constexpr double shadow = 0.5, connection = 0.5, lookup = 0.3, merge = 0.05;
-constexpr double stored_vertex = 0.9;  // with its connection to the lens, and sorting
+constexpr double shadow = 0.5;  // of a ray
+constexpr double densities = 0.65;  // of eye and light paths for each other, at each ray of an eye path
+constexpr double connection = 0.46, lookup = 0.36, merge = 0.1;
+constexpr double light_ray = 0.8;  // of a ray
+constexpr double light_vertex = 1.95;  // with its connection to the lens, and sorting
 }  // namespace work
+
+// A ray takes longer in a deep hierarchy.
+double work_of_ray(const Scene& scene) {
+  const SceneStatistics& s = scene.statistics();
+  const auto primitives = static_cast<double>(s.triangles + s.patches + s.quadrics + s.curves);
+  return 1 + 0.1 * std::max(0.0, std::log2(primitives + 1) - 5);
+}
+
+// Passes share the samples of eye paths out among them, so that their means vary less than if they were independent:
+// measured with path, 1.2 to 1.8 times after 32 passes.
+constexpr double stratification = 1.6;
 
 // Numbers of light paths of a pass, over that of all pixels.
 constexpr std::array light_path_choices{0.25f, 0.5f, 1.0f, 2.0f, 4.0f};
@@ -44,14 +61,37 @@ std::vector<EffortCandidate> all_candidates(float scale, bool one_time, bool in_
   return all;
 }
 
+PlaceEffort place_of(const EffortCandidate& c) {
+  return {static_cast<std::uint8_t>(c.connections), c.merges, c.merges_in_media};
+}
+
 // Sums over the eye paths of a block of pixels.
 struct Block {
-  std::vector<double> moments;    // by candidate
-  std::vector<double> variances;  // likewise, of a pixel: relative
+  struct Moments {
+    double second = 0;       // E[X^2]
+    double of_eye_path = 0;  // E[E[X | eye path]^2]
+    double square = 0;       // E[X]^2 of the pixels: products of two passes
+    double relative_variance = 0;  // of the mean of many passes, times their number
+  };
+  std::vector<Moments> moments;  // by candidate
   double light = 0, from_light_paths = 0;
-  std::vector<double> squares;  // of the pixels' expectations, likewise: products of two passes
   double paths = 0, pixels = 0;
-  double rays = 0, shadow_rays = 0, connections = 0, lookups = 0, merges = 0;
+  double rays = 0, next_events = 0, connections = 0, lookups = 0, merges = 0;
+};
+
+// Finds the light of one eye path with two sets of light paths.
+struct TwoSets {
+  PathMoments& moments;
+  EyeVisitor first, second;
+
+  template <class Event>
+    requires std::invocable<EyeVisitor&, const Event&>
+  auto operator()(const Event& v) {
+    moments.set = 1;
+    second(v);
+    moments.set = 0;
+    return first(v);
+  }
 };
 
 // One light vertex that the lens sees.
@@ -106,6 +146,7 @@ class Pilot {
         grid_(job.view.window),
         scale_(static_cast<float>(job.settings.photons) / static_cast<float>(pilot_light_paths(job))),
         has_specular_(has_specular_surfaces(job.scene)),
+        ray_work_(work_of_ray(job.scene)),
         candidates_(all_candidates(scale_, draw_for_pass(job, 0).is_of_one_time(),
                                    settings.merges_in_media() && job.scene.has_scattering_media())),
         blocks_(static_cast<std::size_t>(grid_.columns() * grid_.rows())),
@@ -113,7 +154,6 @@ class Pilot {
         found_(0, job.view.window, grid_.columns(), std::vector<PlaceEffort>(blocks_.size()), {}) {
     for (Block& block : blocks_) {
       block.moments.resize(candidates_.size());
-      block.squares.resize(candidates_.size());
       block.pixels = static_cast<double>(job.view.window.width()) * static_cast<double>(job.view.window.height()) /
                      static_cast<double>(blocks_.size());
     }
@@ -122,7 +162,7 @@ class Pilot {
     for (std::size_t i = 0; i < cells_.size(); ++i) {
       const std::size_t cell = i / candidates_.size();
       Block& block = blocks_[grid_.block_of(static_cast<int>(cell % width), static_cast<int>(cell / width))];
-      block.squares[i % candidates_.size()] += (sqr(cells_[i].sum) - cells_[i].squares) / (pilot_passes - 1);
+      block.moments[i % candidates_.size()].square += (sqr(cells_[i].sum) - cells_[i].squares) / (pilot_passes - 1);
     }
     find_variances();
   }
@@ -143,11 +183,14 @@ class Pilot {
 
   void run(std::uint32_t pass, const VcmPreparation& prepared);
   void trace_light(const VcmPass& pass);
-  void trace_eye(const VcmPass& pass);
+  void trace_eye(const VcmPass& pass, const VcmPass& other);
   void find_variances();
   double work_of(const Block& block, const EffortCandidate& c) const;
   double variance_of(std::size_t block, std::size_t candidate) const;
   double work_of_light(float light_paths) const;
+  double per_pixel(float light_paths) const;
+  void count_work(EffortReport& report) const;
+  std::vector<UniformEffort> uniform_efforts() const;
   bool finds_all_light(const EffortCandidate& c) const;
   Plan plan_with(float light_paths) const;
 
@@ -156,25 +199,30 @@ class Pilot {
   Grid grid_;
   float scale_;
   bool has_specular_;
+  double ray_work_;
   std::vector<EffortCandidate> candidates_;
   std::vector<Block> blocks_;
   std::vector<Cell> cells_;
   Effort found_;  // for places
-  LightVertices vertices_;
+  LightVertices vertices_, other_vertices_;
   double light_rays_ = 0, light_vertices_ = 0, light_paths_ = 0;
 };
 
 // With a seed for each pass: later passes of one seed avoid the samples of those before.
 void Pilot::run(std::uint32_t number, const VcmPreparation& prepared) {
   constexpr std::uint64_t own_seed = 0x9e3779b97f4a7c15u;
-  RenderSettings of_pilot = job_.settings;
-  of_pilot.seed ^= own_seed * (number + 1);
-  const RenderJob job{job_.scene, job_.view, of_pilot};
-  VcmPass pass(job, 0, settings_, prepared, vertices_);
-  trace_light(pass);
+  RenderSettings of_pilot = job_.settings, of_other = job_.settings;
+  of_pilot.seed ^= own_seed * (2 * number + 1);
+  of_other.seed ^= own_seed * (2 * number + 2);
+  const RenderJob job{job_.scene, job_.view, of_pilot}, other_job{job_.scene, job_.view, of_other};
+  VcmPass pass(job, typical_pass, settings_, prepared, vertices_);
+  VcmPass other(other_job, typical_pass, settings_, prepared, other_vertices_);
   PassReport report;
-  pass.build_merges(report);
-  trace_eye(pass);
+  for (VcmPass* p : {&pass, &other}) {
+    trace_light(*p);
+    p->build_merges(report);
+  }
+  trace_eye(pass, other);
 }
 
 void Pilot::trace_light(const VcmPass& pass) {
@@ -192,24 +240,24 @@ void Pilot::trace_light(const VcmPass& pass) {
   light_rays_ += static_cast<double>(rays.walk);
   light_paths_ += static_cast<double>(pass.light_paths.total());
   for (std::size_t c = 0; c < chunks.size(); ++c) {
-    light_vertices_ += static_cast<double>(vertices_.chunk(c).vertices.size());
+    light_vertices_ += static_cast<double>(pass.vertices.chunk(c).vertices.size());
     for (const SeenLight& seen : chunks[c]) {
-      // Of a pixel: as many eye paths as pilot passes see each cell, but all light paths all pixels.
+      // Of a pixel: as many eye paths as pilot passes see each cell, but all light paths all pixels, twice.
       Block& block = blocks_[seen.block];
-      const double share = static_cast<double>(sqr(cells_per_block)) / block.pixels;
+      const double share = static_cast<double>(sqr(cells_per_block)) / (2 * block.pixels);
       const auto light = static_cast<double>(seen.light);
       block.light += share * light;
       block.from_light_paths += share * light;
       for (std::size_t k = 0; k < candidates_.size(); ++k) {
         const double ratio = static_cast<double>(
             std::max(candidates_[k].all(seen.weighed) / seen.weighed.all(), PathMoments::least_ratio));
-        block.moments[k] += share * seen.spread * sqr(light) / ratio;
+        block.moments[k].second += share * seen.spread * sqr(light) / ratio;
       }
     }
   }
 }
 
-void Pilot::trace_eye(const VcmPass& pass) {
+void Pilot::trace_eye(const VcmPass& pass, const VcmPass& other) {
   const PixelWindow cells = grid_.cells();
   const auto width = static_cast<std::size_t>(cells.width()), count = width * static_cast<std::size_t>(cells.height());
   std::vector<PathMoments> of_cells(count, PathMoments(candidates_));
@@ -217,41 +265,42 @@ void Pilot::trace_eye(const VcmPass& pass) {
     Sampler sampler = Sampler::for_pixel(pass.job.settings.seed, Stream::pilot_camera, cell.index, pass.number);
     const PathDraw draw = pass.draw_of_eye_path(sampler);
     const EyeStart start = start_eye_path(pass.job.view, grid_.pixel_of(cell), draw.time, sampler);
-    LightLayers layers(draw.w);
+    LightLayers layers(draw.w), other_layers(draw.w);
     const PathContext path{pass.job.scene, draw.w, sampler, counts, {pass.max_depth(), settings_.roulette_depth}};
     const RayCounts before = counts;
     PathMoments& moments = of_cells[cell.index];
+    const std::size_t partner = pass.partner(sampler);
     walk_from_camera(path, start.camera, pass.job.view.medium,
-                     EyeVisitor(path, pass, start.raster, pass.partner(sampler), layers, &moments));
+                     TwoSets{moments, EyeVisitor(path, pass, start.raster, partner, layers, &moments),
+                             EyeVisitor(path, other, start.raster, partner, other_layers, &moments)});
     moments.work.rays = static_cast<std::uint32_t>(counts.walk - before.walk);
-    moments.work.shadow_rays = static_cast<std::uint32_t>(counts.shadow - before.shadow);
   });
   for (std::size_t i = 0; i < count; ++i) {
     const PathMoments& moments = of_cells[i];
     Block& block = blocks_[grid_.block_of(static_cast<int>(i % width), static_cast<int>(i / width))];
     for (std::size_t k = 0; k < candidates_.size(); ++k) {
-      block.moments[k] += moments.second_moment(k);
-      const double light = moments.light_of(k);
+      const PathMoments::Estimate e = moments.estimate(k);
+      block.moments[k].second += e.second_moment;
+      block.moments[k].of_eye_path += e.of_eye_path;
       Cell& cell = cells_[i * candidates_.size() + k];
-      cell.sum += light;
-      cell.squares += sqr(light);
+      cell.sum += e.light;
+      cell.squares += sqr(e.light);
     }
     block.light += static_cast<double>(moments.light);
     block.from_light_paths += static_cast<double>(moments.light - moments.by_walk);
     block.paths += 1;
     block.rays += moments.work.rays;
-    block.connections += moments.work.connections;
-    block.shadow_rays += moments.work.shadow_rays;
-    block.lookups += moments.work.lookups;
-    block.merges += moments.work.merges;
+    block.next_events += moments.work.next_events / 2.0;
+    block.connections += moments.work.connections / 2.0;
+    block.lookups += moments.work.lookups / 2.0;
+    block.merges += moments.work.merges / 2.0;
   }
 }
 
 // Of an eye path.
 double Pilot::work_of(const Block& block, const EffortCandidate& c) const {
-  const double next_events = std::max(0.0, block.shadow_rays - block.connections);
-  double sum = block.rays + work::shadow * next_events;
-  if (c.light_paths > 0) sum += work::walk_density * block.rays;
+  double sum = ray_work_ * (block.rays + work::shadow * block.next_events);
+  if (c.light_paths > 0) sum += work::densities * block.rays;
   sum += work::connection * block.connections * static_cast<double>(c.connections);
   if (c.merges || c.merges_in_media)
     sum += work::lookup * block.lookups + work::merge * block.merges * static_cast<double>(c.light_paths);
@@ -267,9 +316,10 @@ void Pilot::find_variances() {
   const double floor = 0.01 * sqr(light / paths) + std::numeric_limits<double>::min();
   constexpr double least_part = 0.02;  // of a second moment that is variance
   for (Block& block : blocks_)
-    for (std::size_t k = 0; k < candidates_.size(); ++k) {
-      const double variance = std::max(block.moments[k] - block.squares[k], least_part * block.moments[k]);
-      block.variances.push_back(variance / block.paths / (sqr(block.light / block.paths) + floor));
+    for (Block::Moments& m : block.moments) {
+      const double of_eye_paths = std::max(0.0, m.of_eye_path - m.square), of_light_paths = m.second - m.of_eye_path;
+      const double variance = std::max(of_eye_paths / stratification + of_light_paths, least_part * m.second);
+      m.relative_variance = variance / block.paths / (sqr(block.light / block.paths) + floor);
     }
 }
 
@@ -281,14 +331,15 @@ double Pilot::variance_of(std::size_t b, std::size_t candidate) const {
   for (int y = std::max(0, y0 - 1); y <= std::min(grid_.rows() - 1, y0 + 1); ++y)
     for (int x = std::max(0, x0 - 1); x <= std::min(grid_.columns() - 1, x0 + 1); ++x, ++count) {
       const int near = y * grid_.columns() + x;
-      sum += blocks_[static_cast<std::size_t>(near)].variances[candidate];
+      sum += blocks_[static_cast<std::size_t>(near)].moments[candidate].relative_variance;
     }
   return sum / count;
 }
 
 // Of a pass, for each pixel. `light_paths`: over those of the settings.
 double Pilot::work_of_light(float light_paths) const {
-  const double of_path = (light_rays_ + work::stored_vertex * light_vertices_) / std::max(1.0, light_paths_);
+  const double of_path = (work::light_ray * ray_work_ * light_rays_ + work::light_vertex * light_vertices_) /
+                         std::max(1.0, light_paths_);
   const PixelWindow& window = job_.view.window;
   const double pixels = static_cast<double>(window.width()) * static_cast<double>(window.height());
   return static_cast<double>(light_paths) * static_cast<double>(job_.settings.photons) / pixels * of_path;
@@ -302,8 +353,45 @@ std::vector<CandidateEstimate> Pilot::estimates() const {
     CandidateEstimate& e = result.emplace_back(CandidateEstimate{candidate, 0, work_of_light(candidate.light_paths)});
     for (std::size_t b = 0; b < blocks_.size(); ++b) {
       const Block& block = blocks_[b];
-      e.variance += (block.moments[k] - block.squares[k]) / block.paths / static_cast<double>(blocks_.size());
+      e.variance += (block.moments[k].second - block.moments[k].square) / block.paths / static_cast<double>(blocks_.size());
       e.work += work_of(blocks_[b], candidates_[k]) / static_cast<double>(blocks_.size());
+    }
+  }
+  return result;
+}
+
+void Pilot::count_work(EffortReport& report) const {
+  double paths = 0;
+  for (const Block& block : blocks_) {
+    paths += block.paths;
+    report.rays += block.rays;
+    report.next_events += block.next_events;
+    report.connections += block.connections;
+    report.lookups += block.lookups;
+    report.merges += block.merges;
+  }
+  for (double* sum : {&report.rays, &report.next_events, &report.connections, &report.lookups, &report.merges})
+    *sum /= paths;
+  report.merges /= per_pixel(1 / scale_);
+  report.light_rays = light_rays_ / std::max(1.0, light_paths_);
+  report.light_vertices = light_vertices_ / std::max(1.0, light_paths_);
+}
+
+double Pilot::per_pixel(float light_paths) const {
+  const PixelWindow& window = job_.view.window;
+  const auto paths = static_cast<double>(light_paths) * static_cast<double>(job_.settings.photons);
+  return paths * job_.settings.parts / (static_cast<double>(window.width()) * static_cast<double>(window.height()));
+}
+
+std::vector<UniformEffort> Pilot::uniform_efforts() const {
+  std::vector<UniformEffort> result;
+  for (std::size_t k = 0; k < candidates_.size(); ++k) {
+    const float light_paths = candidates_[k].light_paths / scale_;
+    UniformEffort& u = result.emplace_back(
+        UniformEffort{per_pixel(light_paths), place_of(candidates_[k]), 0, work_of_light(light_paths)});
+    for (const Block& block : blocks_) {
+      u.variance += block.moments[k].relative_variance / static_cast<double>(blocks_.size());
+      u.work += work_of(block, candidates_[k]) / static_cast<double>(blocks_.size());
     }
   }
   return result;
@@ -359,23 +447,23 @@ Effort Pilot::best() const {
     best_paths = light_paths;
   }
   std::vector<PlaceEffort> places;
-  EffortReport report;
+  EffortReport report{.variance = best.variance, .work = best.work, .uniform = uniform_efforts()};
   double light = 0, by_light_paths = 0;
   const auto share = 1 / static_cast<double>(blocks_.size());
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
     const EffortCandidate& c = candidates_[best.candidates[b]];
-    places.push_back({static_cast<std::uint8_t>(c.connections), c.merges, c.merges_in_media});
+    places.push_back(place_of(c));
     report.merged_part += c.merges || c.merges_in_media ? share : 0;
     report.connected_part += c.connections > 0 ? share : 0;
     light += blocks_[b].light;
     by_light_paths += blocks_[b].from_light_paths;
   }
+  count_work(report);
   report.light_by_light_paths = light > 0 ? by_light_paths / light : 0;
+  report.light_paths_per_pixel = per_pixel(best_paths);
   const auto paths = static_cast<double>(best_paths) * static_cast<double>(job_.settings.photons);
-  const PixelWindow& window = job_.view.window;
-  report.light_paths_per_pixel =
-      paths * job_.settings.parts / (static_cast<double>(window.width()) * static_cast<double>(window.height()));
-  return {static_cast<std::uint64_t>(std::ceil(paths)), window, grid_.columns(), std::move(places), report};
+  return {static_cast<std::uint64_t>(std::ceil(paths)), job_.view.window, grid_.columns(), std::move(places),
+          std::move(report)};
 }
 
 }  // namespace

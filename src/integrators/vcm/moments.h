@@ -42,53 +42,88 @@ struct EffortCandidate {
 
 /// How often the eye path of a sample did what takes time.
 struct EyeWork {
-  std::uint32_t rays = 0, shadow_rays = 0, connections = 0, lookups = 0, merges = 0;
+  std::uint32_t rays = 0, next_events = 0, connections = 0, lookups = 0, merges = 0;
 };
 
-/// Second moments of one eye path's light, one for each candidate.
+/// Second moments of one eye path's light, one for each candidate, from two independent sets of light paths.
 ///
 /// The path's light is X = Σ c_i, each c_i by some technique. With the balance heuristic, c = f / Σ n p. If a candidate
 /// has R times the density Σ n p of the path that made c_i, and s times as many samples of the technique, its samples
 /// have c_i / R and are s times as many. Hence E[Σ c²] is Σ c_i² / R. This sum runs over all techniques of the pilot,
-/// so that it counts paths which the candidate would miss. The samples of one eye path are correlated: the product of
-/// two of them has the expectation of (s_i c_i / R_i)(s_j c_j / R_j).
+/// so that it counts paths which the candidate would miss.
+///
+/// The products of two of them, (c_i / R_i)(c_j / R_j), are counted by where both come from. The walk W does not
+/// depend on light paths. Of light paths, E[L | eye path]² is estimated by the product of the two sets, L_A L_B, and
+/// grows with s². What the products within a set, L_A² - Σ c_i², differ from that comes of samples that share a light
+/// path, and of light paths that avoid each other (stratification), and grows with s.
 class PathMoments {
  public:
   explicit PathMoments(std::span<const EffortCandidate> candidates)
       : candidates_(candidates), sums_(candidates.size()) {}
 
   TechniqueSum weighed;  ///< of the contribution that comes next
-  EyeWork work;
-  float light = 0, by_walk = 0;  ///< X, and the part of it that needs no light path
+  EyeWork work;          ///< with both sets
+  int set = 0;           ///< of light paths, which the contribution comes of: 0 or 1
+  float light = 0, by_walk = 0;  ///< X with the first set, and the part of it that needs no light path
 
   void add(float c, float TechniqueSum::*technique) {
     if (!(c > 0) || !std::isfinite(c)) return;
-    light += c;
-    if (technique == &TechniqueSum::walk) by_walk += c;
+    const bool is_walk = technique == &TechniqueSum::walk;
+    if (is_walk && set != 0) return;  // the same eye path again
+    if (set == 0) light += c;
+    if (is_walk) by_walk += c;
     const float all = weighed.all();
+    const double share = is_walk ? 1 : 0.5;
     for (std::size_t k = 0; k < sums_.size(); ++k) {
       const EffortCandidate& candidate = candidates_[k];
       const float ratio = std::max(candidate.all(weighed) / all, least_ratio);
-      const float x = candidate.samples(technique) * c / ratio;
       Sums& s = sums_[k];
-      s.light += static_cast<double>(x);
-      s.squares += sqr(static_cast<double>(x));
-      s.self += sqr(static_cast<double>(c)) / static_cast<double>(ratio);
+      s.self += share * sqr(static_cast<double>(c)) / static_cast<double>(ratio);
+      if (candidate.samples(technique) == 0) continue;
+      PathSum& sum = is_walk                                     ? s.walk
+                     : technique == &TechniqueSum::connections ? s.connections[set]
+                                                               : s.merges[set];
+      sum.add(static_cast<double>(c / ratio));
     }
   }
-  /// An estimate of E[X] for candidate k, but for light that the lens sees.
-  double light_of(std::size_t k) const { return sums_[k].light; }
-  /// The estimate of E[X²] for candidate k.
-  double second_moment(std::size_t k) const {
+  /// Estimates for candidate k, but for light that the lens sees.
+  struct Estimate {
+    double light;          ///< E[X]
+    double second_moment;  ///< E[X²]
+    double of_eye_path;    ///< E[E[X | eye path]²]
+  };
+  Estimate estimate(std::size_t k) const {
     const Sums& s = sums_[k];
-    return s.light * s.light - s.squares + s.self;
+    const EffortCandidate& candidate = candidates_[k];
+    const auto n = static_cast<double>(candidate.light_paths);
+    const auto m = static_cast<double>(candidate.samples(&TechniqueSum::connections));
+    const double w = s.walk.sum;
+    const auto light_of = [&](int set) { return m * s.connections[set].sum + n * s.merges[set].sum; };
+    const double a = light_of(0), b = light_of(1);
+    const double of_eye_path = w * w + w * (a + b) + a * b;
+    const auto within = [](const PathSum (&of)[2]) {
+      return (of[0].pairs() + of[1].pairs()) / 2 - of[0].sum * of[1].sum;
+    };
+    const double second_moment =
+        of_eye_path - s.walk.squares + s.self + m * within(s.connections) + n * within(s.merges);
+    return {w + (a + b) / 2, second_moment, of_eye_path};
   }
 
   static constexpr float least_ratio = 1e-6f;  ///< of paths that the candidate cannot find
 
  private:
+  struct PathSum {
+    double sum = 0, squares = 0;
+    void add(double x) {
+      sum += x;
+      squares += sqr(x);
+    }
+    // Products of two different samples.
+    double pairs() const { return sqr(sum) - squares; }
+  };
   struct Sums {
-    double light = 0, squares = 0, self = 0;
+    PathSum walk, connections[2], merges[2];
+    double self = 0;
   };
   std::span<const EffortCandidate> candidates_;
   std::vector<Sums> sums_;

@@ -66,6 +66,9 @@ class VertexConnectionAndMerging final : public Integrator {
     if (!prepared_) return {};
     return settings_.chooses_effort ? prepared_->effort.describe() : prepared_->emission.remark;
   }
+  std::string findings() const override {
+    return settings_.chooses_effort && prepared_ ? prepared_->effort.findings() : std::string();
+  }
   bool passes_share_wavelengths() const override { return true; }
   void prepare(const RenderJob& job) override { prepared_.emplace(job, settings_); }
 

@@ -170,6 +170,7 @@ class EyeVisitor {
   template <class Vertex>
   void connect_all(const Vertex& v) {
     const int eye_vertices = v.state.depth + 1;
+    if (moments_) ++moments_->work.next_events;
     if (pass_.shows(1, eye_vertices)) {
       const DirectLight direct = next_event(path_, bidirectional_, v, subpath_);
       layers_.add(class_of_next_event(v.state), technique::nee, direct.radiance, direct.dispersed);
