@@ -107,7 +107,7 @@ OptionTable render_options(RenderArguments& a) {
       {.names = "-i,--integrator",
        .value = into(o.integrator, text_type("INTEGRATOR")),
        .brief = "Rendering method; 'lanthorn list' shows them",
-       .otherwise = "the scene file's choice, else probppm"},
+       .otherwise = "auto, or the scene file's if it names a method that only Lanthorn has"},
       threads_option(a.threads, "The picture does not depend"),
       {.names = "-s,--seed",
        .value = into(o.seed, count_type()),
@@ -134,7 +134,9 @@ OptionTable render_options(RenderArguments& a) {
       {.names = "-n,--photons",
        .value = into(o.photons, count_type({.low = 1})),
        .brief = "Light paths per pass, such as 500000, 200k or 1M",
-       .otherwise = "the scene file's, else one per pixel, at least 100k (bdpt, vcm: 10k)"},
+       .otherwise = "the scene file's, else one per pixel, at least 100k (auto, bdpt, vcm: 10k); auto takes what pays, "
+                    "up to 4 times "
+                    "as many"},
       {.names = "-d,--max-depth",
        .value = into(o.max_depth, count_type({1, largest_int})),
        .brief = "Scattering events per path, at most",

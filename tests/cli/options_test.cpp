@@ -237,6 +237,7 @@ TEST_F(CliOptions, MessagesNameOptions) {
   refuse_resume({"-i", "path", "-r", "9x7"}, "--resolution (8x8 and 9x7)");
   refuse_resume({"-i", "path", "-r", "8x8", "--crop", "1,2,3,4"}, "--crop (0,0,8,8 and 1,2,3,4)");
   refuse_resume({"-i", "light", "-r", "8x8"}, "--integrator (path and light)");
+  refuse_resume({"-r", "8x8"}, "--integrator (path and auto)");
   refuse_resume({"-i", "path", "-r", "8x8", "-d", "3"}, "--max-depth (64 and 3)");
   refuse_resume({"-i", "path", "-r", "8x8", "-n", "3k"}, "--photons (100000 and 3000)");
   refuse_resume({"-i", "path", "-r", "8x8", "--set", "roulette-depth=5"}, "--set roulette-depth (");
