@@ -15,9 +15,16 @@ namespace lanthorn::default_method_test {
 namespace {
 
 // What a file names, and what -i calls it.
-const std::map<std::string, std::string> of_pbrt{
-    {"ambientocclusion", "path"}, {"bdpt", "bdpt"},       {"lightpath", "light"},     {"mlt", "mlt"},   {"path", "path"},
-    {"randomwalk", "path"},       {"simplepath", "path"}, {"simplevolpath", "path"}, {"sppm", "sppm"}, {"volpath", "path"}};
+const std::map<std::string, std::string> of_pbrt{{"ambientocclusion", "path"},
+                                                 {"bdpt", "bdpt"},
+                                                 {"lightpath", "light"},
+                                                 {"mlt", "mlt"},
+                                                 {"path", "path"},
+                                                 {"randomwalk", "path"},
+                                                 {"simplepath", "path"},
+                                                 {"simplevolpath", "path"},
+                                                 {"sppm", "sppm"},
+                                                 {"volpath", "path"}};
 
 RenderPlan plan_of(const std::string& header, const RenderOptions& options = {}) {
   return test::plan_render(test::scene_from_text(header + "\n" + test::camera + test::box), options);
