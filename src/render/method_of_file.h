@@ -10,8 +10,8 @@
 
 namespace lanthorn {
 
-/// The default method.
-inline constexpr const char* automatic_method = "auto";
+/// The default method, and what it is without its pilot.
+inline constexpr const char *automatic_method = "auto", *method_without_pilot = "vcm";
 
 /// Our integrator's name, e.g. "light" for "lightpath"; empty for names that are not known. The file's parameters are
 /// checked against it, whether or not it renders the scene (`default_method`).

@@ -62,7 +62,7 @@ void append_photons(Photons& photons, const PhotonTracer& tracer, const Waveleng
 Emission aim(const RenderPlan& plan, const RenderJob& job) {
   const bool is_auto = plan.info->name == automatic_method;
   const Parameters parameters =
-      is_auto ? Parameters(find_integrator("vcm").parameters, {}, automatic_method) : plan.parameters;
+      is_auto ? Parameters(find_integrator(method_without_pilot).parameters, {}, automatic_method) : plan.parameters;
   if (!parameters.all().contains("emission")) return {};
   return choose_emission(emission_choice(parameters), PhotonUse::indirect, job, MediumRecords::points);
 }
