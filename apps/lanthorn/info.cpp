@@ -10,6 +10,7 @@
 #include "commands.h"
 #include "console.h"
 #include "json_text.h"
+#include "lanthorn/methods.h"
 #include "lanthorn/scene.h"
 #include "render_arguments.h"
 #include "render_file.h"
@@ -52,6 +53,7 @@ void print_table(const Scene& scene, const SceneSummary& s) {
   print("film       {} x {} pixels\n", film.width, film.height);
   print("asks for   integrator {}{}\n", hints.integrator.empty() ? "(none)" : hints.integrator,
         hints.pixel_samples ? fmt::format(", {} samples", *hints.pixel_samples) : "");
+  print("method     {}\n", default_method(hints.integrator).name);
   print("features   {}{}{}\n", s.has_dispersion ? "dispersion " : "", s.has_measured_spectra ? "measured spectra " : "",
         s.has_motion ? "motion " : "");
   print("built in   {:.3f} s\n", s.build_seconds);

@@ -52,10 +52,9 @@ void announce_checkpoints(const Checkpoints& checkpoints) {
 void announce_color(const RenderCommand& a, const RenderState& state, SaidLines& said) {
   if (a.quiet || a.options.color) return;
   const std::string color = nlohmann::json::parse(summarize(state).settings)["identity"]["color"];
-  const std::string line =
-      color == "rgb" ? "color rgb: nothing in the scene disperses light (--color spectral: exact spectra)"
-                     : "color spectral: glass disperses light, or spectra are measured (--color rgb: less noise)";
-  if (said.is_new(line)) say("{}\n", line);
+  say_once(color == "rgb" ? "color rgb: nothing in the scene disperses light (--color spectral: exact spectra)"
+                          : "color spectral: glass disperses light, or spectra are measured (--color rgb: less noise)",
+           said);
 }
 
 // Asked for, or somebody sits before the terminal.
@@ -188,6 +187,7 @@ void render_view(const RenderCommand& a, const Prepared& prepared, const ViewDes
   if (const auto viewer = viewer_of(a)) onlookers.tev.emplace(*viewer, printable(outputs.front().filename().string()));
   set_stage(Stage::rendering);
   if (onlookers.checkpoints && !a.quiet) announce_checkpoints(*onlookers.checkpoints);
+  if (!a.quiet) announce_method(*scene, a.options, film.said);
   announce_color(a, session.state(), film.said);
   report_warnings(session.warnings(), film.said);
 

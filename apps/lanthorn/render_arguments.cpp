@@ -107,7 +107,7 @@ OptionTable render_options(RenderArguments& a) {
       {.names = "-i,--integrator",
        .value = into(o.integrator, text_type("INTEGRATOR")),
        .brief = "Rendering method; 'lanthorn list' shows them",
-       .otherwise = "the scene file's choice, else probppm"},
+       .otherwise = "auto, or the scene file's if it names a method that only Lanthorn has"},
       threads_option(a.threads, "The picture does not depend"),
       {.names = "-s,--seed",
        .value = into(o.seed, count_type()),
@@ -129,12 +129,14 @@ OptionTable render_options(RenderArguments& a) {
       {.names = "--crop",
        .value = into(o.crop, pixel_window_type()),
        .brief = "Render only these pixels (x1, y1 excluded)",
-       .details = "With the same --photons they equal those of the whole picture, for every method but mlt, exactly or "
-                  "up to rounding (docs/using.md)."},
+       .details =
+           "With the same --photons they equal those of the whole picture, for every method but auto and mlt, exactly "
+           "or up to rounding (docs/using.md)."},
       {.names = "-n,--photons",
        .value = into(o.photons, count_type({.low = 1})),
        .brief = "Light paths per pass, such as 500000, 200k or 1M",
-       .otherwise = "the scene file's, else one per pixel, at least 100k (bdpt, vcm: 10k)"},
+       .details = "auto traces as many of them as pay, from none to 4 times the number.",
+       .otherwise = "the scene file's (not for auto), else one per pixel, at least 100k (auto, bdpt, vcm: 10k)"},
       {.names = "-d,--max-depth",
        .value = into(o.max_depth, count_type({1, largest_int})),
        .brief = "Scattering events per path, at most",

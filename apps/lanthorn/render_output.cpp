@@ -15,6 +15,7 @@
 #include "lanthorn/error.h"
 #include "lanthorn/file.h"
 #include "lanthorn/image_file.h"
+#include "lanthorn/methods.h"
 #include "lanthorn/threads.h"
 #include "output_check.h"
 #include "progress.h"
@@ -144,6 +145,16 @@ void check_states(const RenderFiles& a, const std::vector<fs::path>& outputs, co
   if (!session.plan().seconds) expected.push_back(session.plan().passes);
   for (const fs::path& path : outputs) check_state(a, path, session.state(), expected);
   if (a.checkpoint_seconds) check_state(a, checkpoint_path(outputs), session.state(), resumed);
+}
+
+void say_once(const std::string& line, SaidLines& said) {
+  if (said.is_new(line)) say("{}\n", line);
+}
+
+void announce_method(const Scene& scene, const RenderOptions& options, SaidLines& said) {
+  if (options.integrator) return;
+  const std::string notice = default_method(description_of(scene).hints.integrator).notice;
+  if (!notice.empty()) say_once(notice, said);
 }
 
 void report_warnings(const std::vector<description::Warning>& warnings, SaidLines& said) {

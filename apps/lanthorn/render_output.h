@@ -42,6 +42,10 @@ class SaidLines {
  private:
   std::set<std::string> said_;
 };
+/// A message to standard error.
+void say_once(const std::string& line, SaidLines& said);
+/// Says which method takes the place of the one that the scene's file names, if the options name none.
+void announce_method(const Scene& scene, const RenderOptions& options, SaidLines& said);
 /// Warnings of the scene and of the method, to standard error.
 void report_warnings(const std::vector<description::Warning>& warnings, SaidLines& said);
 

@@ -19,6 +19,7 @@
 #include "commands.h"
 #include "console.h"
 #include "lanthorn/error.h"
+#include "lanthorn/methods.h"
 #include "lanthorn/threads.h"
 #include "render_command.h"
 #include "serve/access.h"
@@ -113,6 +114,7 @@ void run_serve(const ServeCommand& a) {
   Viewer viewer(build_scene(std::move(description)),
                 {command, {a.changes, a.options, a.reading.environment}, !outputs.empty()});
   SaidLines said;
+  if (!a.quiet) announce_method(viewer.scene(), a.options, said);
   report_warnings(viewer.warnings(), said);
   const std::string token = random_token();
   const ViewService service(viewer, a.output, title_of(a.scene), token, is_loopback(a.address) ? "" : host_name());

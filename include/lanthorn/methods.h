@@ -27,4 +27,13 @@ std::vector<MethodInfo> methods();
 /// Throws Error, naming the known ones, if there is none of this name.
 const MethodInfo& find_method(const std::string& name);
 
+/// The method of renders whose options name none.
+struct DefaultMethod {
+  std::string name;
+  std::string notice;  ///< for the user, if `auto` takes the place of the integrator that the file names; else empty
+};
+/// `integrator`: the one that the scene's file names (`RenderHints::integrator`), or nothing. A method that only
+/// Lanthorn has is taken; everything else becomes `auto`.
+DefaultMethod default_method(const std::string& integrator);
+
 }  // namespace lanthorn

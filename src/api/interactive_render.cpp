@@ -14,6 +14,7 @@
 
 #include "camera/view.h"
 #include "lanthorn/error.h"
+#include "render/method_of_file.h"
 #include "render/plan.h"
 #include "render/render.h"
 #include "render/scaled_view.h"
@@ -49,6 +50,13 @@ RenderOptions coarse_options(RenderOptions options, const description::Film& fil
       std::min(std::max(fewest_coarse_photons, photons * share * share), std::max(1.0, photons)));
   options.pass_range.reset();
   return options;
+}
+
+// The pilot of `auto` would take longer than a coarse pass. Parameters of the scene's file are for another method.
+void leave_out_pilot(RenderOptions& options) {
+  options.integrator = method_without_pilot;
+  for (const ParameterInfo& p : find_integrator(method_without_pilot).parameters)
+    options.set.emplace(p.name, p.default_value);
 }
 
 }  // namespace
@@ -89,16 +97,19 @@ class InteractiveRender::Worker {
   void render_coarse(const Wanted& wanted);
   double render_coarse(const Wanted& wanted, double pixels, bool is_first);
   void refine(const Wanted& wanted);
-  void note_end(const Wanted& wanted, const RenderStatistics& statistics, const StopRule& stop);
+  std::shared_ptr<const InteractivePicture> make_picture(const Wanted& wanted, const RenderPlan& plan,
+                                                         const RenderStatistics& statistics, bool is_coarse) const;
   void make_scene(Wanted& wanted);
   void make_plan(const Wanted& wanted);
   double photons_of(const Wanted& wanted, double pixels) const;
   bool is_wanted(const Wanted& wanted) const;
-  void show(const Wanted& wanted, const RenderPlan& plan, const RenderStatistics& statistics, bool is_coarse);
   void fail(const Wanted& wanted, const std::string& problem);
   InteractivePhase phase() const;
   InteractiveSnapshot seen() const;
   void tell_phase();
+  // With the lock.
+  void show(std::shared_ptr<const InteractivePicture> picture);
+  void note_end(const Wanted& wanted, const RenderStatistics& statistics, const StopRule& stop);
 
   const InteractiveSettings settings_;
 
@@ -243,12 +254,17 @@ double InteractiveRender::Worker::render_coarse(const Wanted& wanted, double pix
   const Clock::time_point start = Clock::now();
   const double full = pixels_of(window_of(wanted.view, wanted.options));
   const double share = std::sqrt(std::min(1.0, pixels / full));
-  RenderPlan plan = plan_render(*scene_, wanted.view,
-                                coarse_options(wanted.options, wanted.view.film, share, photons_of(wanted, full)));
+  RenderOptions options = coarse_options(wanted.options, wanted.view.film, share, photons_of(wanted, full));
+  if (plan_->info->name == automatic_method) leave_out_pilot(options);
+  RenderPlan plan = plan_render(*scene_, wanted.view, options);
   // The first picture of an edit is worth waiting for; those after it are not.
   const RenderStatistics statistics =
       lanthorn::render(*scene_, plan, {.passes = {0, 1}, .drop = is_first ? &end_ : &drop_, .undo = Undo::never});
-  if (plan.state.pass_count() > 0) show(wanted, plan, statistics, true);
+  if (plan.state.pass_count() > 0) {
+    auto picture = make_picture(wanted, plan, statistics, true);
+    const std::lock_guard lock(mutex_);
+    show(std::move(picture));
+  }
   return seconds(Clock::now() - start);
 }
 
@@ -264,44 +280,54 @@ void InteractiveRender::Worker::refine(const Wanted& wanted) {
   stop.drop = &drop_;
   stop.undo = settings_.keeps_sums ? Undo::always : Undo::never;
   std::uint64_t shown_passes = 0;
-  const auto show_passes = [&](const RenderStatistics& statistics) {
-    show(wanted, *plan_, statistics, false);
-    shown_passes = plan_->state.pass_count();
-  };
   Observer observer;
   observer.progress = [&](const RenderState&, const RenderStatistics& statistics) {
     const Clock::time_point now = Clock::now();
     if (now < next_picture_) return;
-    show_passes(statistics);
+    auto picture = make_picture(wanted, *plan_, statistics, false);
+    {
+      const std::lock_guard lock(mutex_);
+      show(std::move(picture));
+    }
+    shown_passes = plan_->state.pass_count();
     next_picture_ = Clock::now() + std::max(picture_interval, picture_share * (Clock::now() - now));
   };
   const RenderStatistics statistics = lanthorn::render(*scene_, *plan_, stop, observer);
   if (statistics.out_of_memory) throw std::bad_alloc();
   if (drop_) return;
+  const bool is_news = shown_passes < plan_->state.pass_count();
+  auto last = is_news ? make_picture(wanted, *plan_, statistics, false) : nullptr;
+  // Who sees the end sees its picture, too.
+  const std::lock_guard lock(mutex_);
   if (!rest_) note_end(wanted, statistics, stop);
-  if (shown_passes < plan_->state.pass_count()) show_passes(statistics);
+  if (last) show(std::move(last));
 }
 
 void InteractiveRender::Worker::note_end(const Wanted& wanted, const RenderStatistics& statistics,
                                          const StopRule& stop) {
-  const std::lock_guard lock(mutex_);
   over_revision_ = wanted.revision;
   const bool is_good = stop.noise && statistics.error && statistics.error->is_below(*stop.noise);
   const bool has_all = plan_->state.pass_count() >= stop.passes.end - stop.passes.begin;
   over_ = is_good || has_all ? InteractivePhase::finished : InteractivePhase::out_of_time;
 }
 
-void InteractiveRender::Worker::show(const Wanted& wanted, const RenderPlan& plan, const RenderStatistics& statistics,
-                                     bool is_coarse) {
+std::shared_ptr<const InteractivePicture> InteractiveRender::Worker::make_picture(const Wanted& wanted,
+                                                                                  const RenderPlan& plan,
+                                                                                  const RenderStatistics& statistics,
+                                                                                  bool is_coarse) const {
   const PixelWindow full = window_of(wanted.view, wanted.options);
-  auto picture = std::make_shared<const InteractivePicture>(InteractivePicture{picture_of(plan.state),
-                                                                               wanted.revision,
-                                                                               is_coarse,
-                                                                               {full.width(), full.height()},
-                                                                               summarize(plan.state),
-                                                                               statistics,
-                                                                               plan.integrator->limitation(*scene_)});
-  const std::lock_guard lock(mutex_);
+  StateSummary state = summarize(plan.state);
+  state.integrator = plan_->state.integrator;  // whatever stands in for it in a coarse picture
+  return std::make_shared<const InteractivePicture>(InteractivePicture{picture_of(plan.state),
+                                                                       wanted.revision,
+                                                                       is_coarse,
+                                                                       {full.width(), full.height()},
+                                                                       std::move(state),
+                                                                       statistics,
+                                                                       plan.integrator->limitation(*scene_)});
+}
+
+void InteractiveRender::Worker::show(std::shared_ptr<const InteractivePicture> picture) {
   picture_ = std::move(picture);
   told_ = phase();
   ++number_;

@@ -20,6 +20,9 @@ Parameters::Parameters(const std::vector<ParameterInfo>& known, const std::map<s
       std::vector<std::string> names;
       names.reserve(known.size());
       for (const ParameterInfo& p : known) names.push_back(p.name);
+      if (known.empty())
+        throw Error(fmt::format("--set {}={}: integrator '{}' has no parameters; -i names a method that has", name,
+                                value, integrator));
       const std::string meant = did_you_mean(name, names);
       throw Error(fmt::format("--set {}={}: integrator '{}' has no such parameter{}", name, value, integrator,
                               meant.empty() ? fmt::format("; 'lanthorn list {}' shows them", integrator) : meant));

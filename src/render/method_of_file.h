@@ -10,7 +10,11 @@
 
 namespace lanthorn {
 
-/// Our integrator's name, e.g. "light" for "lightpath"; empty for names that are not known.
+/// The default method, and what it is without its pilot.
+inline constexpr const char *automatic_method = "auto", *method_without_pilot = "vcm";
+
+/// Our integrator's name, e.g. "light" for "lightpath"; empty for names that are not known. The file's parameters are
+/// checked against it, whether or not it renders the scene (`default_method`).
 std::string integrator_of_file(const std::string& name);
 
 /// The same integrator, for readers.

@@ -14,6 +14,7 @@
 #include "path/path_draw.h"
 #include "photon/guides/emission_choice.h"
 #include "photon/photon_pass.h"
+#include "render/method_of_file.h"
 #include "render/plan.h"
 #include "scene/scene.h"
 
@@ -57,6 +58,15 @@ void append_photons(Photons& photons, const PhotonTracer& tracer, const Waveleng
     for (const MediumPhoton& photon : chunk) add(photon.photon, Normal(0));
 }
 
+// `auto` aims its light paths as `vcm` does by default.
+Emission aim(const RenderPlan& plan, const RenderJob& job) {
+  const bool is_auto = plan.info->name == automatic_method;
+  const Parameters parameters =
+      is_auto ? Parameters(find_integrator(method_without_pilot).parameters, {}, automatic_method) : plan.parameters;
+  if (!parameters.all().contains("emission")) return {};
+  return choose_emission(emission_choice(parameters), PhotonUse::indirect, job, MediumRecords::points);
+}
+
 }  // namespace
 
 Photons trace_photons(const Scene& scene, const ViewDescription& view, const RenderOptions& options, std::uint32_t pass,
@@ -64,10 +74,7 @@ Photons trace_photons(const Scene& scene, const ViewDescription& view, const Ren
   const RenderPlan plan = plan_render(scene, view, options);
   const RenderSettings& settings = plan.settings;
   const RenderJob job = plan.job(scene);
-  const Emission emission =
-      plan.parameters.all().contains("emission")
-          ? choose_emission(emission_choice(plan.parameters), PhotonUse::indirect, job, MediumRecords::points)
-          : Emission{};
+  const Emission emission = aim(plan, job);
   Photons photons{.pass = pass};
   for (std::uint32_t part = 0; part < settings.parts; ++part) {
     const std::uint32_t number = pass * settings.parts + part;

@@ -39,9 +39,7 @@ int scene_max_depth(const Scene& scene) {
 }
 
 std::string choose_integrator(const description::RenderHints& hints, const RenderOptions& options) {
-  if (options.integrator) return *options.integrator;
-  const std::string mapped = integrator_of_file(hints.integrator);
-  return mapped.empty() ? "probppm" : mapped;
+  return options.integrator ? *options.integrator : default_method(hints.integrator).name;
 }
 
 PassRange choose_passes(const description::RenderHints& hints, const RenderOptions& options) {
@@ -50,6 +48,15 @@ PassRange choose_passes(const description::RenderHints& hints, const RenderOptio
   if (options.passes) return {0, *options.passes};
   if (options.seconds || options.noise) return {0, never};
   return {0, hints.pixel_samples ? static_cast<std::uint64_t>(std::max(1, *hints.pixel_samples)) : default_passes};
+}
+
+// `auto` finds its own number from `automatic`. A file's number for passes of another method says nothing of it.
+std::uint64_t choose_light_paths(const description::RenderHints& hints, const RenderOptions& options,
+                                 const std::string& method, std::uint64_t automatic) {
+  if (options.photons) return *options.photons;
+  const bool is_for_another = method == automatic_method && hints.integrator != automatic_method;
+  const int of_file = is_for_another ? 0 : hints.photons_per_iteration.value_or(0);
+  return of_file > 0 ? static_cast<std::uint64_t>(of_file) : automatic;
 }
 
 RenderSettings choose_settings(const Scene& scene, const ViewDescription& description, const RenderOptions& options,
@@ -66,9 +73,7 @@ RenderSettings choose_settings(const Scene& scene, const ViewDescription& descri
   const PixelWindow& window = plan.view.window;
   const auto pixels = static_cast<std::uint64_t>(window.width()) * static_cast<std::uint64_t>(window.height());
   const std::uint64_t automatic = std::max(pixels, plan.info->fewest_light_paths);
-  const std::uint64_t of_pass = options.photons.value_or(hints.photons_per_iteration && *hints.photons_per_iteration > 0
-                                                             ? static_cast<std::uint64_t>(*hints.photons_per_iteration)
-                                                             : automatic);
+  const std::uint64_t of_pass = choose_light_paths(hints, options, plan.info->name, automatic);
   // Two sets of four wavelengths are enough for the colours of smooth spectra (render/colour_balance.h).
   s.parts = plan.integrator->passes_share_wavelengths() && s.color == ColorMode::spectral ? 2 : 1;
   s.photons = of_pass / s.parts + (of_pass % s.parts > 0 ? 1 : 0);

@@ -23,7 +23,7 @@ const expect = (good, text) => {
   if (!good) failures++;
 };
 
-const server = spawn(program, ['serve', scene, '--port', '0', '-r', '256x256', '--memory', '256M', '-q'], {stdio: ['ignore', 'pipe', 'inherit']});
+const server = spawn(program, ['serve', scene, '--port', '0', '-r', '256x256', '--memory', '512M', '-q'], {stdio: ['ignore', 'pipe', 'inherit']});
 const address = await new Promise((resolve, reject) => {
   server.stdout.once('data', (text) => resolve(String(text).trim()));
   server.once('exit', () => reject(new Error('the server ended')));

@@ -29,7 +29,8 @@ class Bounds : public Cli {
 };
 
 TEST_F(Bounds, PhotonsThatDoNotFitAreRefusedWithWhatTheyWouldTake) {
-  for (const std::string method : {"probppm", "sppm", "ppm", "vcm", "bdpt", "bpm", "photonmap", "reversephotonmap"})
+  for (const std::string method :
+       {"auto", "probppm", "sppm", "ppm", "vcm", "bdpt", "bpm", "photonmap", "reversephotonmap"})
     refuse({"render", "tiny.pbrt", "-i", method, "-n", "4000000000", "--memory", "20G", "-o", "a.exr"},
            "4000000000 light paths a pass take ");
   refuse({"render", "tiny.pbrt", "-n", "1000000000000", "-o", "a.exr"}, "1000000000000 light paths a pass take ");
@@ -69,7 +70,7 @@ TEST_F(Bounds, ProjectionMapsTakeLittleMemory) {
 }
 
 TEST_F(Bounds, MemoryDoesNotChangeThePicture) {
-  for (const std::string method : {"probppm", "vcm", "reversephotonmap"}) {
+  for (const std::string method : {"auto", "probppm", "vcm", "reversephotonmap"}) {
     const Words words = render({"-i", method, "-p", "2", "--memory"});
     succeed(words + Words{"2M", "-o", "small.exr"});
     succeed(words + Words{"2G", "-o", "large.exr"});

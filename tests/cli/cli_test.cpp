@@ -298,6 +298,19 @@ TEST_F(Cli, WritesPhotons) {
   refuse(photons, "--output");
 }
 
+// Where few photons land in view, they are aimed: by the default method, too.
+TEST_F(Cli, PhotonsOfTheDefaultMethodAreThoseOfVcm) {
+  dir_.write("large.pbrt", tiny_scene + std::string("LightSource \"distant\" \"point3 from\" [1 3 2]\nShape "
+                                                    "\"bilinearmesh\" \"point3 P\" [-300 -1 -300 300 -1 -300 -300 "
+                                                    "-1 300 300 -1 300]\n"));
+  const Words photons{"photons", "large.pbrt", "-n", "5000", "-o"};
+  succeed(photons + Words{"default.ply"});
+  succeed(photons + Words{"vcm.ply", "-i", "vcm"});
+  succeed(photons + Words{"plain.ply", "-i", "vcm", "--set", "emission=power"});
+  EXPECT_TRUE(bytes("default.ply") == bytes("vcm.ply"));
+  EXPECT_FALSE(bytes("default.ply") == bytes("plain.ply"));
+}
+
 TEST_F(Cli, MeasuresConvergence) {
   succeed({"render", "tiny.pbrt", "-q", "-i", "path", "-p", "64", "-r", "8x8", "-o", "reference.exr"});
   const Words converge{"converge", "tiny.pbrt", "-i", "path", "-p", "16", "--runs", "8", "-r"};
@@ -427,7 +440,7 @@ TEST_F(Cli, WrongFilesAreRefusedBeforeTheRender) {
 
 // That states are the same bytes for all methods is tested in tests/transport; here, that the program's options lead
 // there: of methods with and without photons, and with passes that depend on each other.
-const Words some_integrators{"path", "probppm", "sppm"};
+const Words some_integrators{"auto", "path", "probppm", "sppm"};
 
 TEST_F(Cli, ThreadCountChangesNoByte) {
   for (const std::string& name : some_integrators)

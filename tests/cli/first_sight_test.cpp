@@ -265,6 +265,38 @@ TEST_F(FirstSight, TheColourModeIsSaid) {
   EXPECT_TRUE(contains(said(flint, {}), "color spectral: glass disperses light"));
   EXPECT_FALSE(contains(said(gold, {"--color", "rgb"}), "color rgb"));
   EXPECT_FALSE(contains(said(gold, {"-q"}), "color rgb"));
+  const std::string all = said(gold, {});
+  EXPECT_FALSE(contains(all, "\\x")) << "lines end with line feeds: " << all;
+}
+
+int count_of(const std::string& text, const std::string& part) {
+  int count = 0;
+  for (std::size_t at = 0; (at = text.find(part, at)) != text.npos; at += part.size()) ++count;
+  return count;
+}
+
+TEST_F(FirstSight, AutoInPlaceOfTheFilesIntegratorIsSaidOnce) {
+  dir_.write("sppm.pbrt", std::string("Integrator \"sppm\" \"integer maxdepth\" 9\n") + tiny_scene);
+  dir_.write("vcm.pbrt", std::string("Integrator \"vcm\"\n") + tiny_scene);
+  const std::string line = "\nmethod auto: in place of pbrt's \"sppm\", which the file names (-i sppm: that method)\n";
+  const auto said = [&](const std::string& scene, const Words& more) {
+    return "\n" + succeed(Words{"render", scene, "-r", "8x8", "-p", "1"} + more).err;
+  };
+  const Words one{"-o", "a.exr"};
+  EXPECT_EQ(count_of(said("sppm.pbrt", one), line), 1);
+  EXPECT_EQ(metadata_of("a.exr")["integrator"], "auto");
+  EXPECT_EQ(metadata_of("a.exr")["max_depth"], 18);
+  EXPECT_EQ(count_of(said("sppm.pbrt", {"--turntable", "3", "-o", "a.#.exr"}), line), 1);
+  for (const Words& more : {one + Words{"-q"}, one + Words{"-i", "sppm"}, one + Words{"-i", "path"}})
+    EXPECT_FALSE(contains(said("sppm.pbrt", more), "method auto"));
+  EXPECT_EQ(metadata_of("a.exr")["integrator"], "path");
+  EXPECT_FALSE(contains(said("tiny.pbrt", one), "method auto"));
+  EXPECT_EQ(metadata_of("a.exr")["integrator"], "auto");
+  EXPECT_FALSE(contains(said("vcm.pbrt", one), "method auto"));
+  EXPECT_EQ(metadata_of("a.exr")["integrator"], "vcm");
+  for (const std::string scene : {"sppm.pbrt", "tiny.pbrt"})
+    EXPECT_TRUE(contains(succeed({"info", scene}).out, "\nmethod     auto\n")) << scene;
+  EXPECT_TRUE(contains(succeed({"info", "vcm.pbrt"}).out, "\nmethod     vcm\n"));
 }
 
 }  // namespace

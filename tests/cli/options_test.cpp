@@ -112,6 +112,7 @@ TEST_F(CliOptions, SlipsOfTheHandAreAnsweredWithTheNearestName) {
     return Words{"render", "tiny.pbrt", "-o", "a.exr", "-i", name, "--set", set};
   };
   expect(method("probpm", "alpha=1"), "probppm");
+  refuse(method("auto", "alpha=1"), "'auto' has no parameters; -i names a method that has");
   expect({"list", "ptah"}, "path");
   expect(quick({"--set", "roulete-depth=3"}), "roulette-depth");
   expect(quick({"--set", "guide=photon"}), "photons");
@@ -236,6 +237,7 @@ TEST_F(CliOptions, MessagesNameOptions) {
   refuse_resume({"-i", "path", "-r", "9x7"}, "--resolution (8x8 and 9x7)");
   refuse_resume({"-i", "path", "-r", "8x8", "--crop", "1,2,3,4"}, "--crop (0,0,8,8 and 1,2,3,4)");
   refuse_resume({"-i", "light", "-r", "8x8"}, "--integrator (path and light)");
+  refuse_resume({"-r", "8x8"}, "--integrator (path and auto)");
   refuse_resume({"-i", "path", "-r", "8x8", "-d", "3"}, "--max-depth (64 and 3)");
   refuse_resume({"-i", "path", "-r", "8x8", "-n", "3k"}, "--photons (100000 and 3000)");
   refuse_resume({"-i", "path", "-r", "8x8", "--set", "roulette-depth=5"}, "--set roulette-depth (");

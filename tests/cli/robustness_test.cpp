@@ -15,8 +15,8 @@
 namespace lanthorn::robustness_test {
 namespace {
 
-const Words integrators{"probppm",          "sppm",    "ppm", "vcm", "bpm", "bdpt", "path", "light", "mlt", "photonmap",
-                        "reversephotonmap", "splitsum"};
+const Words integrators{"auto",      "probppm",          "sppm",    "ppm", "vcm", "bpm", "bdpt", "path", "light", "mlt",
+                        "photonmap", "reversephotonmap", "splitsum"};
 
 using Robustness = Cli;
 

@@ -29,7 +29,7 @@ import time
 from pathlib import Path
 
 SCENE = Path(__file__).resolve().parents[2] / "scenes" / "cornell-caustics.pbrt"
-METHODS = ["probppm", "sppm", "ppm", "vcm", "bdpt", "path", "light", "mlt", "photonmap", "reversephotonmap", "bpm"]
+METHODS = ["auto", "probppm", "sppm", "ppm", "vcm", "bdpt", "path", "light", "mlt", "photonmap", "reversephotonmap", "bpm"]
 ASKING = [signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGPIPE, signal.SIGXFSZ]
 ENDING = [signal.SIGKILL, signal.SIGQUIT, signal.SIGUSR1, signal.SIGUSR2, signal.SIGALRM, signal.SIGABRT,
           signal.SIGSEGV, signal.SIGBUS, signal.SIGXCPU, signal.SIGPROF, signal.SIGVTALRM]

@@ -28,7 +28,7 @@ from pathlib import Path
 import seed_scenes
 
 LEARNERS = ["probppm", "sppm", "ppm", "photonmap", "vcm", "bpm", "reversephotonmap"]  # know emission=learned
-METHODS = ["probppm", "sppm", "ppm", "photonmap", "vcm", "bpm", "bdpt", "path", "light", "mlt", "reversephotonmap"]
+METHODS = ["auto", "probppm", "sppm", "ppm", "photonmap", "vcm", "bpm", "bdpt", "path", "light", "mlt", "reversephotonmap"]
 NUMBERS = ["0", "-0.0", "-1", "1", "1e-30", "-1e-30", "1e30", "-1e30", "1e38", "1e-45", "1e-18", "1e18", "1e-6", "1e6",
            "179.999", "1e12", "-2", "1e-12", "0.5", "1e15", "-1e9", "3", "100"]
 UNREADABLE = ["nan", "inf", "-inf", "1e400", "-1e400", "4294967296", "2147483647"]

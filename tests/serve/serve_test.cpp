@@ -424,6 +424,24 @@ TEST_F(Serve, WithoutOutputASignalJustEndsIt) {
   EXPECT_EQ(files(), Words{"tiny.pbrt"});
 }
 
+TEST_F(Serve, SaysThatAutoTakesThePlaceOfTheFilesIntegrator) {
+  dir_.write("volpath.pbrt", std::string("Integrator \"volpath\"\n") + tiny_scene);
+  const std::string line = "method auto: in place of pbrt's \"volpath\", which the file names (-i path: that method)\n";
+  const auto said = [&](const Words& more) {
+    ChildProcess process(LANTHORN_PROGRAM, Words{"serve", "volpath.pbrt", "--port", "0", "-n", "300"} + more,
+                         dir_.path());
+    while (!contains(process.err_so_far(), "Open this address") && !process.has_ended())
+      std::this_thread::sleep_for(5ms);
+    process.send(SIGTERM);
+    return process.wait().err;
+  };
+  const std::string text = said({});
+  EXPECT_TRUE(contains(text, line)) << text;
+  EXPECT_FALSE(contains(said({"-i", "path"}), "method auto"));
+  start({"-p", "1"}, "volpath.pbrt");
+  EXPECT_EQ(frame(is_finished)["integrator"], "auto");
+}
+
 TEST_F(Serve, BadInputIsRefused) {
   start({"-p", "1"});
   refuse({"serve", "none.pbrt"}, "none.pbrt");

@@ -14,6 +14,7 @@
 
 #include "lanthorn/error.h"
 #include "lanthorn/session.h"
+#include "support/open_box.h"
 
 namespace lanthorn::interactive_render_test {
 
@@ -104,6 +105,43 @@ TEST(InteractiveRender, EachPartCanBeEdited) {
   EXPECT_EQ(end.picture->full_size, (std::array<int, 2>{20, 30}));
   EXPECT_EQ(end.picture->state.integrator, "probppm");
   EXPECT_EQ(end.picture->image.pixels, pixels_of(darker(0.5f), view_of_angle(30), other));
+}
+
+// Its pilot takes longer than a coarse pass. Of the file's parameters vcm would take this one, but not its value.
+TEST(InteractiveRender, CoarsePicturesOfAutoHaveNoPilot) {
+  const SharedScene scene = build_scene(read_pbrt_string(
+      "Integrator \"sppm\" \"string volume\" \"short-photon-beam\"\n" + test::camera + test::box, ".", "test scene"));
+  RenderOptions options = small(2);
+  options.integrator.reset();
+  InteractiveRender render(scene, description_of(*scene).view, options);
+  const std::uint64_t revision = render.edit({.view = description_of(*scene).view, .is_moving = true});
+  const InteractiveSnapshot coarse = await(render, [&](const InteractiveSnapshot& now) {
+    return now.status.phase == failed || (now.picture && now.picture->revision == revision);
+  });
+  ASSERT_EQ(coarse.status.problem, "");
+  EXPECT_TRUE(coarse.picture->is_coarse);
+  EXPECT_NE(coarse.picture->state.settings.find("\"integrator\":\"vcm\""), std::string::npos);
+  EXPECT_EQ(coarse.picture->state.integrator, "auto");
+  const InteractiveSnapshot end = await(render, finished);
+  EXPECT_EQ(end.picture->state.integrator, "auto");
+  EXPECT_EQ(end.picture->image.pixels, pixels_of(scene, description_of(*scene).view, options));
+}
+
+// The last picture takes milliseconds to make, in which the one before must not be called finished.
+TEST(InteractiveRender, FinishedPicturesHaveAllPasses) {
+  RenderOptions options = small(2);
+  options.resolution = {300, 200};
+  InteractiveRender render(box(), view_of_angle(40), options);
+  for (int i = 0; i < 5; ++i) {
+    render.edit({.view = view_of_angle(41 + static_cast<float>(i))});
+    InteractiveSnapshot now = render.snapshot();
+    for (const auto deadline = Clock::now() + 60s; now.status.phase != finished && Clock::now() < deadline;
+         now = render.snapshot())
+      std::this_thread::sleep_for(100us);
+    ASSERT_TRUE(now.picture);
+    EXPECT_FALSE(now.picture->is_coarse);
+    EXPECT_EQ(now.picture->state.pass_count, 2u);
+  }
 }
 
 TEST(InteractiveRender, TheLatestOfManyEditsWins) {
