@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <span>
 #include <string>
@@ -113,19 +114,24 @@ class Integrator {
   virtual void load(std::span<const std::byte> /*state*/) {}
 };
 
+/// Default number of light paths per pass: one per pixel, within these limits.
+struct LightPathRange {
+  std::uint64_t fewest = 100'000;
+  std::uint64_t most = std::numeric_limits<std::uint64_t>::max();
+};
+
 /// An entry of the registry.
 struct IntegratorInfo : MethodInfo {
   using Make = std::function<std::unique_ptr<Integrator>(const Parameters& parameters)>;
 
   IntegratorInfo(std::string name_, std::string summary_, std::string paper_, std::vector<ParameterInfo> parameters_,
-                 Make make_, std::uint64_t fewest_light_paths_ = 100'000)
+                 Make make_, LightPathRange light_paths_ = {})
       : MethodInfo{std::move(name_), std::move(summary_), std::move(paper_), std::move(parameters_)},
         make(std::move(make_)),
-        fewest_light_paths(fewest_light_paths_) {}
+        light_paths(light_paths_) {}
 
   Make make;
-  /// Default number of light paths per pass: one per pixel, and at least this many.
-  std::uint64_t fewest_light_paths;
+  LightPathRange light_paths;
 };
 
 /// All integrators, in the order in which `lanthorn list` shows them.

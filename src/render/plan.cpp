@@ -72,7 +72,8 @@ RenderSettings choose_settings(const Scene& scene, const ViewDescription& descri
   s.max_depth = options.max_depth ? *options.max_depth : scene_max_depth(scene);
   const PixelWindow& window = plan.view.window;
   const auto pixels = static_cast<std::uint64_t>(window.width()) * static_cast<std::uint64_t>(window.height());
-  const std::uint64_t automatic = std::max(pixels, plan.info->fewest_light_paths);
+  const LightPathRange& range = plan.info->light_paths;
+  const std::uint64_t automatic = std::clamp(pixels, range.fewest, range.most);
   const std::uint64_t of_pass = choose_light_paths(hints, options, plan.info->name, automatic);
   // Two sets of four wavelengths are enough for the colours of smooth spectra (render/colour_balance.h).
   s.parts = plan.integrator->passes_share_wavelengths() && s.color == ColorMode::spectral ? 2 : 1;

@@ -98,7 +98,7 @@ class PathMoments {
     const auto n = static_cast<double>(candidate.light_paths);
     const auto m = static_cast<double>(candidate.samples(&TechniqueSum::connections));
     const double w = s.walk.sum;
-    const auto light_of = [&](int set) { return m * s.connections[set].sum + n * s.merges[set].sum; };
+    const auto light_of = [&](int i) { return m * s.connections[i].sum + n * s.merges[i].sum; };
     const double a = light_of(0), b = light_of(1);
     const double of_eye_path = w * w + w * (a + b) + a * b;
     const auto within = [](const PathSum (&of)[2]) {

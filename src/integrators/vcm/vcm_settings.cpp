@@ -53,7 +53,9 @@ std::array<bool, volume_estimator_count> merged_in_media(const Parameters& param
 }
 
 // Every light vertex costs a connection to the lens and one to an eye path: more of them than pixels do not pay.
-constexpr std::uint64_t fewest_light_paths = 10'000;
+constexpr LightPathRange light_path_range{.fewest = 10'000};
+// The pilot may choose four times as many: in large pictures one for each pixel of 1920 x 1080, which bounds the memory.
+constexpr LightPathRange range_of_auto{.fewest = 10'000, .most = 1u << 19};
 
 template <bool connections, bool merging>
 std::unique_ptr<Integrator> make(const Parameters& p) {
@@ -113,7 +115,7 @@ IntegratorInfo vcm_info() {
           {radius_reduction_info("0.5"), first_radius_info(), roulette_depth_info(), emission_info("auto"),
            merge_volume_info(), volume_radius_info()},
           make<true, true>,
-          fewest_light_paths};
+          light_path_range};
 }
 
 IntegratorInfo auto_info() {
@@ -127,7 +129,7 @@ IntegratorInfo auto_info() {
             settings.chooses_effort = true;
             return make_vertex_connection_and_merging(settings);
           },
-          fewest_light_paths};
+          range_of_auto};
 }
 
 IntegratorInfo bdpt_info() {
@@ -136,7 +138,7 @@ IntegratorInfo bdpt_info() {
           "Veach 1997; Lafortune & Willems 1993",
           {strategy_info(), roulette_depth_info()},
           make<true, false>,
-          fewest_light_paths};
+          light_path_range};
 }
 
 IntegratorInfo bpm_info() {
