@@ -88,8 +88,8 @@ void print_efforts(const StateSummary& state) {
   say("light paths  connections  merged      variance   work   product\n");
   const auto row = [&](const nlohmann::json& choice, const std::string& techniques) {
     const double v = choice.at("variance").get<double>() / variance, w = choice.at("work").get<double>() / work;
-    say("{:11.3g}  {:23}  {:8.3g}  {:5.3g}  {:8.3g}\n", choice.at("light_paths_per_pixel").get<double>(), techniques, v, w,
-        v * w);
+    say("{:11.3g}  {:23}  {:8.3g}  {:5.3g}  {:8.3g}\n", choice.at("light_paths_per_pixel").get<double>(), techniques, v,
+        w, v * w);
   };
   row(*findings, "as it pays");
   for (const nlohmann::json& choice : findings->at("everywhere")) {

@@ -136,7 +136,8 @@ OptionTable render_options(RenderArguments& a) {
        .value = into(o.photons, count_type({.low = 1})),
        .brief = "Light paths per pass, such as 500000, 200k or 1M",
        .details = "auto traces as many of them as pay, from none to 4 times the number.",
-       .otherwise = "the scene file's (not for auto), else one per pixel, at least 100k (auto, bdpt, vcm: 10k; auto: at most 524k)"},
+       .otherwise = "the scene file's (not for auto), else one per pixel, at least 100k (auto, bdpt, vcm: 10k; auto: "
+                    "at most 524k)"},
       {.names = "-d,--max-depth",
        .value = into(o.max_depth, count_type({1, largest_int})),
        .brief = "Scattering events per path, at most",

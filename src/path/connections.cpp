@@ -233,7 +233,8 @@ Spectrum hit_emitter(const PathContext& path, const Bidirectional& pass, const S
   const Spectrum radiance = emitted(light, at, v.wi, path.w);
   if (radiance.is_black()) return {};
   if (v.state.depth == 1) return v.state.beta * radiance;
-  return v.state.beta * radiance * weight_of_hit(path, pass, v.state, subpath, {*v.at.light, at, v.wi, v.state.depth == 2});
+  return v.state.beta * radiance *
+         weight_of_hit(path, pass, v.state, subpath, {*v.at.light, at, v.wi, v.state.depth == 2});
 }
 
 Spectrum hit_environment(const PathContext& path, const Bidirectional& pass, const EscapeVertex& v,

@@ -14,9 +14,9 @@ namespace lanthorn {
 /// How densely light paths start where, as the weights of bidirectional methods see it.
 ///
 /// Where a guide makes light paths denser, that counts for all but direct light: paths from a light by one surface to
-/// the lens. Next-event estimation finds direct light with little noise, however many light paths arrive on the surface;
-/// the balance heuristic, which knows densities alone, would prefer the light paths. Where a guide makes light paths
-/// sparser, that always counts. Weights only have to be the same function of the path for all techniques.
+/// the lens. Next-event estimation finds direct light with little noise, however many light paths arrive on the
+/// surface; the balance heuristic, which knows densities alone, would prefer the light paths. Where a guide makes light
+/// paths sparser, that always counts. Weights only have to be the same function of the path for all techniques.
 class EmissionDensities {
  public:
   /// `guide` of the light paths, null if they have none; must outlive this.

@@ -173,11 +173,7 @@ void Subpath::arrive(const PathContext& path, const SurfaceVertex& v) {
   const bool merges = merges_at(v.at) && !(is_direct && techniques_.connects);
   const float cos = geometric_cosine(v.at, v.wi);
   arrive_at(path.scene, v.state, {v.at.position, receiver_normal(v.at), v.at.time, cos, 1, merges}, v.wi);
-  previous_ = {v.at,
-               v.wi_local,
-               {},
-               merges,
-               techniques_.volume.is_used() ? lanthorn::coherence(v.at.bsdf) : 1.0f};
+  previous_ = {v.at, v.wi_local, {}, merges, techniques_.volume.is_used() ? lanthorn::coherence(v.at.bsdf) : 1.0f};
 }
 
 void Subpath::arrive(const PathContext& path, const MediumVertex& v) {

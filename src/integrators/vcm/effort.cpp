@@ -30,12 +30,14 @@ std::size_t Effort::block_of(const Vec2& raster) const {
 }
 
 std::string Effort::describe() const {
-  if (light_paths_ == 0) return "no light needs light paths: path tracing";
-  const auto percent = [](double share) { return fmt::format("{:.0f} %", 100 * share); };
-  return fmt::format(
-      "light paths find {} of the light: {:.2g} of them a pixel, merged in {} and connected in {} of the picture",
-      percent(report_.light_by_light_paths), report_.light_paths_per_pixel, percent(report_.merged_part),
-      percent(report_.connected_part));
+  const auto percent = [](double share) { return fmt::format("{:.2g} %", 100 * share); };
+  const bool has_caustics = report_.caustic_light >= 0.001;
+  const std::string found = has_caustics ? fmt::format("caustics make {} of the light, in {} of the picture",
+                                                       percent(report_.caustic_light), percent(report_.caustic_part))
+                                         : "hardly any light is in caustics";
+  if (light_paths_ == 0) return found + ": path tracing";
+  return fmt::format("{}: {:.2g} light paths a pixel, merged in {} and connected in {} of the picture", found,
+                     report_.light_paths_per_pixel, percent(report_.merged_part), percent(report_.connected_part));
 }
 
 std::string Effort::findings() const {
@@ -47,7 +49,9 @@ std::string Effort::findings() const {
                        {"merges_in_media", u.place.merges_in_media},
                        {"variance", u.variance},
                        {"work", u.work}});
-  return nlohmann::json{{"light_by_light_paths", report_.light_by_light_paths},
+  return nlohmann::json{{"caustic_light", report_.caustic_light},
+                        {"caustic_part", report_.caustic_part},
+                        {"light_by_light_paths", report_.light_by_light_paths},
                         {"light_paths_per_pixel", report_.light_paths_per_pixel},
                         {"merged_part", report_.merged_part},
                         {"connected_part", report_.connected_part},

@@ -31,7 +31,9 @@ struct UniformEffort {
 /// What the pilot found, for the user.
 struct EffortReport {
   double light_by_light_paths = 0;  ///< share of the light that light paths find: by the lens, connections and merging
-  double merged_part = 0, connected_part = 0;  ///< shares of the picture
+  double caustic_light = 0;         ///< share of the light that is caustics
+  double caustic_part = 0;          ///< share of the picture where they are visible
+  double merged_part = 0, connected_part = 0;  ///< likewise, where light paths are used
   double light_paths_per_pixel = 0;
   double variance = 0, work = 0;  ///< as of UniformEffort, of what was chosen
   std::vector<UniformEffort> uniform;

@@ -20,7 +20,7 @@ namespace {
 constexpr std::uint32_t pilot_passes = 4;
 // The radii of merging shrink. Those of this pass are typical of a render of about 64 passes.
 constexpr std::uint32_t typical_pass = 24;
-constexpr int most_cells = 128;     // pilot pixels along a side of the film
+constexpr int most_cells = 96;      // pilot pixels along a side of the film
 constexpr int cells_per_block = 4;  // along a side of a block
 constexpr std::uint64_t most_pilot_paths = 1u << 16;
 
@@ -28,10 +28,10 @@ constexpr std::uint64_t most_pilot_paths = 1u << 16;
 // of path, bdpt and vcm with 1/4, 1 and 4 light paths a pixel in nine scenes; they are fixed, so that choices are the
 // same on every machine.
 namespace work {
-constexpr double shadow = 0.5;  // of a ray
+constexpr double shadow = 0.5;      // of a ray
 constexpr double densities = 0.65;  // of eye and light paths for each other, at each ray of an eye path
 constexpr double connection = 0.46, lookup = 0.36, merge = 0.1;
-constexpr double light_ray = 0.8;  // of a ray
+constexpr double light_ray = 0.8;      // of a ray
 constexpr double light_vertex = 1.95;  // with its connection to the lens, and sorting
 }  // namespace work
 
@@ -43,8 +43,10 @@ double work_of_ray(const Scene& scene) {
 }
 
 // Passes share the samples of eye paths out among them, so that their means vary less than if they were independent:
-// measured with path, 1.2 to 1.8 times after 32 passes.
-constexpr double stratification = 1.6;
+// measured with path, 1.2 to 3.2 times after 32 passes, most under environments, and 2.3 after 256 in a diffuse room.
+constexpr double stratification = 2.3;
+// Of path tracing's product of variance and work: what light paths must do better, since merges have a bias, too.
+constexpr double margin = 0.85;
 
 // Numbers of light paths of a pass, over that of all pixels.
 constexpr std::array light_path_choices{0.25f, 0.5f, 1.0f, 2.0f, 4.0f};
@@ -68,13 +70,19 @@ PlaceEffort place_of(const EffortCandidate& c) {
 // Sums over the eye paths of a block of pixels.
 struct Block {
   struct Moments {
-    double second = 0;       // E[X^2]
-    double of_eye_path = 0;  // E[E[X | eye path]^2]
-    double square = 0;       // E[X]^2 of the pixels: products of two passes
-    double relative_variance = 0;  // of the mean of many passes, times their number
+    double second = 0;                    // E[X^2]
+    double of_eye_path = 0;               // E[E[X | eye path]^2]
+    double square = 0;                    // E[X]^2 of the pixels: products of two passes
+    double squares = 0, all_squares = 0;  // PathMoments::Estimate
+    double relative_variance = 0;         // of the mean of many passes, times their number
+
+    // Of paths that the candidate finds too rarely to be seen here. Merges count with the densities of paths that are
+    // displaced within the radius, which makes `all_squares` larger than `squares` where nothing is rare, too.
+    double rare() const { return std::max(0.0, all_squares - 3 * squares); }
+    double variance() const { return second + rare() - square; }
   };
-  std::vector<Moments> moments;  // by candidate
-  double light = 0, from_light_paths = 0;
+  std::vector<Moments> moments;  // by candidate; sums over paths
+  double light = 0, from_light_paths = 0, caustic = 0;
   double paths = 0, pixels = 0;
   double rays = 0, next_events = 0, connections = 0, lookups = 0, merges = 0;
 };
@@ -85,7 +93,7 @@ struct TwoSets {
   EyeVisitor first, second;
 
   template <class Event>
-    requires std::invocable<EyeVisitor&, const Event&>
+  requires std::invocable<EyeVisitor&, const Event&>
   auto operator()(const Event& v) {
     moments.set = 1;
     second(v);
@@ -98,6 +106,7 @@ struct TwoSets {
 struct SeenLight {
   std::uint32_t block;
   float light;
+  bool is_caustic;
   double spread;  // the sum over pixels of the squares of the filter
   TechniqueSum weighed;
 };
@@ -235,7 +244,8 @@ void Pilot::trace_light(const VcmPass& pass) {
         const float weight = light.weight(there, seen);
         chunks[chunk].push_back({static_cast<std::uint32_t>(found_.block_of(seen.raster)),
                                  weight * flux_of(seen.light, seen.dispersed, pass.draw.w),
-                                 spread_of(job_.view, seen.raster), weighed});
+                                 light.layers.path_class == PathClass::caustic, spread_of(job_.view, seen.raster),
+                                 weighed});
       });
   light_rays_ += static_cast<double>(rays.walk);
   light_paths_ += static_cast<double>(pass.light_paths.total());
@@ -248,10 +258,15 @@ void Pilot::trace_light(const VcmPass& pass) {
       const auto light = static_cast<double>(seen.light);
       block.light += share * light;
       block.from_light_paths += share * light;
+      if (seen.is_caustic) block.caustic += share * light;
       for (std::size_t k = 0; k < candidates_.size(); ++k) {
         const double ratio = static_cast<double>(
             std::max(candidates_[k].all(seen.weighed) / seen.weighed.all(), PathMoments::least_ratio));
-        block.moments[k].second += share * seen.spread * sqr(light) / ratio;
+        const double all = share * seen.spread * sqr(light) / ratio;
+        const double own = all * static_cast<double>(candidates_[k].light_paths) / ratio;
+        block.moments[k].second += own;
+        block.moments[k].squares += own;
+        block.moments[k].all_squares += all;
       }
     }
   }
@@ -261,6 +276,7 @@ void Pilot::trace_eye(const VcmPass& pass, const VcmPass& other) {
   const PixelWindow cells = grid_.cells();
   const auto width = static_cast<std::size_t>(cells.width()), count = width * static_cast<std::size_t>(cells.height());
   std::vector<PathMoments> of_cells(count, PathMoments(candidates_));
+  std::vector<float> caustic(count);
   for_each_pixel(cells, [&](const PixelPlace& cell, RayCounts& counts) {
     Sampler sampler = Sampler::for_pixel(pass.job.settings.seed, Stream::pilot_camera, cell.index, pass.number);
     const PathDraw draw = pass.draw_of_eye_path(sampler);
@@ -274,6 +290,7 @@ void Pilot::trace_eye(const VcmPass& pass, const VcmPass& other) {
                      TwoSets{moments, EyeVisitor(path, pass, start.raster, partner, layers, &moments),
                              EyeVisitor(path, other, start.raster, partner, other_layers, &moments)});
     moments.work.rays = static_cast<std::uint32_t>(counts.walk - before.walk);
+    caustic[cell.index] = flux_of(layers.light(PathClass::caustic), false, draw.w);
   });
   for (std::size_t i = 0; i < count; ++i) {
     const PathMoments& moments = of_cells[i];
@@ -282,12 +299,15 @@ void Pilot::trace_eye(const VcmPass& pass, const VcmPass& other) {
       const PathMoments::Estimate e = moments.estimate(k);
       block.moments[k].second += e.second_moment;
       block.moments[k].of_eye_path += e.of_eye_path;
+      block.moments[k].squares += e.squares;
+      block.moments[k].all_squares += e.all_squares;
       Cell& cell = cells_[i * candidates_.size() + k];
       cell.sum += e.light;
       cell.squares += sqr(e.light);
     }
     block.light += static_cast<double>(moments.light);
     block.from_light_paths += static_cast<double>(moments.light - moments.by_walk);
+    block.caustic += static_cast<double>(caustic[i]);
     block.paths += 1;
     block.rays += moments.work.rays;
     block.next_events += moments.work.next_events / 2.0;
@@ -317,7 +337,8 @@ void Pilot::find_variances() {
   constexpr double least_part = 0.02;  // of a second moment that is variance
   for (Block& block : blocks_)
     for (Block::Moments& m : block.moments) {
-      const double of_eye_paths = std::max(0.0, m.of_eye_path - m.square), of_light_paths = m.second - m.of_eye_path;
+      const double of_eye_paths = std::max(0.0, m.of_eye_path - m.square),
+                   of_light_paths = m.second + m.rare() - m.of_eye_path;
       const double variance = std::max(of_eye_paths / stratification + of_light_paths, least_part * m.second);
       m.relative_variance = variance / block.paths / (sqr(block.light / block.paths) + floor);
     }
@@ -338,8 +359,8 @@ double Pilot::variance_of(std::size_t b, std::size_t candidate) const {
 
 // Of a pass, for each pixel. `light_paths`: over those of the settings.
 double Pilot::work_of_light(float light_paths) const {
-  const double of_path = (work::light_ray * ray_work_ * light_rays_ + work::light_vertex * light_vertices_) /
-                         std::max(1.0, light_paths_);
+  const double of_path =
+      (work::light_ray * ray_work_ * light_rays_ + work::light_vertex * light_vertices_) / std::max(1.0, light_paths_);
   const PixelWindow& window = job_.view.window;
   const double pixels = static_cast<double>(window.width()) * static_cast<double>(window.height());
   return static_cast<double>(light_paths) * static_cast<double>(job_.settings.photons) / pixels * of_path;
@@ -353,7 +374,7 @@ std::vector<CandidateEstimate> Pilot::estimates() const {
     CandidateEstimate& e = result.emplace_back(CandidateEstimate{candidate, 0, work_of_light(candidate.light_paths)});
     for (std::size_t b = 0; b < blocks_.size(); ++b) {
       const Block& block = blocks_[b];
-      e.variance += (block.moments[k].second - block.moments[k].square) / block.paths / static_cast<double>(blocks_.size());
+      e.variance += block.moments[k].variance() / block.paths / static_cast<double>(blocks_.size());
       e.work += work_of(blocks_[b], candidates_[k]) / static_cast<double>(blocks_.size());
     }
   }
@@ -438,17 +459,23 @@ Pilot::Plan Pilot::plan_with(float light_paths) const {
 }
 
 Effort Pilot::best() const {
-  float best_paths = has_specular_ ? light_path_choices.front() : 0.0f;
-  Plan best = plan_with(best_paths);
-  for (const float light_paths : light_path_choices) {
+  float best_paths = 0;
+  Plan best{};
+  double least = infinity;
+  const auto consider = [&](float light_paths, double share) {
     Plan plan = plan_with(light_paths);
-    if (!(plan.variance * plan.work < best.variance * best.work)) continue;
+    const double product = share * plan.variance * plan.work;
+    if (!(product < least) && !best.candidates.empty()) return;
     best = std::move(plan);
     best_paths = light_paths;
-  }
+    least = product;
+  };
+  if (!has_specular_) consider(0, margin);
+  for (const float light_paths : light_path_choices) consider(light_paths, 1);
   std::vector<PlaceEffort> places;
   EffortReport report{.variance = best.variance, .work = best.work, .uniform = uniform_efforts()};
-  double light = 0, by_light_paths = 0;
+  double light = 0, by_light_paths = 0, caustic = 0;
+  constexpr double visible = 0.05;  // share of a block's light
   const auto share = 1 / static_cast<double>(blocks_.size());
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
     const EffortCandidate& c = candidates_[best.candidates[b]];
@@ -457,9 +484,12 @@ Effort Pilot::best() const {
     report.connected_part += c.connections > 0 ? share : 0;
     light += blocks_[b].light;
     by_light_paths += blocks_[b].from_light_paths;
+    caustic += blocks_[b].caustic;
+    report.caustic_part += blocks_[b].caustic > visible * blocks_[b].light ? share : 0;
   }
   count_work(report);
   report.light_by_light_paths = light > 0 ? by_light_paths / light : 0;
+  report.caustic_light = light > 0 ? caustic / light : 0;
   report.light_paths_per_pixel = per_pixel(best_paths);
   const auto paths = static_cast<double>(best_paths) * static_cast<double>(job_.settings.photons);
   return {static_cast<std::uint64_t>(std::ceil(paths)), job_.view.window, grid_.columns(), std::move(places),

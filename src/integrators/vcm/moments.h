@@ -49,8 +49,8 @@ struct EyeWork {
 ///
 /// The path's light is X = Σ c_i, each c_i by some technique. With the balance heuristic, c = f / Σ n p. If a candidate
 /// has R times the density Σ n p of the path that made c_i, and s times as many samples of the technique, its samples
-/// have c_i / R and are s times as many. Hence E[Σ c²] is Σ c_i² / R. This sum runs over all techniques of the pilot,
-/// so that it counts paths which the candidate would miss.
+/// have c_i / R and are s times as many. Hence E[Σ c²] is Σ s (c_i / R)². It is also Σ c_i² / R over all techniques of
+/// the pilot, which counts paths that the candidate finds too rarely to be seen here.
 ///
 /// The products of two of them, (c_i / R_i)(c_j / R_j), are counted by where both come from. The walk W does not
 /// depend on light paths. Of light paths, E[L | eye path]² is estimated by the product of the two sets, L_A L_B, and
@@ -61,9 +61,9 @@ class PathMoments {
   explicit PathMoments(std::span<const EffortCandidate> candidates)
       : candidates_(candidates), sums_(candidates.size()) {}
 
-  TechniqueSum weighed;  ///< of the contribution that comes next
-  EyeWork work;          ///< with both sets
-  int set = 0;           ///< of light paths, which the contribution comes of: 0 or 1
+  TechniqueSum weighed;          ///< of the contribution that comes next
+  EyeWork work;                  ///< with both sets
+  int set = 0;                   ///< of light paths, which the contribution comes of: 0 or 1
   float light = 0, by_walk = 0;  ///< X with the first set, and the part of it that needs no light path
 
   void add(float c, float TechniqueSum::*technique) {
@@ -80,17 +80,17 @@ class PathMoments {
       Sums& s = sums_[k];
       s.self += share * sqr(static_cast<double>(c)) / static_cast<double>(ratio);
       if (candidate.samples(technique) == 0) continue;
-      PathSum& sum = is_walk                                     ? s.walk
-                     : technique == &TechniqueSum::connections ? s.connections[set]
-                                                               : s.merges[set];
+      PathSum& sum = is_walk ? s.walk : technique == &TechniqueSum::connections ? s.connections[set] : s.merges[set];
       sum.add(static_cast<double>(c / ratio));
     }
   }
   /// Estimates for candidate k, but for light that the lens sees.
   struct Estimate {
     double light;          ///< E[X]
-    double second_moment;  ///< E[X²]
+    double second_moment;  ///< E[X²], of what the candidate has found here
     double of_eye_path;    ///< E[E[X | eye path]²]
+    double squares;        ///< the part Σ s (c / R)² of E[X²]
+    double all_squares;    ///< Σ c² / R
   };
   Estimate estimate(std::size_t k) const {
     const Sums& s = sums_[k];
@@ -101,12 +101,13 @@ class PathMoments {
     const auto light_of = [&](int i) { return m * s.connections[i].sum + n * s.merges[i].sum; };
     const double a = light_of(0), b = light_of(1);
     const double of_eye_path = w * w + w * (a + b) + a * b;
-    const auto within = [](const PathSum (&of)[2]) {
+    const auto within = [](const PathSum(&of)[2]) {
       return (of[0].pairs() + of[1].pairs()) / 2 - of[0].sum * of[1].sum;
     };
-    const double second_moment =
-        of_eye_path - s.walk.squares + s.self + m * within(s.connections) + n * within(s.merges);
-    return {w + (a + b) / 2, second_moment, of_eye_path};
+    const auto both = [](const PathSum(&of)[2]) { return (of[0].squares + of[1].squares) / 2; };
+    const double of_light = m * both(s.connections) + n * both(s.merges);
+    const double second_moment = of_eye_path + of_light + m * within(s.connections) + n * within(s.merges);
+    return {w + (a + b) / 2, second_moment, of_eye_path, s.walk.squares + of_light, s.self};
   }
 
   static constexpr float least_ratio = 1e-6f;  ///< of paths that the candidate cannot find

@@ -54,7 +54,8 @@ std::array<bool, volume_estimator_count> merged_in_media(const Parameters& param
 
 // Every light vertex costs a connection to the lens and one to an eye path: more of them than pixels do not pay.
 constexpr LightPathRange light_path_range{.fewest = 10'000};
-// The pilot may choose four times as many: in large pictures one for each pixel of 1920 x 1080, which bounds the memory.
+// The pilot may choose four times as many: in large pictures one for each pixel of 1920 x 1080, which bounds the
+// memory.
 constexpr LightPathRange range_of_auto{.fewest = 10'000, .most = 1u << 19};
 
 template <bool connections, bool merging>
