@@ -121,14 +121,18 @@ const std::string near_lamp = "\"rgb L\" [5000 5000 5000]\nTranslate 3 8 2\nShap
                   far_lamp =
                       "\"rgb L\" [50000 50000 50000]\nTranslate 300 800 200\nShape \"sphere\" \"float radius\" [6]\n";
 
-std::vector<Image> caustics_of(const Scene& scene, const std::string& integrator, bool learned, std::uint64_t runs) {
+std::vector<Image> layers_of(const Scene& scene, const std::string& layer, const std::string& integrator, bool learned,
+                             std::uint64_t runs) {
   RenderOptions options = test::options_for(integrator, 8);
   options.set["emission"] = learned ? "learned" : "power";
   options.color = ColorMode::rgb;
   options.photons = 20'000;
   options.max_depth = 6;
   options.set["radius"] = "0.01";
-  return test::select_layers(test::independent_renders(scene, options, runs, 0), "caustic");
+  return test::select_layers(test::independent_renders(scene, options, runs, 0), layer);
+}
+std::vector<Image> caustics_of(const Scene& scene, const std::string& integrator, bool learned, std::uint64_t runs) {
+  return layers_of(scene, "caustic", integrator, learned, runs);
 }
 
 // By 400 passes of probppm with a million photons each.
@@ -165,6 +169,15 @@ TEST(LearnedEmission, FindsWhatIsSmall) {
 TEST(LearnedEmission, IsKnownToWeights) {
   const Scene scene = test::scene_from_text(view_of_the_ball + corner_of_a_plain(far_lamp));
   EXPECT_TRUE(test::runs_agree(test::mean_of_means(caustics_of(scene, "vcm", true, 24)), 0.01496, 0.05, 0.6));
+}
+
+// Photons are dense around the ball, but next-event estimation finds the direct light there with less noise. Without
+// the exception that weights make for direct light it has nine times the variance.
+TEST(LearnedEmission, LeavesDirectLightToNextEventEstimation) {
+  const Scene scene = test::scene_from_text(view_of_the_ball + corner_of_a_plain(near_lamp));
+  const double guided = relative_variance(layers_of(scene, "direct", "vcm", true, 4), 1),
+               plain = relative_variance(layers_of(scene, "direct", "vcm", false, 4), 1);
+  EXPECT_LT(guided, 2 * plain);
 }
 
 // A sky whose light goes through the ball to the plane. Few places of the picture say where its photons must start.

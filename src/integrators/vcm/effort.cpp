@@ -30,7 +30,7 @@ std::size_t Effort::block_of(const Vec2& raster) const {
 }
 
 std::string Effort::describe() const {
-  const auto percent = [](double share) { return fmt::format("{:.2g} %", 100 * share); };
+  const auto percent = [](double share) { return fmt::format("{:.{}f} %", 100 * share, share < 0.1 ? 1 : 0); };
   const bool has_caustics = report_.caustic_light >= 0.001;
   const std::string found = has_caustics ? fmt::format("caustics make {} of the light, in {} of the picture",
                                                        percent(report_.caustic_light), percent(report_.caustic_part))
