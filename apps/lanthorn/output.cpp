@@ -26,6 +26,10 @@ nlohmann::json metadata_of(const StateSummary& state, const ErrorEstimate& error
   const nlohmann::json settings = nlohmann::json::parse(state.settings);
   nlohmann::json metadata = settings.value("identity", nlohmann::json::object());
   if (settings.contains("scene")) metadata["scene"] = settings["scene"];
+  if (const auto findings = settings.find("findings"); findings != settings.end()) {
+    metadata["findings"] = *findings;
+    metadata["findings"].erase("everywhere");
+  }
   if (state.display_emission) metadata["display_emission"] = true;
   metadata["version"] = version;
   metadata["passes"] = state.pass_count;

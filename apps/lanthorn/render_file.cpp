@@ -63,6 +63,9 @@ void print_settings(const json& settings) {
     if (const auto found = settings.find(member); found != settings.end()) print_line(name, text_of(*found));
   if (const auto found = settings.find("parameters"); found != settings.end())
     print_line("set", parameters_text(*found));
+  const auto findings = settings.find("findings");
+  if (findings != settings.end() && findings->is_object() && findings->contains("summary"))
+    print_line("found", text_of(findings->at("summary")));
 }
 
 std::string size_text(const ImageWindow& window, int width, int height) {
@@ -86,7 +89,8 @@ json settings_of(const StateSummary& state) {
   const json all = json::parse(state.settings);
   json settings = all.value("identity", json::object());
   settings["integrator"] = state.integrator;
-  if (const auto scene = all.find("scene"); scene != all.end()) settings["scene"] = *scene;
+  for (const char* member : {"scene", "findings"})
+    if (const auto found = all.find(member); found != all.end()) settings[member] = *found;
   return settings;
 }
 

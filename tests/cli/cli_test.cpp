@@ -676,5 +676,19 @@ TEST_F(Cli, DamagedScenesAreRenderedOrRefused) {
   EXPECT_LT(refused, 30);
 }
 
+TEST_F(Cli, AutoSaysWhatItFoundAndChose) {
+  const std::string said = succeed({"render", "tiny.pbrt", "-r", "16x16", "-p", "1", "-v", "-o", "a.exr", "-o",
+                                    "a.state", "--json", "a.json"})
+                               .err;
+  for (const char* part : {"caustics make ", " light paths a pixel, merged in 100 %", "variance", "as it pays"})
+    EXPECT_TRUE(contains(said, part)) << part << '\n' << said;
+  const nlohmann::json found = json("a.json")["settings"]["findings"];
+  EXPECT_GT(found["caustic_light"], 0);
+  EXPECT_GT(found["light_paths_per_pixel"], 0);
+  EXPECT_EQ(found["everywhere"].size(), 31u);
+  for (const char* file : {"a.exr", "a.state"})
+    EXPECT_TRUE(contains(succeed({"info", file}).out, "found      " + found["summary"].get<std::string>())) << file;
+}
+
 }  // namespace
 }  // namespace lanthorn::cli_test

@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -41,21 +43,24 @@ std::string Effort::describe() const {
 }
 
 std::string Effort::findings() const {
+  // Variances of extreme scenes may exceed all numbers, which JSON does not know.
+  const auto finite = [](double x) { return std::isfinite(x) ? x : std::numeric_limits<double>::max(); };
   nlohmann::json uniform = nlohmann::json::array();
   for (const UniformEffort& u : report_.uniform)
     uniform.push_back({{"light_paths_per_pixel", u.light_paths_per_pixel},
                        {"connections", u.place.connections},
                        {"merges", u.place.merges},
                        {"merges_in_media", u.place.merges_in_media},
-                       {"variance", u.variance},
+                       {"variance", finite(u.variance)},
                        {"work", u.work}});
-  return nlohmann::json{{"caustic_light", report_.caustic_light},
+  return nlohmann::json{{"summary", describe()},
+                        {"caustic_light", report_.caustic_light},
                         {"caustic_part", report_.caustic_part},
                         {"light_by_light_paths", report_.light_by_light_paths},
                         {"light_paths_per_pixel", report_.light_paths_per_pixel},
                         {"merged_part", report_.merged_part},
                         {"connected_part", report_.connected_part},
-                        {"variance", report_.variance},
+                        {"variance", finite(report_.variance)},
                         {"work", report_.work},
                         {"eye_path",
                          {{"rays", report_.rays},
