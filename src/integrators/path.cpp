@@ -30,8 +30,7 @@ class PathTracer final : public Integrator {
     if (rare >= noticeable)
       remark_ = fmt::format(
           "about {:.0f} % of the light on what is seen comes by glass or mirrors from small lights, which path finds "
-          "by "
-          "rare chance or never: -i vcm or -i probppm shows it",
+          "by rare chance or never: auto, the default, shows it",
           100 * rare);
   }
   std::string remark() const override { return remark_; }

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "integrators/vcm/effort_choice.h"
 #include "integrators/vcm/effort_pilot.h"
 #include "integrators/vcm/vcm_pass.h"
 #include "render/picture.h"
@@ -73,7 +74,7 @@ TEST_P(Estimates, OfVarianceAreThoseOfRendersWithinAFifth) {
     const VcmSettings settings(Parameters(find_integrator("vcm").parameters, fixed, "vcm"), {});
     VcmPreparation prepared(job, settings);
     prepared.effort = Effort(pilot_light_paths(job));
-    const std::vector<CandidateEstimate> all = estimate_candidates(job, settings, prepared);
+    const std::vector<CandidateEstimate> all = estimate_candidates(job, measure_candidates(job, settings, prepared));
     const auto found = std::find_if(all.begin(), all.end(), [&](const CandidateEstimate& e) {
       return e.candidate.light_paths == c.light_paths && e.candidate.connections == (c.light_paths > 0 ? 1 : 0) &&
              e.candidate.merges == c.merges;

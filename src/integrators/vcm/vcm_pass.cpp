@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <span>
 
+#include "integrators/vcm/effort_choice.h"
 #include "integrators/vcm/effort_pilot.h"
 #include "photon/gather/radius_schedule.h"
 #include "photon/medium_records.h"
@@ -20,7 +21,7 @@ VcmPreparation::VcmPreparation(const RenderJob& job, const VcmSettings& settings
   volume_radii = FirstVolumeRadii(job, settings, emission.get());
   if (!settings.chooses_effort) return;
   effort = Effort(pilot_light_paths(job));
-  effort = measure_effort(job, settings, *this);
+  effort = choose_effort(job, measure_candidates(job, settings, *this));
 }
 
 VcmPass::VcmPass(const RenderJob& job_, std::uint32_t number_, const VcmSettings& settings_,

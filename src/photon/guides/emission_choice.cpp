@@ -37,7 +37,7 @@ Emission choose_emission(EmissionChoice choice, PhotonUse use, const RenderJob& 
       return {std::move(learned.guide),
               fmt::format("{} lands in view: photons start where light paths that do have been found "
                           "(--set emission=power: everywhere){}",
-                          share, is_beside ? "" : "; vcm needs fewer")};
+                          share, is_beside ? "" : "; auto needs fewer")};
     }
     case EmissionChoice::power:
       break;

@@ -1,0 +1,82 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// What the pilot of "auto" measures of all choices.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "camera/view.h"
+#include "integrators/vcm/moments.h"
+#include "path/eye_pass.h"
+
+namespace lanthorn {
+
+/// Numbers of light paths of a pass, over that of the settings.
+inline constexpr std::array light_path_choices{0.25f, 0.5f, 1.0f, 2.0f, 4.0f};
+
+/// Sums over the eye paths of a block of pixels.
+struct EffortBlock {
+  struct Moments {
+    double second = 0;                    ///< E[X²]
+    double of_eye_path = 0;               ///< E[E[X | eye path]²]
+    double square = 0;                    ///< E[X]² of the pixels: products of two passes
+    double squares = 0, all_squares = 0;  ///< as of PathMoments::Estimate
+
+    /// E[X²] of paths that the candidate finds too rarely to be seen here. Merges count with the densities of paths that are
+    /// displaced within the radius, which makes `all_squares` larger than `squares` where nothing is rare, too.
+    double rare() const { return std::max(0.0, all_squares - 3 * squares); }
+    double variance() const { return second + rare() - square; }
+  };
+  std::vector<Moments> moments;  ///< by candidate
+  double light = 0, from_light_paths = 0, caustic = 0;
+  double paths = 0, pixels = 0;
+  double rays = 0, next_events = 0, connections = 0, lookups = 0, merges = 0;
+};
+
+/// The pilot's pixels, one in each cell, and blocks of cells.
+class PilotGrid {
+ public:
+  static constexpr int most_cells = 96;      ///< along a side of the film
+  static constexpr int cells_per_block = 4;  ///< along a side of a block
+
+  explicit PilotGrid(const PixelWindow& window) : window_(window) {
+    const auto along = [](int pixels) { return std::max(1, std::min(most_cells, pixels) / cells_per_block); };
+    columns_ = along(window.width());
+    rows_ = along(window.height());
+  }
+  int columns() const { return columns_; }
+  int rows() const { return rows_; }
+  std::size_t block_count() const { return static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_); }
+  PixelWindow cells() const { return {0, 0, columns_ * cells_per_block, rows_ * cells_per_block}; }
+  /// The pixel in the middle of a cell.
+  PixelPlace pixel_of(const PixelPlace& cell) const {
+    const auto middle = [](int i, int pixels, int cells) { return (2 * i + 1) * pixels / (2 * cells); };
+    const int x = middle(cell.x, window_.width(), columns_ * cells_per_block);
+    const int y = middle(cell.y, window_.height(), rows_ * cells_per_block);
+    return {window_.x0 + x, window_.y0 + y, static_cast<std::uint32_t>(y * window_.width() + x)};
+  }
+  std::size_t block_of(int x, int y) const {
+    const int block = y / cells_per_block * columns_ + x / cells_per_block;
+    return static_cast<std::size_t>(block);
+  }
+
+ private:
+  PixelWindow window_;
+  int columns_, rows_;
+};
+
+struct EffortMeasurement {
+  explicit EffortMeasurement(const PixelWindow& window) : grid(window), blocks(grid.block_count()) {}
+
+  PilotGrid grid;
+  float scale = 1;  ///< of numbers of light paths: from those of the settings to those of the pilot
+  std::vector<EffortCandidate> candidates;  ///< path tracing first
+  std::vector<EffortBlock> blocks;
+  double light_rays = 0, light_vertices = 0, light_paths = 0;
+};
+
+}  // namespace lanthorn
