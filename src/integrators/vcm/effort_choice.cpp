@@ -45,10 +45,7 @@ PlaceEffort place_of(const EffortCandidate& c) {
 class EffortChoice {
  public:
   EffortChoice(const RenderJob& job, const EffortMeasurement& measured)
-      : job_(job),
-        m_(measured),
-        has_specular_(has_specular_surfaces(job.scene)),
-        ray_work_(work_of_ray(job.scene)) {
+      : job_(job), m_(measured), has_specular_(has_specular_surfaces(job.scene)), ray_work_(work_of_ray(job.scene)) {
     find_variances();
   }
 
@@ -124,8 +121,8 @@ double EffortChoice::variance_around(std::size_t b, std::size_t candidate) const
 }
 
 double EffortChoice::work_of_light(float light_paths) const {
-  const double of_path =
-      (work::light_ray * ray_work_ * m_.light_rays + work::light_vertex * m_.light_vertices) / std::max(1.0, m_.light_paths);
+  const double of_path = (work::light_ray * ray_work_ * m_.light_rays + work::light_vertex * m_.light_vertices) /
+                         std::max(1.0, m_.light_paths);
   const PixelWindow& window = job_.view.window;
   const double pixels = static_cast<double>(window.width()) * static_cast<double>(window.height());
   return static_cast<double>(light_paths) * static_cast<double>(job_.settings.photons) / pixels * of_path;
@@ -264,7 +261,8 @@ std::vector<CandidateEstimate> estimate_candidates(const RenderJob& job, const E
   for (std::size_t k = 0; k < measured.candidates.size(); ++k) {
     EffortCandidate candidate = measured.candidates[k];
     candidate.light_paths /= measured.scale;
-    CandidateEstimate& e = result.emplace_back(CandidateEstimate{candidate, 0, choice.work_of_light(candidate.light_paths)});
+    CandidateEstimate& e =
+        result.emplace_back(CandidateEstimate{candidate, 0, choice.work_of_light(candidate.light_paths)});
     for (const EffortBlock& block : measured.blocks) {
       e.variance += block.moments[k].variance() / block.paths / count;
       e.work += choice.work_of(block, measured.candidates[k]) / count;

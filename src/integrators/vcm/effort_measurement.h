@@ -26,8 +26,9 @@ struct EffortBlock {
     double square = 0;                    ///< E[X]² of the pixels: products of two passes
     double squares = 0, all_squares = 0;  ///< as of PathMoments::Estimate
 
-    /// E[X²] of paths that the candidate finds too rarely to be seen here. Merges count with the densities of paths that are
-    /// displaced within the radius, which makes `all_squares` larger than `squares` where nothing is rare, too.
+    /// E[X²] of paths that the candidate finds too rarely to be seen here. Merges count with the densities of paths
+    /// that are displaced within the radius, which makes `all_squares` larger than `squares` where nothing is rare,
+    /// too.
     double rare() const { return std::max(0.0, all_squares - 3 * squares); }
     double variance() const { return second + rare() - square; }
   };
