@@ -14,25 +14,26 @@
 namespace lanthorn::hidden_caustics_test {
 namespace {
 
-const std::string film =
-    "Film \"rgb\" \"integer xresolution\" 48 \"integer yresolution\" 36\nPixelFilter \"box\"\n";
+const std::string film = "Film \"rgb\" \"integer xresolution\" 48 \"integer yresolution\" 36\nPixelFilter \"box\"\n";
 const std::string grey = "Material \"diffuse\" \"rgb reflectance\" [.6 .6 .6]\n";
 
 std::string glass_ball(const std::string& at, float radius) {
-  return fmt::format("AttributeBegin\nMaterial \"dielectric\"\nTranslate {}\nShape \"sphere\" \"float radius\" {}\nAttributeEnd\n",
-                     at, radius);
+  return fmt::format(
+      "AttributeBegin\nMaterial \"dielectric\"\nTranslate {}\nShape \"sphere\" \"float radius\" {}\nAttributeEnd\n", at,
+      radius);
 }
 
 std::string spot(const std::string& from, const std::string& to, float intensity, float angle) {
-  return fmt::format("LightSource \"spot\" \"rgb I\" [{0} {0} {0}] \"point3 from\" [{1}] \"point3 to\" [{2}] "
-                     "\"float coneangle\" {3} \"float conedeltaangle\" 1\n",
-                     intensity, from, to, angle);
+  return fmt::format(
+      "LightSource \"spot\" \"rgb I\" [{0} {0} {0}] \"point3 from\" [{1}] \"point3 to\" [{2}] "
+      "\"float coneangle\" {3} \"float conedeltaangle\" 1\n",
+      intensity, from, to, angle);
 }
 
 // Three spots, each above a glass ball, behind a black wall from 47 others, which no ball sees.
 std::string fifty_lamps(float strength) {
-  std::string text = film + "LookAt 0 -4 5  0 0 0  0 0 1\nCamera \"perspective\" \"float fov\" 40\nWorldBegin\n" + grey +
-                     test::quad("-2 -2 0  2 -2 0  2 2 0  -2 2 0") +
+  std::string text = film + "LookAt 0 -4 5  0 0 0  0 0 1\nCamera \"perspective\" \"float fov\" 40\nWorldBegin\n" +
+                     grey + test::quad("-2 -2 0  2 -2 0  2 2 0  -2 2 0") +
                      "Material \"diffuse\" \"rgb reflectance\" [0 0 0]\n" + test::quad("0 -2 0  0 2 0  0 2 2  0 -2 2");
   for (const float y : {-1.0f, 0.0f, 1.0f}) {
     text += glass_ball(fmt::format("1 {} .3", y), 0.15f);
@@ -58,17 +59,18 @@ const std::string sunlit_room =
     "Shape \"sphere\" \"float radius\" .03\nAttributeEnd\n";
 
 // A spot lights the floor by two mirrors alone, at (1.5, 0, 0); a wall keeps its direct light off.
-const std::string two_mirrors =
-    film + "LookAt 0 -4 4  .5 0 0  0 0 1\nCamera \"perspective\" \"float fov\" 45\nWorldBegin\n" + grey +
-    test::quad("-3 -2 0  3 -2 0  3 2 0  -3 2 0") + spot("-1 0 .4", "-1 0 2", 20, 8) + spot("2 1 3", "-1 1 0", 20, 40) +
-    "Material \"conductor\" \"float roughness\" 0\n" + test::quad("-1.3 -.3 1.7  -.7 -.3 2.3  -.7 .3 2.3  -1.3 .3 1.7") +
-    test::quad("1.2 -.3 2.3  1.8 -.3 1.7  1.8 .3 1.7  1.2 .3 2.3");
+const std::string two_mirrors = film +
+                                "LookAt 0 -4 4  .5 0 0  0 0 1\nCamera \"perspective\" \"float fov\" 45\nWorldBegin\n" +
+                                grey + test::quad("-3 -2 0  3 -2 0  3 2 0  -3 2 0") + spot("-1 0 .4", "-1 0 2", 20, 8) +
+                                spot("2 1 3", "-1 1 0", 20, 40) + "Material \"conductor\" \"float roughness\" 0\n" +
+                                test::quad("-1.3 -.3 1.7  -.7 -.3 2.3  -.7 .3 2.3  -1.3 .3 1.7") +
+                                test::quad("1.2 -.3 2.3  1.8 -.3 1.7  1.8 .3 1.7  1.2 .3 2.3");
 
 // A glass ball focuses a spot in a block of fog.
 const std::string fog =
-    "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_s\" [.1 .1 .1] \"rgb sigma_a\" [.1 .1 .1]\n" + film +
-    "LookAt 0 -4 1  0 0 1  0 0 1\nCamera \"perspective\" \"float fov\" 40\nWorldBegin\n" + spot("0 0 3", "0 0 0", 10, 10) +
-    glass_ball("0 0 2.2", 0.25f) +
+    "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_s\" [.1 .1 .1] \"rgb sigma_a\" [.1 .1 .1]\n" +
+    film + "LookAt 0 -4 1  0 0 1  0 0 1\nCamera \"perspective\" \"float fov\" 40\nWorldBegin\n" +
+    spot("0 0 3", "0 0 0", 10, 10) + glass_ball("0 0 2.2", 0.25f) +
     "AttributeBegin\nMediumInterface \"fog\" \"\"\nMaterial \"interface\"\nTranslate 0 0 1\n"
     "Shape \"sphere\" \"float radius\" .9\nAttributeEnd\n" +
     grey + test::quad("-2 -2 0  2 -2 0  2 2 0  -2 2 0");
