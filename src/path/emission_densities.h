@@ -13,10 +13,10 @@ namespace lanthorn {
 
 /// How densely light paths start where, as the weights of bidirectional methods see it.
 ///
-/// Where a guide makes light paths denser, that counts for all but direct light: paths from a light by one surface to
-/// the lens. Next-event estimation finds direct light with little noise, however many light paths arrive on the
-/// surface; the balance heuristic, which knows densities alone, would prefer the light paths. Where a guide makes light
-/// paths sparser, that always counts. Weights only have to be the same function of the path for all techniques.
+/// Where a guide makes light paths denser, that counts only for those whose first scattering is by a delta lobe. Other
+/// surfaces that the light meets first are lit by next-event estimation with little noise, however many light paths
+/// arrive there; the balance heuristic, which knows densities alone, would prefer the light paths. Where a guide makes
+/// light paths sparser, that always counts. Weights only have to be the same function of the path for all techniques.
 class EmissionDensities {
  public:
   /// `guide` of the light paths, null if they have none; must outlive this.
@@ -25,12 +25,12 @@ class EmissionDensities {
   /// Probability with which a light path begins on each light, as in PhotonAllocation.
   const std::vector<float>& of_lights() const { return of_lights_; }
   /// Factor that makes `pdf_emission` the density of light paths. `origin`: where the ray starts; of far lights any
-  /// point of it.
-  float factor(std::uint32_t light, const EmitterHit& origin, const Direction& direction, bool is_direct) const {
+  /// point of it. `to_delta`: of paths whose first scattering is by a delta lobe.
+  float factor(std::uint32_t light, const EmitterHit& origin, const Direction& direction, bool to_delta) const {
     const float p = of_lights_[light];
     if (guide_ == nullptr) return p;
     const float guided = guided_density(*guide_, scene_.lights()[light], light, origin, direction);
-    return p * (is_direct ? std::min(1.0f, guided) : guided);
+    return p * (to_delta ? guided : std::min(1.0f, guided));
   }
 
  private:

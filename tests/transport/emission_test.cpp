@@ -171,8 +171,8 @@ TEST(LearnedEmission, IsKnownToWeights) {
   EXPECT_TRUE(test::runs_agree(test::mean_of_means(caustics_of(scene, "vcm", true, 24)), 0.01496, 0.05, 0.6));
 }
 
-// Photons are dense around the ball, but next-event estimation finds the direct light there with less noise. Without
-// the exception that weights make for direct light it has thirteen times the variance.
+// Photons are dense around the ball, but next-event estimation finds the direct light there with less noise. With
+// weights that count all photons it has thirteen times the variance.
 TEST(LearnedEmission, LeavesDirectLightToNextEventEstimation) {
   const Scene scene = test::scene_from_text(view_of_the_ball + corner_of_a_plain(far_lamp));
   const std::vector<Image> guided = layers_of(scene, "direct", "vcm", true, 16),
