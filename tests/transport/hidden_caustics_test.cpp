@@ -58,7 +58,7 @@ const std::string sunlit_room =
     "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [20 15 8]\nTranslate -.5 1.2 .45\n"
     "Shape \"sphere\" \"float radius\" .03\nAttributeEnd\n";
 
-// A spot lights the floor by two mirrors alone, at (1.5, 0, 0); a wall keeps its direct light off.
+// A spot that shines upwards lights the floor by two mirrors alone, at (1.5, 0, 0). Another spot lights it directly.
 const std::string two_mirrors = film +
                                 "LookAt 0 -4 4  .5 0 0  0 0 1\nCamera \"perspective\" \"float fov\" 45\nWorldBegin\n" +
                                 grey + test::quad("-3 -2 0  3 -2 0  3 2 0  -3 2 0") + spot("-1 0 .4", "-1 0 2", 20, 8) +
@@ -78,7 +78,7 @@ const std::string fog =
 struct Case {
   const char* name;
   std::string scene;
-  double caustic;  ///< mean of the picture, by four runs of vcm of 150 passes with 20 000 light paths
+  double caustic;  ///< mean of the layer, by four runs of vcm of 150 passes, 20 000 light paths and a learned guide
 };
 
 const std::vector<Case> cases{{"fifty_lamps", fifty_lamps(1), 3.377e-4},
