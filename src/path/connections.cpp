@@ -92,6 +92,13 @@ LightVertex keep_at(const SurfacePoint& at, const Direction& wi, const Vec3& wi_
           state.dispersed};
 }
 
+// Normal by which next-event estimation chooses a light for the vertex; 0 in media and on hair.
+Normal receiving_normal(const SurfaceVertex& v) { return receiver_normal(v.at); }
+Normal receiving_normal(const MediumVertex&) { return Normal(0); }
+
+// Direct light on surfaces, the light that `EmissionDensities` treats apart: one scattering, at such a receiver.
+bool is_direct(int scatterings, const Normal& receiver) { return scatterings == 1 && receiver != Normal(0); }
+
 template <class Vertex>
 float weight_of(const PathContext& path, const Bidirectional& pass, const Vertex& v, const NextEvent& event,
                 const Subpath& subpath) {
@@ -106,7 +113,7 @@ float weight_of(const PathContext& path, const Bidirectional& pass, const Vertex
   // Next-event estimation always chooses the position of a point light: density 1, which is distance² per solid angle.
   const float pdf = event.pmf * l.pdf * (on_surface || far ? 1.0f : sqr(l.distance));
   const float cos_light = on_surface ? std::fabs(dot(l.normal, l.wi)) : 1.0f;
-  const float chosen = pass.emission.factor(event.light, origin, -l.wi, false);
+  const float chosen = pass.emission.factor(event.light, origin, -l.wi, is_direct(v.state.depth, receiving_normal(v)));
   const float pdf_walk = l.delta ? 0.0f : event.pdf_walk * passes;
   const float density = at.density(passes);
   const float arrival = chosen * emission.position * emission.direction * density / (pdf * cos_light);
@@ -120,6 +127,7 @@ struct LightHit {
   std::uint32_t index;
   EmitterHit at;     // of lights without surface any point of the ray
   Direction to_eye;  // back along the walk's ray
+  int scatterings;   // of the walk before
 };
 
 float weight_of_hit(const PathContext& path, const Bidirectional& pass, const WalkState& state, const Subpath& subpath,
@@ -129,7 +137,8 @@ float weight_of_hit(const PathContext& path, const Bidirectional& pass, const Wa
   if (has_surface(light))
     direct = direct * std::fabs(dot(hit.at.normal, hit.to_eye)) / distance_squared(hit.at.position, state.previous);
   const EmissionPdf emission = pdf_emission(light, hit.at, hit.to_eye);
-  const float factor = pass.emission.factor(hit.index, hit.at, hit.to_eye, state.last_delta);
+  const bool direct_light = !state.last_delta && is_direct(hit.scatterings, state.previous_normal);
+  const float factor = pass.emission.factor(hit.index, hit.at, hit.to_eye, direct_light);
   return pass.weigh(
       sum_of_hit(subpath.densities(), direct, factor * emission.position * emission.direction, pass.techniques));
 }
@@ -186,8 +195,10 @@ float weight_of_lens(const Bidirectional& pass, const Vertex& v, const Subpath& 
   const Arrival at = arrival(pass, v, -seen.from_lens.direction, subpath.flight(), Transport::importance);
   const float passes = FlightDensity::passing(seen.optical_depth);
   const float density = pass.view.camera.density_at(seen.from_lens, seen.distance) * at.density(passes);
+  const SubpathDensities densities =
+      is_direct(v.state.depth, receiving_normal(v)) ? subpath.densities_of_direct_light() : subpath.densities();
   return pass.weigh(
-      sum_of_lens({end_of_light_path(subpath.densities(), at.reverse, subpath.coherence_beyond()), density,
+      sum_of_lens({end_of_light_path(densities, at.reverse, subpath.coherence_beyond()), density,
                    v.state.depth == 1 ? 0.0f : at.merging, at.volume_merging(t.volume.reversed(), passes, 1)},
                   t));
 }
@@ -227,7 +238,8 @@ Spectrum hit_emitter(const PathContext& path, const Bidirectional& pass, const S
   const Spectrum radiance = emitted(light, at, v.wi, path.w);
   if (radiance.is_black()) return {};
   if (v.state.depth == 1) return v.state.beta * radiance;
-  return v.state.beta * radiance * weight_of_hit(path, pass, v.state, subpath, {*v.at.light, at, v.wi});
+  return v.state.beta * radiance *
+         weight_of_hit(path, pass, v.state, subpath, {*v.at.light, at, v.wi, v.state.depth - 1});
 }
 
 Spectrum hit_environment(const PathContext& path, const Bidirectional& pass, const EscapeVertex& v,
@@ -237,7 +249,7 @@ Spectrum hit_environment(const PathContext& path, const Bidirectional& pass, con
     const Light& light = path.scene.lights()[index];
     const Spectrum radiance = emitted_infinite(light, v.state.previous, v.direction, path.w);
     if (radiance.is_black()) continue;
-    const LightHit hit{index, {v.state.previous, Normal(0), Vec2(0)}, -v.direction};
+    const LightHit hit{index, {v.state.previous, Normal(0), Vec2(0)}, -v.direction, v.state.depth};
     const float weight = v.state.depth > 0 ? weight_of_hit(path, pass, v.state, subpath, hit) : 1.0f;
     sum += v.state.beta * radiance * weight;
   }
@@ -249,7 +261,7 @@ Spectrum hit_glow(const PathContext& path, const Bidirectional& pass, const Emis
   const std::optional<std::uint32_t> index = path.scene.volume_light(state.medium);
   if (!index || state.depth == 0) return state.beta * v.radiance;
   subpath.escape(state, v.direction, false);
-  const LightHit hit{*index, {state.previous, Normal(0), Vec2(0)}, -v.direction};
+  const LightHit hit{*index, {state.previous, Normal(0), Vec2(0)}, -v.direction, state.depth};
   return state.beta * v.radiance * weight_of_hit(path, pass, state, subpath, hit);
 }
 

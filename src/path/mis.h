@@ -184,7 +184,10 @@ struct SubpathDensities : VertexDensities {
     return result;
   }
   /// Makes the start of a light path that has come to its first vertex `ratio` times as dense.
-  void start_denser(float ratio) { ends /= ratio; }
+  void start_denser(float ratio) {
+    end /= ratio;
+    ends /= ratio;
+  }
 
   /// The step over a vertex: towards the next one, before its geometry (TR eqs. 34-36, numerators).
   void scatter(const Scattering& s, bool connects = true) {

@@ -107,7 +107,7 @@ void Subpath::depart(const WalkState& state, const Direction& direction) {
   const bool in_medium = !previous_.surface;
   const float cos = in_medium ? 1.0f : geometric_cosine(*previous_.surface, direction);
   departure_.over_pass = 0;
-  if (state.last_delta) return depart_by_delta(cos);
+  if (state.last_delta) return departure_.densities.scatter_delta(cos);
   float merging = 0;
   if (in_medium && techniques_.volume.is_used()) {
     const VolumeMerging seen = start_.is_eye() ? techniques_.volume : techniques_.volume.reversed();
@@ -133,12 +133,10 @@ float Subpath::reverse_density(const WalkState& state, const Direction& directio
                      start_.is_eye() ? Transport::radiance : Transport::importance);
 }
 
-void Subpath::depart_by_delta(float cos) {
-  SubpathDensities& densities = departure_.densities;
-  densities.scatter_delta(cos);
-  if (start_.is_eye() || !previous_.is_first) return;
-  // The start of such a light path has another density, over which all sums are.
-  densities.start_denser(density_of_start(start_.light, start_.emission, true) / start_.density_factor);
+SubpathDensities Subpath::densities_of_direct_light() const {
+  SubpathDensities result = departure_.densities;
+  result.start_denser(density_of_start(start_.light, start_.emission, true) / start_.density_factor);
+  return result;
 }
 
 const Departure& Subpath::depart(const FlownSegment& flight) {
@@ -175,19 +173,13 @@ void Subpath::arrive(const PathContext& path, const SurfaceVertex& v) {
   const bool merges = merges_at(v.at) && !(is_direct && techniques_.connects);
   const float cos = geometric_cosine(v.at, v.wi);
   arrive_at(path.scene, v.state, {v.at.position, receiver_normal(v.at), v.at.time, cos, 1, merges}, v.wi);
-  previous_ = {v.at,
-               v.wi_local,
-               {},
-               merges,
-               techniques_.volume.is_used() ? lanthorn::coherence(v.at.bsdf) : 1.0f,
-               v.state.depth == 1};
+  previous_ = {v.at, v.wi_local, {}, merges, techniques_.volume.is_used() ? lanthorn::coherence(v.at.bsdf) : 1.0f};
 }
 
 void Subpath::arrive(const PathContext& path, const MediumVertex& v) {
   const float collision = collision_density(path.scene.medium(v.state.medium), v.position, path.w);
   arrive_at(path.scene, v.state, {v.position, Normal(0), v.time, 1, collision, false}, v.wi);
-  previous_ = {
-      {}, Vec3(0), v.wi, false, techniques_.volume.is_used() ? lanthorn::coherence(v.phase) : 1.0f, v.state.depth == 1};
+  previous_ = {{}, Vec3(0), v.wi, false, techniques_.volume.is_used() ? lanthorn::coherence(v.phase) : 1.0f};
 }
 
 void Subpath::escape(const WalkState& state, const Direction& direction, bool flies) {

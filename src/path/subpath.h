@@ -31,7 +31,7 @@ struct PathStart {
   const Camera* camera = nullptr;  ///< null for light paths
   std::uint32_t light = 0;         ///< index of the light
   EmissionSample emission{};
-  float density_factor = 0;  ///< of light paths (`EmissionDensities::factor`), unless they meet a delta lobe first
+  float density_factor = 0;  ///< of light paths (`EmissionDensities::factor`)
 
   bool is_eye() const { return camera != nullptr; }
 };
@@ -88,6 +88,8 @@ class Subpath {
   const Departure& departure() const { return departure_; }
   /// Densities at the last vertex.
   const SubpathDensities& densities() const { return departure_.densities; }
+  /// The same at the first vertex of a light path, if the light is direct.
+  SubpathDensities densities_of_direct_light() const;
   /// Of the flight to the last vertex.
   const FlightDensity& flight() const { return flight_; }
   /// Of an eye path: share of merging in media that counts at the last vertex, or on the flight after `depart`.
@@ -106,11 +108,10 @@ class Subpath {
   };
   void arrive_at(const Scene& scene, const WalkState& state, const Position& at, const Direction& wi);
   void depart(const WalkState& state, const Direction& direction);
-  float density_of_start(std::uint32_t light, const EmissionSample& emission, bool to_delta) const {
+  float density_of_start(std::uint32_t light, const EmissionSample& emission, bool is_direct) const {
     return emission_densities_->factor(light, {emission.origin, emission.normal, Vec2(0)}, emission.direction,
-                                       to_delta);
+                                       is_direct);
   }
-  void depart_by_delta(float cos);
   /// Density per solid angle with which the other kind of walk, coming from `direction`, would go on to the vertex
   /// before the last one.
   float reverse_density(const WalkState& state, const Direction& direction) const;
@@ -122,7 +123,6 @@ class Subpath {
     Direction wi{0, 0, 1};  // in a medium
     bool merges = false;
     float coherence = 1;  // 1 without merging in media
-    bool is_first = false;
   };
 
   Techniques techniques_;

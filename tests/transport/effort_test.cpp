@@ -120,6 +120,34 @@ TEST(Effort, OfAPlainUnderTheSkyIsPathTracing) {
   EXPECT_EQ(select_layer(own, "color")->pixels, select_layer(path, "color")->pixels);
 }
 
+// A room of 4 m with a window of 40 cm, in the sun. All its light comes by a small patch on the floor.
+const std::string room_in_the_sun = R"(
+Film "rgb" "integer xresolution" 48 "integer yresolution" 36
+LookAt 0 -1.8 1  0 2 1.6  0 0 1
+Camera "perspective" "float fov" 60
+WorldBegin
+LightSource "distant" "point3 from" [3 0 3] "point3 to" [0 0 0] "rgb L" [20 20 20]
+Material "diffuse" "rgb reflectance" [.7 .7 .7]
+Shape "bilinearmesh" "point3 P" [-2 -2 0  2 -2 0  -2 2 0  2 2 0]
+Shape "bilinearmesh" "point3 P" [-2 -2 2  -2 2 2  2 -2 2  2 2 2]
+Shape "bilinearmesh" "point3 P" [-2 2 0  2 2 0  -2 2 2  2 2 2]
+Shape "bilinearmesh" "point3 P" [-2 -2 0  -2 -2 2  2 -2 0  2 -2 2]
+Shape "bilinearmesh" "point3 P" [-2 -2 0  -2 2 0  -2 -2 2  -2 2 2]
+Shape "bilinearmesh" "point3 P" [2 -2 0  2 -2 2  2 -.2 0  2 -.2 2]
+Shape "bilinearmesh" "point3 P" [2 .2 0  2 .2 2  2 2 0  2 2 2]
+Shape "bilinearmesh" "point3 P" [2 -.2 0  2 -.2 1.2  2 .2 0  2 .2 1.2]
+Shape "bilinearmesh" "point3 P" [2 -.2 1.6  2 -.2 2  2 .2 1.6  2 .2 2]
+Shape "bilinearmesh" "point3 P" [-200 -200 -.01  200 -200 -.01  -200 200 -.01  200 200 -.01]
+)";
+
+// Photons must be aimed at the window, and weights must know that: path tracing has a noise of .90, aimed photons with
+// the weights of others .89, and with their own .45.
+TEST(Effort, FindsSunlightThroughAWindow) {
+  const Scene scene = test::scene_from_text(room_in_the_sun);
+  EXPECT_GT(effort_of(scene).light_paths(), 0u);
+  EXPECT_LT(estimate_error(test::render_state(scene, test::options_for("auto", 16, 1))).noise, 0.6);
+}
+
 // A glass ball far too small for the pilot: its caustic must not get lost.
 TEST(Effort, MergesEverywhereWhereThereIsGlass) {
   const Scene scene = test::scene_from_text(plain + R"(

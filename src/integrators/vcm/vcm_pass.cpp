@@ -13,7 +13,7 @@
 namespace lanthorn {
 
 VcmPreparation::VcmPreparation(const RenderJob& job, const VcmSettings& settings)
-    : emission(settings.switches.merging ? choose_emission(settings.emission, settings.photon_use(), job) : Emission()),
+    : emission(settings.switches.merging ? choose_emission(settings.emission, PhotonUse::merging, job) : Emission()),
       densities(job.scene, emission.starts()),
       effort(job.settings.photons) {
   if (!settings.switches.merging) return;

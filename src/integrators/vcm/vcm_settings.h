@@ -54,9 +54,6 @@ struct VcmSettings {
   FilmContents film_contents(const Scene& scene) const;
   std::string limitation(const Scene& scene) const;
   MemoryUse memory_use() const;
-  PhotonUse photon_use() const {
-    return switches.connections && !chooses_effort ? PhotonUse::beside_connections : PhotonUse::merging;
-  }
   bool merges_in_media() const {
     return std::any_of(volume.begin(), volume.end(), [](bool used) { return used; });
   }

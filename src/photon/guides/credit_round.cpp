@@ -70,12 +70,12 @@ CreditRound trace_round(const RenderJob& job, std::uint32_t number, const LightG
   return all;
 }
 
-LearnedEmission::Shares give_credit(CreditRound& round, std::span<const HitPoint> hits, PhotonUse use) {
+double give_credit(CreditRound& round, std::span<const HitPoint> hits, PhotonUse use) {
   std::vector<Point> positions(round.photons.size());
   std::transform(round.photons.begin(), round.photons.end(), positions.begin(),
                  [](const PilotPhoton& p) { return p.position; });
   const IndexBuild<BucketKdTree> built = BucketKdTree::build(positions);
-  LearnedEmission::Shares shares;
+  double shares = 0;
   // Serial, because several hit points add to the same paths.
   for (const HitPoint& hit : hits) {
     const auto for_each_counted = [&](auto&& visit) {
@@ -84,20 +84,15 @@ LearnedEmission::Shares give_credit(CreditRound& round, std::span<const HitPoint
         if (counts_at(photon, hit, use)) visit(photon);
       });
     };
-    float total = 0, caustic = 0;
-    for_each_counted([&](const PilotPhoton& photon) {
-      total += photon.flux;
-      if (photon.caustic) caustic += photon.flux;
-    });
+    float total = 0;
+    for_each_counted([&](const PilotPhoton& photon) { total += photon.flux; });
     if (!(total > 0)) continue;
-    shares.all += static_cast<double>(hit.share_of(total));
-    shares.caustic += static_cast<double>(hit.share_of(total) * caustic / total);
+    shares += static_cast<double>(hit.share_of(total));
     const float credit_of_flux = hit.share_of(total) / total;
     for_each_counted(
         [&](const PilotPhoton& photon) { round.starts[photon.path].credit += photon.flux * credit_of_flux; });
   }
-  const auto count = static_cast<double>(std::max<std::size_t>(1, hits.size()));
-  return {shares.all / count, shares.caustic / count};
+  return shares / static_cast<double>(std::max<std::size_t>(1, hits.size()));
 }
 
 }  // namespace lanthorn

@@ -51,7 +51,7 @@ CreditRound trace_round(const RenderJob& job, std::uint32_t number, const LightG
                         const PassDraw& draw);
 
 /// Lets each hit point distribute a credit among the starts of the photons around it, in proportion to their flux: the
-/// share of the pixel's light that photons contribute. Returns the means of these shares.
-LearnedEmission::Shares give_credit(CreditRound& round, std::span<const HitPoint> hits, PhotonUse use);
+/// share of the pixel's light that photons contribute. Returns the mean of these shares.
+double give_credit(CreditRound& round, std::span<const HitPoint> hits, PhotonUse use);
 
 }  // namespace lanthorn

@@ -31,13 +31,12 @@ Emission choose_emission(EmissionChoice choice, PhotonUse use, const RenderJob& 
       if (in_view >= few) break;
       constexpr double unimportant = 0.025;
       LearnedEmission learned = learn_emission(job, use, in_media);
-      const bool is_beside = use == PhotonUse::beside_connections;
-      if ((is_beside ? learned.shares.caustic : learned.shares.all) < unimportant) break;
+      if (learned.share < unimportant) break;
       const std::string share = in_view > 1e-6 ? fmt::format("one photon in {:.0f}", 1 / in_view) : "almost no photon";
       return {std::move(learned.guide),
               fmt::format("{} lands in view: photons start where light paths that do have been found "
                           "(--set emission=power: everywhere){}",
-                          share, is_beside ? "" : "; auto needs fewer")};
+                          share, use == PhotonUse::merging ? "" : "; auto needs fewer")};
     }
     case EmissionChoice::power:
       break;

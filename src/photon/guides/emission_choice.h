@@ -35,8 +35,6 @@ EmissionChoice emission_choice(const Parameters& parameters);
 enum class PhotonUse : std::uint8_t {
   indirect,  ///< indirect light at visible surfaces; direct light is found by other techniques
   merging,   ///< as `indirect`; weights need the densities of light paths, whose directions are not guided, therefore
-  /// As `merging`, beside connections, which find all but caustics as well: only these are worth a guide.
-  beside_connections,
   caustics,  ///< caustics alone at visible surfaces
   gathering  ///< as `indirect`, and all light at the ends of gather rays
 };

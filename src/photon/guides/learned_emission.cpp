@@ -116,7 +116,7 @@ LearnedEmission learn_emission(const RenderJob& job, PhotonUse use, bool in_medi
   LearnedEmission learned;
   for (std::uint32_t number = 0; number < rounds; ++number) {
     if (number > 0) round = trace_round(job, number + 1, guide, in_media, draw);
-    learned.shares = give_credit(round, hits, use);
+    learned.share = give_credit(round, hits, use);
     std::copy_if(round.starts.begin(), round.starts.end(), std::back_inserter(known),
                  [](const CreditedStart& start) { return start.credit > 0; });
     credit_seeds(seeds, known);

@@ -10,13 +10,8 @@ namespace lanthorn {
 
 /// A learned guide, and what photons are good for here.
 struct LearnedEmission {
-  /// Of the light at the visible surfaces, means over the full film: what such photons contribute.
-  struct Shares {
-    double all = 0;
-    double caustic = 0;  ///< by mirrors and clear glass alone
-  };
   std::optional<LightGuide> guide{};  ///< empty where there is nothing to learn
-  Shares shares{};
+  double share = 0;  ///< of the light at the visible surfaces that photons contribute, mean over the full film
 };
 
 /// Learns where photons start that contribute to the picture (after Hachisuka & Jensen 2011, "Robust Adaptive Photon
