@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <cstdio>
 #include <map>
 #include <string>
 #include <vector>
@@ -108,6 +109,55 @@ TEST_P(BiasOf, AMethodIsKnown) {
   EXPECT_NEAR(said / true_bias, 1, 0.3);
 }
 INSTANTIATE_TEST_SUITE_P(Methods, BiasOf, testing::Values("vcm", "probppm", "sppm"));
+
+// Renders that end when they say that their error is below a bound, compared with a far better picture. A promise of
+// 90 % must be kept about as often, over scenes and methods of different kinds.
+class Promise : public testing::TestWithParam<double> {};
+
+RenderState render_to(const Scene& scene, const std::string& method, double noise, std::uint64_t seed) {
+  constexpr std::uint64_t most_passes = 1 << 14;
+  RenderOptions options = options_of(method, most_passes, seed);
+  options.noise = noise;
+  return test::render_state(scene, options);
+}
+
+TEST_P(Promise, IsKept) {
+  struct Kind {
+    const char* scene;
+    std::vector<const char*> methods;
+  };
+  const std::vector<Kind> kinds{{"cornell-diffuse", {"auto", "path", "bdpt", "vcm", "probppm"}},
+                                {"glossy", {"auto", "path", "vcm", "sppm"}},
+                                {"cornell-caustics", {"auto", "vcm", "probppm", "sppm"}},
+                                {"ring", {"auto", "vcm", "probppm"}},
+                                {"lamp-in-glass", {"auto", "vcm", "probppm"}},
+                                {"ball-in-fog", {"auto", "vcm"}}};
+  constexpr unsigned runs = 10, seed_of_truth = 1000;
+  int kept = 0, all = 0;
+  for (const Kind& kind : kinds) {
+    const Scene scene(read_scene(std::string(LANTHORN_SOURCE_DIR "/scenes/") + kind.scene + ".pbrt"));
+    const RenderState best = render_to(scene, "vcm", GetParam() / 4, seed_of_truth);
+    const Image truth = *select_layer(picture_of(best), "color");
+    const double own = measure_error(best).estimate.error;
+    for (const char* const method : kind.methods) {
+      int kept_by_method = 0;
+      for (unsigned seed = 0; seed < runs; ++seed) {
+        const RenderState state = render_to(scene, method, GetParam(), seed);
+        ASSERT_TRUE(measure_error(state).estimate.is_below(GetParam())) << kind.scene << " by " << method;
+        const Image color = *select_layer(picture_of(state), "color");
+        const double error = Runs::relative(truth, [&](std::size_t i) {
+          return std::pow(static_cast<double>(color.pixels[i]) - static_cast<double>(truth.pixels[i]), 2);
+        });
+        kept_by_method += error * error - own * own < GetParam() * GetParam() ? 1 : 0;
+      }
+      std::printf("%s by %s: %d of %u\n", kind.scene, method, kept_by_method, runs);
+      kept += kept_by_method;
+      all += static_cast<int>(runs);
+    }
+  }
+  EXPECT_GE(kept, 0.85 * all) << "of " << all;
+}
+INSTANTIATE_TEST_SUITE_P(Nightly, Promise, testing::Values(0.1));
 
 }  // namespace
 }  // namespace lanthorn::error_estimate_test
