@@ -85,17 +85,19 @@ void print_efforts(const StateSummary& state) {
   const auto findings = settings.find("findings");
   if (findings == settings.end()) return;
   const double variance = findings->at("variance").get<double>(), work = findings->at("work").get<double>();
-  say("light paths  connections  merged      variance   work   product\n");
+  say("light paths  connections  lens  merged      variance   work   product\n");
   const auto row = [&](const nlohmann::json& choice, const std::string& techniques) {
     const double v = choice.at("variance").get<double>() / variance, w = choice.at("work").get<double>() / work;
-    say("{:11.3g}  {:23}  {:8.3g}  {:5.3g}  {:8.3g}\n", choice.at("light_paths_per_pixel").get<double>(), techniques, v,
+    say("{:11.3g}  {:29}  {:8.3g}  {:5.3g}  {:8.3g}\n", choice.at("light_paths_per_pixel").get<double>(), techniques, v,
         w, v * w);
   };
   row(*findings, "as it pays");
   for (const nlohmann::json& choice : findings->at("everywhere")) {
     const bool surfaces = choice.at("merges").get<bool>(), media = choice.at("merges_in_media").get<bool>();
     const char* merged = surfaces ? (media ? "all" : "surfaces") : (media ? "media" : "-");
-    row(choice, fmt::format("{:11}  {}", choice.at("connections").get<int>(), merged));
+    // States of before this choice existed do not have it.
+    const char* lens = choice.at("light_paths_per_pixel") > 0 && choice.value("connects_to_lens", true) ? "yes" : "-";
+    row(choice, fmt::format("{:11}  {:4}  {}", choice.at("connections").get<int>(), lens, merged));
   }
 }
 

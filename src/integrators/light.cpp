@@ -32,7 +32,10 @@ struct SplatVisitor {
  private:
   template <class Vertex>
   void connect(const Vertex& vertex) {
-    if (const auto seen = connect_to_lens(path, view, vertex, &film))
+    const auto lens = find_lens(path, view, vertex);
+    if (!lens) return;
+    film.prefetch_splats(view.window.pixel_at(lens->raster));
+    if (const auto seen = connect_to_lens(path, view, vertex, *lens))
       splat(film, view, path.w, *seen, layers_of_splat(vertex), 1);
   }
 };

@@ -65,6 +65,9 @@ class MaterialTable {
   bool may_be_specular() const {
     return std::any_of(materials_.begin(), materials_.end(), [](const auto& m) { return m.traits.may_be_specular; });
   }
+  bool has_fibres() const {
+    return std::any_of(materials_.begin(), materials_.end(), [](const auto& m) { return m.traits.is_hair; });
+  }
   std::size_t size() const { return materials_.size(); }
 
  private:

@@ -11,12 +11,10 @@ namespace lanthorn {
 
 namespace {
 
-std::optional<CameraConnection> see_lens(const PathContext& path, const View& view, const WalkState& state,
-                                         const Point& from, float time, const Film* film) {
+std::optional<CameraConnection> find_lens_from(const PathContext& path, const View& view, const WalkState& state,
+                                               const Point& from, float time) {
   path.sampler.seek(visitor_dimensions(state.depth));
-  const std::optional<CameraConnection> lens = view.camera.connect(from, path.sampler.next2(), time);
-  if (lens && film != nullptr) film->prefetch_splats(view.window.pixel_at(lens->raster));
-  return lens;
+  return view.camera.connect(from, path.sampler.next2(), time);
 }
 
 // `value`: flux times scattering towards the lens.
@@ -36,25 +34,29 @@ std::optional<LensLight> finish(const PathContext& path, const View& view, const
 
 }  // namespace
 
+std::optional<CameraConnection> find_lens(const PathContext& path, const View& view, const SurfaceVertex& vertex) {
+  return find_lens_from(path, view, vertex.state, vertex.at.position, vertex.at.time);
+}
+
+std::optional<CameraConnection> find_lens(const PathContext& path, const View& view, const MediumVertex& vertex) {
+  return find_lens_from(path, view, vertex.state, vertex.position, vertex.time);
+}
+
 std::optional<LensLight> connect_to_lens(const PathContext& path, const View& view, const SurfaceVertex& vertex,
-                                         const Film* film) {
+                                         const CameraConnection& lens) {
   const SurfacePoint& at = vertex.at;
-  const auto lens = see_lens(path, view, vertex.state, at.position, at.time, film);
-  if (!lens) return {};
-  const Vec3 wo = at.shading.to_local(lens->towards);
+  const Vec3 wo = at.shading.to_local(lens.towards);
   Spectrum value = vertex.state.beta * eval(at.bsdf, vertex.wi_local, wo, Transport::importance);
-  value *= geometric_cosine(at, lens->towards) * shading_flux_ratio(at, vertex.wi, vertex.wi_local);
+  value *= geometric_cosine(at, lens.towards) * shading_flux_ratio(at, vertex.wi, vertex.wi_local);
   if (value.is_black()) return {};
-  return finish(path, view, vertex.state, *lens, spawn_ray_to(at, lens->towards, {lens->lens_point}),
-                medium_towards(vertex, lens->towards), value, is_dispersive(at.bsdf));
+  return finish(path, view, vertex.state, lens, spawn_ray_to(at, lens.towards, {lens.lens_point}),
+                medium_towards(vertex, lens.towards), value, is_dispersive(at.bsdf));
 }
 
 std::optional<LensLight> connect_to_lens(const PathContext& path, const View& view, const MediumVertex& vertex,
-                                         const Film* film) {
-  const auto lens = see_lens(path, view, vertex.state, vertex.position, vertex.time, film);
-  if (!lens) return {};
-  const Spectrum value = vertex.state.beta * phase(vertex.phase, vertex.wi, lens->towards);
-  return finish(path, view, vertex.state, *lens, {vertex.position, lens->towards, lens->distance, vertex.time},
+                                         const CameraConnection& lens) {
+  const Spectrum value = vertex.state.beta * phase(vertex.phase, vertex.wi, lens.towards);
+  return finish(path, view, vertex.state, lens, {vertex.position, lens.towards, lens.distance, vertex.time},
                 vertex.state.medium, value, false);
 }
 

@@ -6,7 +6,6 @@
 #include <optional>
 
 #include "camera/view.h"
-#include "film/film.h"
 #include "path/path_context.h"
 #include "path/vertex.h"
 
@@ -22,11 +21,14 @@ struct LensLight {
   float optical_depth = 0;  ///< of the way (`Passage`)
 };
 
-/// Connects the vertex to the lens. Empty if no light arrives. Draws from the visitor's dimensions. `film`: where the
-/// light will be splatted, if it will; its memory is fetched meanwhile.
+/// Where on the film a light vertex would be seen, if nothing is in between. Draws from the visitor's dimensions.
+std::optional<CameraConnection> find_lens(const PathContext& path, const View& view, const SurfaceVertex& vertex);
+std::optional<CameraConnection> find_lens(const PathContext& path, const View& view, const MediumVertex& vertex);
+
+/// Connects the vertex to the lens. Empty if no light arrives. Draws after `find_lens`.
 std::optional<LensLight> connect_to_lens(const PathContext& path, const View& view, const SurfaceVertex& vertex,
-                                         const Film* film = nullptr);
+                                         const CameraConnection& lens);
 std::optional<LensLight> connect_to_lens(const PathContext& path, const View& view, const MediumVertex& vertex,
-                                         const Film* film = nullptr);
+                                         const CameraConnection& lens);
 
 }  // namespace lanthorn

@@ -138,6 +138,7 @@ struct Techniques {
   float connections = 1;   ///< light paths to whose vertices each eye vertex is connected; may differ between pixels
   VolumeMerging volume{};  ///< photons straight from a light are merged, too
   float volume_part = 1;   ///< 0 for pixels without merging in media
+  float lens_part = 1;     ///< 0 for pixels without connections of light paths to the lens
 };
 
 /// What weights need to know of a subpath up to a vertex: d_VCM = `end` + c `vcm` and d_VC = `ends` + c `vc` + `media`
@@ -264,16 +265,17 @@ struct SubpathEnd {
   /// Adds `factor` times r d_VC: all techniques that begin at vertices before, but for the connection to this one.
   void add_earlier(float factor, const Techniques& t, TechniqueSum& sum) const {
     const float back = factor * reverse;
-    sum.*end += back * densities.ends;
+    sum.*end += back * part_of_end(t) * densities.ends;
     sum.connections += back * t.connections * densities.vc;
     sum.media += back * t.volume_part * coherence * densities.media;
     sum.merging += back * t.merging * densities.vm;
   }
   /// Adds `factor` times d_VCM: the connection to this vertex.
   void add_here(float factor, const Techniques& t, TechniqueSum& sum) const {
-    sum.*end += factor * densities.end;
+    sum.*end += factor * part_of_end(t) * densities.end;
     sum.connections += factor * t.connections * densities.vcm;
   }
+  float part_of_end(const Techniques& t) const { return end == &TechniqueSum::lens ? t.lens_part : 1.0f; }
 };
 inline SubpathEnd end_of_eye_path(const VertexDensities& densities, float reverse) {
   return {densities, reverse, 1, &TechniqueSum::lens};
@@ -303,7 +305,7 @@ struct ConnectedEnd : SubpathEnd {
 /// there in that direction, the product of per area and per solid angle.
 inline TechniqueSum sum_of_hit(const SubpathDensities& at_light, float direct, float emission, const Techniques& t) {
   return {.walk = 1 + direct * at_light.vcm,
-          .lens = emission * at_light.ends,
+          .lens = emission * t.lens_part * at_light.ends,
           .connections = emission * t.connections * at_light.vc,
           .merging = emission * t.merging * at_light.vm_apart,
           .media = emission * t.volume_part * at_light.media};
@@ -321,7 +323,7 @@ inline TechniqueSum sum_of_next_event(const ConnectedEnd& at_eye, float pdf_dire
 
 /// A light vertex connected to the lens (TR eq. 46). `at_light.arrival`: of one pixel's eye paths.
 inline TechniqueSum sum_of_lens(const ConnectedEnd& at_light, const Techniques& t) {
-  TechniqueSum sum{.lens = 1};
+  TechniqueSum sum{.own = t.lens_part, .lens = t.lens_part};
   at_light.add_other_techniques(1 / t.light_paths, t, sum);
   return sum;
 }

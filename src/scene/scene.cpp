@@ -74,6 +74,7 @@ bool Scene::has_measured_spectra() const { return data_->has_measured_spectra; }
 bool Scene::has_dispersion() const { return data_->has_dispersion; }
 bool Scene::has_motion() const { return data_->geometry.moves(); }
 bool Scene::may_be_specular() const { return data_->materials.may_be_specular(); }
+bool Scene::has_fibres() const { return data_->materials.has_fibres(); }
 bool Scene::has_media() const { return !data_->media->empty(); }
 bool Scene::has_interfaces() const { return data_->has_interfaces; }
 bool Scene::has_scattering_media() const {

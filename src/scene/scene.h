@@ -74,6 +74,8 @@ class Scene {
   bool may_be_specular() const;
   /// True if the scene describes any medium. If not, all rays are in vacuum.
   bool has_media() const;
+  /// Whether a material scatters as a hair does.
+  bool has_fibres() const;
   /// True if some shape is no surface, only an interface between media. If not, what light passes is one medium.
   bool has_interfaces() const;
   /// True if any medium scatters.

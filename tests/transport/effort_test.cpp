@@ -77,7 +77,7 @@ TEST_P(Estimates, OfVarianceAreThoseOfRendersWithinAFifth) {
     const std::vector<CandidateEstimate> all = estimate_candidates(job, measure_candidates(job, settings, prepared));
     const auto found = std::find_if(all.begin(), all.end(), [&](const CandidateEstimate& e) {
       return e.candidate.light_paths == c.light_paths && e.candidate.connections == (c.light_paths > 0 ? 1 : 0) &&
-             e.candidate.merges == c.merges;
+             e.candidate.merges == c.merges && e.candidate.sees == c.light_paths > 0;
     });
     ASSERT_NE(found, all.end());
     expected += found->variance / pilots;
@@ -93,6 +93,13 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"cornell-diffuse.pbrt", "bdpt", 0.25f, false}, Case{"cornell-diffuse.pbrt", "path", 0, false},
                     Case{"glossy.pbrt", "vcm", 1, true}, Case{"glossy.pbrt", "bdpt", 0.25f, false},
                     Case{"glossy.pbrt", "path", 0, false}));
+
+// Eight passes of four light paths a pixel leave the radius where 32 passes of one do.
+TEST(Effort, RadiiDependOnThePhotonsOfAllPasses) {
+  EXPECT_FLOAT_EQ(merge_radius_shrink(0.5, 7, 4), merge_radius_shrink(0.5, 31, 1));
+  EXPECT_FLOAT_EQ(merge_radius_shrink(0.5, 31, 0.25), merge_radius_shrink(0.5, 7, 1));
+  EXPECT_EQ(merge_radius_shrink(0.5, 0, 0.25), 1);
+}
 
 Effort effort_of(const Scene& scene) {
   const RenderPlan plan = plan_render(scene, scene.description().view, test::options_for("auto", 1, 1));
@@ -146,6 +153,37 @@ TEST(Effort, FindsSunlightThroughAWindow) {
   const Scene scene = test::scene_from_text(room_in_the_sun);
   EXPECT_GT(effort_of(scene).light_paths(), 0u);
   EXPECT_LT(estimate_error(test::render_state(scene, test::options_for("auto", 16, 1))).noise, 0.6);
+}
+
+// Glass asks for light paths. But what the lens sees of them is far noisier than next-event estimation and merging,
+// which find it all.
+TEST(Effort, LeavesDirectLightToNextEventEstimation) {
+  const Scene scene = test::scene_from_text(R"(
+Film "rgb" "integer xresolution" 32 "integer yresolution" 32
+LookAt 0 -3 2  0 0 0  0 0 1
+Camera "perspective" "float fov" 30
+WorldBegin
+AttributeBegin
+AreaLightSource "diffuse" "rgb L" [40 40 40]
+Translate 0 0 3
+Shape "sphere" "float radius" .1
+AttributeEnd
+Shape "bilinearmesh" "point3 P" [-2 -2 0  2 -2 0  -2 2 0  2 2 0]
+Material "dielectric"
+Translate .2 .2 .3
+Shape "sphere" "float radius" .2
+)");
+  const auto variance = [&](const char* method) {
+    const auto direct = [&](std::uint64_t seed) {
+      return *select_layer(test::render_image(scene, test::options_for(method, 16, seed)), "direct");
+    };
+    const Image first = direct(0), second = direct(1);
+    double sum = 0;
+    for (std::size_t i = 0; i < first.pixels.size(); ++i)
+      sum += std::pow(static_cast<double>(first.pixels[i] - second.pixels[i]), 2);
+    return sum;
+  };
+  EXPECT_LT(variance("auto"), 0.5 * variance("vcm"));
 }
 
 // A glass ball far too small for the pilot: its caustic must not get lost.

@@ -158,7 +158,10 @@ class MultiplexedPath {
   FilmLight see() {
     FilmLight result;
     walk_light(scatterings_, [&](const auto& v, const Subpath& subpath) {
-      const auto seen = connect_to_lens(path(light_), pass_.job.view, v);
+      const PathContext context = path(light_);
+      const auto lens = find_lens(context, pass_.job.view, v);
+      if (!lens) return;
+      const auto seen = connect_to_lens(context, pass_.job.view, v, *lens);
       if (!seen || !pass_.region.contains(seen->raster)) return;
       result.raster = seen->raster;
       const PathLayers layers = layers_of_splat(v);

@@ -51,6 +51,7 @@ std::string Effort::findings() const {
                        {"connections", u.place.connections},
                        {"merges", u.place.merges},
                        {"merges_in_media", u.place.merges_in_media},
+                       {"connects_to_lens", u.place.sees},
                        {"variance", finite(u.variance)},
                        {"work", u.work}});
   return nlohmann::json{{"summary", describe()},

@@ -3,6 +3,7 @@
 // How many samples each technique of vertex connection and merging gets, and where on the film.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -18,6 +19,7 @@ struct PlaceEffort {
   std::uint8_t connections = 1;  ///< light paths that each eye vertex is connected to
   bool merges = true;            ///< on surfaces
   bool merges_in_media = true;
+  bool sees = true;  ///< light paths are connected to the lens
 };
 
 /// What the pilot expects of one choice for the whole picture.
@@ -54,6 +56,10 @@ class Effort {
 
   std::uint64_t light_paths() const { return light_paths_; }  ///< of a pass
   PlaceEffort at(const Vec2& raster) const { return blocks_.empty() ? PlaceEffort{} : blocks_[block_of(raster)]; }
+  /// Whether light paths are connected to the lens anywhere.
+  bool sees() const {
+    return blocks_.empty() || std::any_of(blocks_.begin(), blocks_.end(), [](const PlaceEffort& p) { return p.sees; });
+  }
   /// One line: what was found, and what was chosen.
   std::string describe() const;
   /// The numbers of the report, as the text of a JSON object.

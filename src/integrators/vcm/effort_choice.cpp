@@ -22,7 +22,8 @@ constexpr double shadow = 0.5;      // of a ray
 constexpr double densities = 0.65;  // of eye and light paths for each other, at each ray of an eye path
 constexpr double connection = 0.46, lookup = 0.36, merge = 0.1;
 constexpr double light_ray = 0.8;      // of a ray
-constexpr double light_vertex = 1.95;  // with its connection to the lens, and sorting
+constexpr double light_vertex = 1.05;  // with sorting
+constexpr double lens = 0.9;           // connection of a light vertex to it
 }  // namespace work
 
 // A ray takes longer in a deep hierarchy.
@@ -39,7 +40,7 @@ constexpr double stratification = 2.3;
 constexpr double margin = 0.85;
 
 PlaceEffort place_of(const EffortCandidate& c) {
-  return {static_cast<std::uint8_t>(c.connections), c.merges, c.merges_in_media};
+  return {static_cast<std::uint8_t>(c.connections), c.merges, c.merges_in_media, c.sees};
 }
 
 class EffortChoice {
@@ -52,7 +53,7 @@ class EffortChoice {
   Effort best() const;
   // Of an eye path, in a block.
   double work_of(const EffortBlock& block, const EffortCandidate& c) const;
-  // Of a pass, for each pixel. `light_paths`: over those of the settings.
+  // Of a pass, for each pixel, but for connections to the lens. `light_paths`: over those of the settings.
   double work_of_light(float light_paths) const;
 
  private:
@@ -67,6 +68,8 @@ class EffortChoice {
     return variances_[block * m_.candidates.size() + candidate];
   }
   double variance_around(std::size_t block, std::size_t candidate) const;
+  // For each pixel of a pass, what the pilot has counted at all of its light paths.
+  double for_each_pixel(float light_paths, double of_pilot) const;
   double per_pixel(float light_paths) const;
   void count_work(EffortReport& report) const;
   std::vector<UniformEffort> uniform_efforts() const;
@@ -87,7 +90,9 @@ double EffortChoice::work_of(const EffortBlock& block, const EffortCandidate& c)
   sum += work::connection * block.connections * static_cast<double>(c.connections);
   if (c.merges || c.merges_in_media)
     sum += work::lookup * block.lookups + work::merge * block.merges * static_cast<double>(c.light_paths);
-  return sum / block.paths;
+  sum /= block.paths;
+  if (c.sees) sum += work::lens * for_each_pixel(c.light_paths / m_.scale, m_.light_vertices);
+  return sum;
 }
 
 void EffortChoice::find_variances() {
@@ -121,11 +126,15 @@ double EffortChoice::variance_around(std::size_t b, std::size_t candidate) const
 }
 
 double EffortChoice::work_of_light(float light_paths) const {
-  const double of_path = (work::light_ray * ray_work_ * m_.light_rays + work::light_vertex * m_.light_vertices) /
-                         std::max(1.0, m_.light_paths);
+  return for_each_pixel(light_paths,
+                        work::light_ray * ray_work_ * m_.light_rays + work::light_vertex * m_.light_vertices);
+}
+
+double EffortChoice::for_each_pixel(float light_paths, double of_pilot) const {
   const PixelWindow& window = job_.view.window;
   const double pixels = static_cast<double>(window.width()) * static_cast<double>(window.height());
-  return static_cast<double>(light_paths) * static_cast<double>(job_.settings.photons) / pixels * of_path;
+  return static_cast<double>(light_paths) * static_cast<double>(job_.settings.photons) / pixels * of_pilot /
+         std::max(1.0, m_.light_paths);
 }
 
 void EffortChoice::count_work(EffortReport& report) const {

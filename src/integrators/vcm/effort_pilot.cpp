@@ -20,15 +20,17 @@ constexpr std::uint32_t pilot_passes = 4;
 constexpr std::uint32_t typical_pass = 24;
 constexpr std::uint64_t most_pilot_paths = 1u << 16;
 
-// `scale`: from those to multiples of the pilot's number.
-std::vector<EffortCandidate> all_candidates(float scale, bool one_time, bool in_media) {
-  std::vector<EffortCandidate> all{{0, 0, false, false}};
+// `scale`: from those to multiples of the pilot's number. `merges_everywhere`: merging finds all that the lens sees.
+std::vector<EffortCandidate> all_candidates(float scale, bool one_time, bool in_media, bool merges_everywhere) {
+  std::vector<EffortCandidate> all{{0, 0, false, false, false}};
   for (const float light_paths : light_path_choices)
     for (const float connections : {0.0f, 1.0f, 4.0f})
       for (const bool merges : {false, true})
         for (const bool media : {false, true})
-          if ((one_time || connections <= 1) && (in_media || !media))
-            all.push_back({scale * light_paths, connections, merges, media});
+          for (const bool sees : {false, true})
+            if ((one_time || connections <= 1) && (in_media || !media) &&
+                (sees || (merges_everywhere && merges && media == in_media)))
+              all.push_back({scale * light_paths, connections, merges, media, sees});
   return all;
 }
 
@@ -72,8 +74,14 @@ class Pilot {
         measured_(job.view.window),
         blocks_(places_of(job.view.window, measured_.grid)) {
     measured_.scale = static_cast<float>(job.settings.photons) / static_cast<float>(pilot_light_paths(job));
-    measured_.candidates = all_candidates(measured_.scale, draw_for_pass(job, 0).is_of_one_time(),
-                                          settings.merges_in_media() && job.scene.has_scattering_media());
+    measured_.candidates =
+        all_candidates(measured_.scale, draw_for_pass(job, 0).is_of_one_time(),
+                       settings.merges_in_media() && job.scene.has_scattering_media(), !job.scene.has_fibres());
+    const auto radius = [&](float light_paths) {
+      return merge_radius_shrink(settings.alpha, typical_pass, static_cast<double>(light_paths));
+    };
+    for (EffortCandidate& c : measured_.candidates)
+      c.merge_area = sqr(radius(c.light_paths / measured_.scale) / radius(1 / measured_.scale));
     cells_.resize(pixel_count(measured_.grid.cells()) * measured_.candidates.size());
     for (EffortBlock& block : measured_.blocks) {
       block.moments.resize(measured_.candidates.size());
@@ -173,7 +181,7 @@ void Pilot::add(const SeenLight& seen) {
     const auto ratio =
         static_cast<double>(std::max(c.all(seen.weighed) / seen.weighed.all(), PathMoments::least_ratio));
     const double all = share * seen.spread * sqr(light) / ratio;
-    const double own = all * static_cast<double>(c.light_paths) / ratio;
+    const double own = all * static_cast<double>(c.samples(&TechniqueSum::lens)) / ratio;
     block.moments[k].second += own;
     block.moments[k].squares += own;
     block.moments[k].all_squares += all;

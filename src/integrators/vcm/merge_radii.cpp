@@ -3,6 +3,7 @@
 #include "integrators/vcm/merge_radii.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "photon/gather/radius_schedule.h"
 #include "photon/media/volume_radius.h"
@@ -17,6 +18,11 @@ FirstMergeRadii::FirstMergeRadii(const RenderJob& job, const VcmSettings& settin
   reach.window = window_ = job.view.filter_reach();
   radius_ =
       choose_first_radius({job.scene, reach, job.settings}, settings.radius, photons_of_first_merge, guide, by_flux);
+}
+
+float merge_radius_shrink(double alpha, std::uint32_t pass, double light_paths) {
+  const double passes = std::max(1.0, light_paths * (static_cast<double>(pass) + 1));
+  return static_cast<float>(std::sqrt(RadiusSchedule{1, alpha}.shrink2_after(passes)));
 }
 
 float VolumeKernels::widest_radius() const {

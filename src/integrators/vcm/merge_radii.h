@@ -32,6 +32,10 @@ class FirstMergeRadii {
   PixelWindow window_;  // of `radius_`: paths may go through places beside that of the picture
 };
 
+/// By how much the radii of merging on surfaces have shrunk in a pass whose light paths are `light_paths` times as many
+/// as those that the first radii are measured for: radii depend on the photons of all passes so far.
+float merge_radius_shrink(double alpha, std::uint32_t pass, double light_paths);
+
 /// The radii of a pass on surfaces, m. Keeps a reference to those of the first.
 class MergeRadii {
  public:

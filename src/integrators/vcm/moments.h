@@ -22,21 +22,25 @@ struct EffortCandidate {
   float connections = 1;  ///< light paths that each eye vertex is connected to
   bool merges = true;     ///< on surfaces
   bool merges_in_media = true;
+  bool sees = true;      ///< light paths are connected to the lens
+  float merge_area = 1;  ///< of the discs of merging on surfaces: the radius depends on the number of light paths
 
   /// How many times the pilot's samples the technique has. Merging on surfaces and in media takes part in all light
   /// paths.
   float samples(float TechniqueSum::*technique) const {
     if (technique == &TechniqueSum::walk) return 1;
     if (technique == &TechniqueSum::connections) return light_paths > 0 ? connections : 0.0f;
-    if (technique == &TechniqueSum::merging && !merges) return 0;
+    if (technique == &TechniqueSum::merging) return merges ? merge_area * light_paths : 0.0f;
     if (technique == &TechniqueSum::media && !merges_in_media) return 0;
+    if (technique == &TechniqueSum::lens && !sees) return 0;
     return light_paths;
   }
   /// The densities of all techniques with these numbers.
   float all(const TechniqueSum& s) const {
     const float c = light_paths > 0 ? connections : 0.0f;
-    return s.walk + light_paths * s.lens + c * s.connections +
-           light_paths * ((merges ? s.merging : 0.0f) + (merges_in_media ? s.media : 0.0f));
+    return s.walk + c * s.connections +
+           light_paths *
+               ((sees ? s.lens : 0.0f) + (merges ? merge_area * s.merging : 0.0f) + (merges_in_media ? s.media : 0.0f));
   }
 };
 
@@ -80,7 +84,10 @@ class PathMoments {
       Sums& s = sums_[k];
       s.self += share * sqr(static_cast<double>(c)) / static_cast<double>(ratio);
       if (candidate.samples(technique) == 0) continue;
-      PathSum& sum = is_walk ? s.walk : technique == &TechniqueSum::connections ? s.connections[set] : s.merges[set];
+      PathSum& sum = is_walk                                   ? s.walk
+                     : technique == &TechniqueSum::connections ? s.connections[set]
+                     : technique == &TechniqueSum::media       ? s.media[set]
+                                                               : s.merges[set];
       sum.add(static_cast<double>(c / ratio));
     }
   }
@@ -95,18 +102,22 @@ class PathMoments {
   Estimate estimate(std::size_t k) const {
     const Sums& s = sums_[k];
     const EffortCandidate& candidate = candidates_[k];
-    const auto n = static_cast<double>(candidate.light_paths);
-    const auto m = static_cast<double>(candidate.samples(&TechniqueSum::connections));
+    const auto samples = [&](float TechniqueSum::*technique) {
+      return static_cast<double>(candidate.samples(technique));
+    };
+    const double m = samples(&TechniqueSum::connections), n = samples(&TechniqueSum::merging),
+                 v = samples(&TechniqueSum::media);
     const double w = s.walk.sum;
-    const auto light_of = [&](int i) { return m * s.connections[i].sum + n * s.merges[i].sum; };
+    const auto light_of = [&](int i) { return m * s.connections[i].sum + n * s.merges[i].sum + v * s.media[i].sum; };
     const double a = light_of(0), b = light_of(1);
     const double of_eye_path = w * w + w * (a + b) + a * b;
     const auto within = [](const PathSum(&of)[2]) {
       return (of[0].pairs() + of[1].pairs()) / 2 - of[0].sum * of[1].sum;
     };
     const auto both = [](const PathSum(&of)[2]) { return (of[0].squares + of[1].squares) / 2; };
-    const double of_light = m * both(s.connections) + n * both(s.merges);
-    const double second_moment = of_eye_path + of_light + m * within(s.connections) + n * within(s.merges);
+    const double of_light = m * both(s.connections) + n * both(s.merges) + v * both(s.media);
+    const double second_moment =
+        of_eye_path + of_light + m * within(s.connections) + n * within(s.merges) + v * within(s.media);
     return {w + (a + b) / 2, second_moment, of_eye_path, s.walk.squares + of_light, s.self};
   }
 
@@ -123,7 +134,7 @@ class PathMoments {
     double pairs() const { return sqr(sum) - squares; }
   };
   struct Sums {
-    PathSum walk, connections[2], merges[2];
+    PathSum walk, connections[2], merges[2], media[2];
     double self = 0;
   };
   std::span<const EffortCandidate> candidates_;

@@ -7,7 +7,6 @@
 
 #include "integrators/vcm/effort_choice.h"
 #include "integrators/vcm/effort_pilot.h"
-#include "photon/gather/radius_schedule.h"
 #include "photon/medium_records.h"
 
 namespace lanthorn {
@@ -36,7 +35,9 @@ VcmPass::VcmPass(const RenderJob& job_, std::uint32_t number_, const VcmSettings
       volume_kernels(prepared.volume_radii.kernels(settings.alpha, number)),
       beam_share(volume_kernels.uses_beams() ? share_of_beams(light_paths.total()) : 0.0f),
       bidirectional{job.view, {}, prepared.densities},
-      radii(prepared.radii, RadiusSchedule{1, settings.alpha}.radius(number)),
+      radii(prepared.radii,
+            merge_radius_shrink(settings.alpha, number,
+                                static_cast<double>(effort.light_paths()) / static_cast<double>(job.settings.photons))),
       vertices(vertices_) {
   const auto paths = static_cast<float>(light_paths.total());
   bidirectional.techniques = {.light_paths = paths,
@@ -63,6 +64,7 @@ Bidirectional VcmPass::bidirectional_at(const Vec2& raster, PathMoments* moments
   Techniques& t = result.techniques;
   const PlaceEffort here = effort.at(raster);
   t.connections = here.connections;
+  t.lens_part = here.sees ? 1.0f : 0.0f;
   t.volume_part = here.merges_in_media ? 1.0f : 0.0f;
   if (settings.switches.merging && here.merges) t.merging = t.light_paths * pi * sqr(radii.at(raster));
   return result;

@@ -42,6 +42,7 @@ class LightVisitor {
         film_(film),
         chunk_(chunk),
         see_(see),
+        sees_(pass.connects() && pass.effort.sees()),
         subpath_(pass.bidirectional.techniques) {}
 
   // The path starts (TR eqs. 31-33).
@@ -74,8 +75,11 @@ class LightVisitor {
   void keep(const Vertex& v) {
     LightVertex& kept = chunk_.vertices.emplace_back(keep_vertex(v, subpath_));
     kept.flux_class = pass_.class_of_flux(flux_of(v.state.beta, v.state.dispersed, path_.w));
-    if (!pass_.connects() || !pass_.shows(v.state.depth + 1, 1)) return;
-    if (const auto seen = connect_to_lens(path_, pass_.job.view, v, film_))
+    if (!sees_ || !pass_.shows(v.state.depth + 1, 1)) return;
+    const auto lens = find_lens(path_, pass_.job.view, v);
+    if (!lens || !pass_.effort.at(lens->raster).sees) return;
+    if (film_) film_->prefetch_splats(pass_.job.view.window.pixel_at(lens->raster));
+    if (const auto seen = connect_to_lens(path_, pass_.job.view, v, *lens))
       see_(LightArrival{&v, subpath_, layers_of_splat(v)}, *seen);
   }
 
@@ -87,6 +91,7 @@ class LightVisitor {
   const Film* film_;
   LightVertices::Chunk& chunk_;
   const See& see_;
+  bool sees_;
   Subpath subpath_;
 };
 
@@ -221,7 +226,7 @@ class EyeVisitor {
   Subpath subpath_;
 };
 
-/// Traces the light paths of a pass. `film`: see `connect_to_lens`.
+/// Traces the light paths of a pass. `film`: where light will be splatted, if it will; its memory is fetched before.
 template <class See>
 RayCounts trace_light_paths(const VcmPass& pass, const Film* film, const See& see) {
   pass.vertices.begin(pass.light_paths.chunk_count());

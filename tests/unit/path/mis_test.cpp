@@ -69,6 +69,7 @@ RandomPath random_path(HashRng& rng) {
   }
   if (path.techniques.connects) path.techniques.connections = rng.next() < 0.3f ? 0.0f : 4 * rng.next();
   path.techniques.volume_part = rng.next() < 0.3f ? 0.0f : 1.0f;
+  path.techniques.lens_part = rng.next() < 0.3f ? 0.0f : 1.0f;
   return path;
 }
 
@@ -96,7 +97,9 @@ double by_eye(const RandomPath& path, int i) {
 
 float samples_of_connection(const RandomPath& path, int s) {
   const int k = path.last();
-  return s == k + 1 ? path.techniques.light_paths : s >= 2 ? path.techniques.connections : 1;
+  return s == k + 1 ? path.techniques.lens_part * path.techniques.light_paths
+         : s >= 2   ? path.techniques.connections
+                    : 1;
 }
 
 // Of technique s = 0 (hit), 1 (next-event estimation), 2 ... k (connection of x_{s-1} and x_s), k + 1 (lens).
