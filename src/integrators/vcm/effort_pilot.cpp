@@ -22,15 +22,17 @@ constexpr std::uint64_t most_pilot_paths = 1u << 16;
 
 // `scale`: from those to multiples of the pilot's number. `merges_everywhere`: merging finds all that the lens sees.
 std::vector<EffortCandidate> all_candidates(float scale, bool one_time, bool in_media, bool merges_everywhere) {
+  const auto is_possible = [&](const EffortCandidate& c) {
+    const bool merges_all = merges_everywhere && c.merges && c.merges_in_media == in_media;
+    return (one_time || c.connections <= 1) && (in_media || !c.merges_in_media) && (c.sees || merges_all);
+  };
   std::vector<EffortCandidate> all{{0, 0, false, false, false}};
   for (const float light_paths : light_path_choices)
     for (const float connections : {0.0f, 1.0f, 4.0f})
-      for (const bool merges : {false, true})
-        for (const bool media : {false, true})
-          for (const bool sees : {false, true})
-            if ((one_time || connections <= 1) && (in_media || !media) &&
-                (sees || (merges_everywhere && merges && media == in_media)))
-              all.push_back({scale * light_paths, connections, merges, media, sees});
+      for (unsigned used = 0; used < 8; ++used) {
+        const EffortCandidate c{scale * light_paths, connections, (used & 4) != 0, (used & 2) != 0, (used & 1) != 0};
+        if (is_possible(c)) all.push_back(c);
+      }
   return all;
 }
 
