@@ -25,8 +25,8 @@ struct EffortCandidate {
   bool sees = true;      ///< light paths are connected to the lens
   float merge_area = 1;  ///< of the discs of merging on surfaces: the radius depends on the number of light paths
 
-  /// How many times the pilot's samples the technique has. Merging on surfaces and in media takes part in all light
-  /// paths.
+  /// How many times the pilot's samples the technique has. Merging uses all light paths; on surfaces it has the more
+  /// photons the larger its discs are.
   float samples(float TechniqueSum::*technique) const {
     if (technique == &TechniqueSum::walk) return 1;
     if (technique == &TechniqueSum::connections) return light_paths > 0 ? connections : 0.0f;
