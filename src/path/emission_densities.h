@@ -20,7 +20,7 @@ namespace lanthorn {
 ///
 /// Curves are the reason for another exception. Light paths and eye paths see a flat curve from different sides, as
 /// ribbons with different normals, so that weights there do not quite sum to 1. Dense light paths would make much of
-/// that: indirect light was up to 14 % too bright. With curves in the scene, all paths have the weights of direct
+/// that: indirect light was up to 27 % too bright. With curves in the scene, all paths have the weights of direct
 /// light.
 class EmissionDensities {
  public:
