@@ -113,7 +113,8 @@ float weight_of(const PathContext& path, const Bidirectional& pass, const Vertex
   // Next-event estimation always chooses the position of a point light: density 1, which is distance² per solid angle.
   const float pdf = event.pmf * l.pdf * (on_surface || far ? 1.0f : sqr(l.distance));
   const float cos_light = on_surface ? std::fabs(dot(l.normal, l.wi)) : 1.0f;
-  const float chosen = pass.emission.factor(event.light, origin, -l.wi, is_direct(v.state.depth, receiving_normal(v)));
+  float chosen = pass.emission.factor(event.light, origin, -l.wi);
+  if (is_direct(v.state.depth, receiving_normal(v))) chosen = pass.emission.of_direct_light(event.light, chosen);
   const float pdf_walk = l.delta ? 0.0f : event.pdf_walk * passes;
   const float density = at.density(passes);
   const float arrival = chosen * emission.position * emission.direction * density / (pdf * cos_light);
@@ -137,8 +138,9 @@ float weight_of_hit(const PathContext& path, const Bidirectional& pass, const Wa
   if (has_surface(light))
     direct = direct * std::fabs(dot(hit.at.normal, hit.to_eye)) / distance_squared(hit.at.position, state.previous);
   const EmissionPdf emission = pdf_emission(light, hit.at, hit.to_eye);
-  const bool direct_light = !state.last_delta && is_direct(hit.scatterings, state.previous_normal);
-  const float factor = pass.emission.factor(hit.index, hit.at, hit.to_eye, direct_light);
+  float factor = pass.emission.factor(hit.index, hit.at, hit.to_eye);
+  if (!state.last_delta && is_direct(hit.scatterings, state.previous_normal))
+    factor = pass.emission.of_direct_light(hit.index, factor);
   return pass.weigh(
       sum_of_hit(subpath.densities(), direct, factor * emission.position * emission.direction, pass.techniques));
 }

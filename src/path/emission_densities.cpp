@@ -7,6 +7,9 @@
 namespace lanthorn {
 
 EmissionDensities::EmissionDensities(const Scene& scene, const EmissionGuide* guide)
-    : scene_(scene), guide_(guide), of_lights_(emission_probabilities(scene.lights(), guide)) {}
+    : scene_(scene),
+      guide_(guide),
+      has_curves_(scene.statistics().curves > 0),
+      of_lights_(emission_probabilities(scene.lights(), guide)) {}
 
 }  // namespace lanthorn

@@ -18,10 +18,9 @@ namespace lanthorn {
 /// surface; the balance heuristic, which knows densities alone, would prefer the light paths. Where a guide makes light
 /// paths sparser, that always counts. Weights only have to be the same function of the path for all techniques.
 ///
-/// Curves are the reason for another exception. Light paths and eye paths see a flat curve from different sides, as
-/// ribbons with different normals, so that weights there do not quite sum to 1. Dense light paths would make much of
-/// that: indirect light was up to 27 % too bright. With curves in the scene, all paths have the weights of direct
-/// light.
+/// Scenes with curves are another exception: there no path counts as denser. A flat curve shows each ray another
+/// ribbon. A light path and an eye path that meet on it see different normals, and their weights do not quite sum to 1.
+/// Where weights counted the guide, indirect light on hair was 27 % too bright.
 class EmissionDensities {
  public:
   /// `guide` of the light paths, null if they have none; must outlive this.
@@ -30,17 +29,20 @@ class EmissionDensities {
   /// Probability with which a light path begins on each light, as in PhotonAllocation.
   const std::vector<float>& of_lights() const { return of_lights_; }
   /// Factor that makes `pdf_emission` the density of light paths. `origin`: where the ray starts; of far lights any
-  /// point of it.
-  float factor(std::uint32_t light, const EmitterHit& origin, const Direction& direction, bool is_direct) const {
+  /// point of it. For all but direct light.
+  float factor(std::uint32_t light, const EmitterHit& origin, const Direction& direction) const {
     const float p = of_lights_[light];
     if (guide_ == nullptr) return p;
-    const float guided = guided_density(*guide_, scene_.lights()[light], light, origin, direction);
-    return p * (is_direct || scene_.statistics().curves > 0 ? std::min(1.0f, guided) : guided);
+    const float all = p * guided_density(*guide_, scene_.lights()[light], light, origin, direction);
+    return has_curves_ ? of_direct_light(light, all) : all;
   }
+  /// The factor for direct light, where that for other light is `factor`.
+  float of_direct_light(std::uint32_t light, float factor) const { return std::min(of_lights_[light], factor); }
 
  private:
   Scene scene_;
   const EmissionGuide* guide_;
+  bool has_curves_;
   std::vector<float> of_lights_;
 };
 

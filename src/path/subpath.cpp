@@ -135,7 +135,8 @@ float Subpath::reverse_density(const WalkState& state, const Direction& directio
 
 SubpathDensities Subpath::densities_of_direct_light() const {
   SubpathDensities result = departure_.densities;
-  result.start_denser(density_of_start(start_.light, start_.emission, true) / start_.density_factor);
+  result.start_denser(emission_densities_->of_direct_light(start_.light, start_.density_factor) /
+                      start_.density_factor);
   return result;
 }
 

@@ -70,7 +70,8 @@ class Subpath {
   /// Begins a light path on light `index`.
   void begin_at_light(std::uint32_t index, const EmissionSample& emission, const EmissionDensities& densities) {
     emission_densities_ = &densities;
-    start_ = {nullptr, index, emission, density_of_start(index, emission, false)};
+    const EmitterHit origin{emission.origin, emission.normal, Vec2(0)};
+    start_ = {nullptr, index, emission, densities.factor(index, origin, emission.direction)};
   }
 
   void arrive(const PathContext& path, const SurfaceVertex& v);
@@ -108,10 +109,6 @@ class Subpath {
   };
   void arrive_at(const Scene& scene, const WalkState& state, const Position& at, const Direction& wi);
   void depart(const WalkState& state, const Direction& direction);
-  float density_of_start(std::uint32_t light, const EmissionSample& emission, bool is_direct) const {
-    return emission_densities_->factor(light, {emission.origin, emission.normal, Vec2(0)}, emission.direction,
-                                       is_direct);
-  }
   /// Density per solid angle with which the other kind of walk, coming from `direction`, would go on to the vertex
   /// before the last one.
   float reverse_density(const WalkState& state, const Direction& direction) const;

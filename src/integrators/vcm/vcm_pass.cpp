@@ -33,6 +33,7 @@ VcmPass::VcmPass(const RenderJob& job_, std::uint32_t number_, const VcmSettings
       light_paths(job.scene, {job.settings.seed, Stream::light, number, prepared.effort.light_paths(),
                               prepared.emission.starts()}),
       volume_kernels(prepared.volume_radii.kernels(settings.alpha, number)),
+      sees(connects() && effort.sees()),
       beam_share(volume_kernels.uses_beams() ? share_of_beams(light_paths.total()) : 0.0f),
       bidirectional{job.view, {}, prepared.densities},
       radii(prepared.radii,

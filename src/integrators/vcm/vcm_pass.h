@@ -42,6 +42,7 @@ struct VcmPass {
   PassDraw draw;
   LightPaths light_paths;
   VolumeKernels volume_kernels;
+  bool sees;                    ///< light paths are connected to the lens somewhere
   float beam_share;             ///< of light paths whose flights are kept
   Bidirectional bidirectional;  ///< but η, which is each pixel's own
   MergeRadii radii;

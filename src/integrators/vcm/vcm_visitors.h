@@ -42,7 +42,6 @@ class LightVisitor {
         film_(film),
         chunk_(chunk),
         see_(see),
-        sees_(pass.connects() && pass.effort.sees()),
         subpath_(pass.bidirectional.techniques) {}
 
   // The path starts (TR eqs. 31-33).
@@ -75,7 +74,7 @@ class LightVisitor {
   void keep(const Vertex& v) {
     LightVertex& kept = chunk_.vertices.emplace_back(keep_vertex(v, subpath_));
     kept.flux_class = pass_.class_of_flux(flux_of(v.state.beta, v.state.dispersed, path_.w));
-    if (!sees_ || !pass_.shows(v.state.depth + 1, 1)) return;
+    if (!pass_.sees || !pass_.shows(v.state.depth + 1, 1)) return;
     const auto lens = find_lens(path_, pass_.job.view, v);
     if (!lens || !pass_.effort.at(lens->raster).sees) return;
     if (film_) film_->prefetch_splats(pass_.job.view.window.pixel_at(lens->raster));
@@ -91,7 +90,6 @@ class LightVisitor {
   const Film* film_;
   LightVertices::Chunk& chunk_;
   const See& see_;
-  bool sees_;
   Subpath subpath_;
 };
 
