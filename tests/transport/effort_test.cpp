@@ -77,7 +77,7 @@ TEST_P(Estimates, OfVarianceAreThoseOfRendersWithinAFifth) {
     const std::vector<CandidateEstimate> all = estimate_candidates(job, measure_candidates(job, settings, prepared));
     const auto found = std::find_if(all.begin(), all.end(), [&](const CandidateEstimate& e) {
       return e.candidate.light_paths == c.light_paths && e.candidate.connections == (c.light_paths > 0 ? 1 : 0) &&
-             e.candidate.merges == c.merges && e.candidate.sees == c.light_paths > 0;
+             e.candidate.merges == c.merges && e.candidate.sees == (c.light_paths > 0);
     });
     ASSERT_NE(found, all.end());
     expected += found->variance / pilots;
