@@ -49,6 +49,9 @@ struct Image {
   std::optional<std::size_t> find_channel(std::string_view name) const;
 };
 
+/// The picture with the channels of another one of the same size after its own.
+Image with_layers(const Image& picture, const Image& layers);
+
 /// The channels of the layer `name` (see `Image`), in the order of the layer's components; nothing if the image has no
 /// such layer. A one-channel picture (Y or a single nameless channel) counts as the layer `color` with R = G = B.
 std::optional<Image> select_layer(const Image& image, std::string_view name);
@@ -56,6 +59,9 @@ std::optional<Image> select_layer(const Image& image, std::string_view name);
 /// True for channels of radiance at a wavelength, as the layout for spectral OpenEXR images names them (Fichet,
 /// Pacanowski & Wilkie 2021).
 bool is_spectral_channel(std::string_view channel);
+
+/// True for channels that say what is noise in another one (`picture_with_noise`). Files have half floats of them.
+bool is_noise_channel(std::string_view channel);
 
 /// Names of the layers of an image, each once, in the order of its channels.
 std::vector<std::string> layer_names(const Image& image);

@@ -48,10 +48,10 @@ Image displayed(const Image& image, const DisplaySettings& display = {});
 /// pictures.
 float measured_exposure(const Image& image);
 
-/// An EXR file of all channels as 32-bit floats (ZIP compression), `image.window` as data and display window. The
-/// channel depth.Z is called Z there, as other programs expect it, and is depth.Z again in `read_image`.
-/// `metadata`: text of a JSON object, or empty; each member becomes an attribute "lanthorn:NAME" (numbers and strings
-/// as such, all else as JSON text). Same input, same bytes.
+/// An EXR file of all channels as 32-bit floats, those of noise as 16-bit floats (ZIP compression), `image.window` as
+/// data and display window. The channel depth.Z is called Z there, as other programs expect it, and is depth.Z again in
+/// `read_image`. `metadata`: text of a JSON object, or empty; each member becomes an attribute "lanthorn:NAME" (numbers
+/// and strings as such, all else as JSON text). Same input, same bytes.
 std::vector<unsigned char> encode_exr(const Image& image, const std::string& metadata = {});
 
 /// A PNG file of the layer `color` as 8-bit sRGB; metadata all as text. Throws Error if the picture has no such layer.

@@ -64,6 +64,11 @@ StateSummary summarize(const RenderState& state);
 /// color, `bias` the estimated error of photon methods, which passes do not average out.
 Image picture_of(const RenderState& state);
 
+/// The same with what `denoise` needs besides: for each of its layers of light and features a layer noise.NAME, how
+/// much more the first half of the passes has than all of them, and the channel noise.share, the part of the samples
+/// that this half has.
+Image picture_with_noise(const RenderState& state);
+
 /// How far that picture is from the truth. Costs about as much as the picture.
 ErrorEstimate estimate_error(const RenderState& state);
 

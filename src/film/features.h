@@ -11,21 +11,28 @@
 
 namespace lanthorn {
 
+/// A position as a feature: its film sums reach farther than those of directions and colours.
+struct Position {
+  Point at{0, 0, 0};
+};
+
 /// What an eye path sees besides light. Every film has one layer for each member. A further one is a member here, a
 /// line in `for_each`, and the place that records it (path/light_layers.h).
 struct Features {
   Rgb albedo{};                  ///< albedo of the first hit that is not a mirror; 0 for misses
   Vec3 normal{0, 0, 0};          ///< world-space shading normal at that hit; 0 for misses
+  Position position{};           ///< world-space position of that hit, metres; 0 for misses
   std::optional<float> depth{};  ///< metres from the camera to the first hit; none for misses
 
   bool is_hit() const { return depth.has_value(); }
 
-  /// Calls `visit(name, value)` for each layer, in their order in films. Colours and vectors are averaged over all
-  /// samples, numbers over those that are hits.
+  /// Calls `visit(name, value)` for each layer, in their order in films. Numbers are averaged over the samples that are
+  /// hits, all others over all samples.
   template <class Visit>
   constexpr void for_each(Visit&& visit) const {
     visit("albedo", albedo);
     visit("normal", normal);
+    visit("position", position);
     visit("depth", depth);
   }
 };
@@ -33,6 +40,7 @@ struct Features {
 /// Names of a layer's channels, one letter each.
 constexpr std::string_view channels_of(const Rgb&) { return "RGB"; }
 constexpr std::string_view channels_of(const Vec3&) { return "XYZ"; }
+constexpr std::string_view channels_of(const Position&) { return "XYZ"; }
 constexpr std::string_view channels_of(const std::optional<float>&) { return "Z"; }
 
 /// Channels of all layers together.

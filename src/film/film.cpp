@@ -19,7 +19,7 @@ namespace {
 
 constexpr int largest_radiance_bits = 40;
 constexpr double unit_steps = 0x1p40;    // colours and vectors of features, weights
-constexpr double number_steps = 0x1p28;  // less precise but larger range: scene units may be kilometres or millimetres
+constexpr double number_steps = 0x1p28;  // and positions: less precise but larger range, for kilometres and millimetres
 constexpr double contribution_limit = 0x1p56;
 // Far enough below 2^63 that concurrent additions cannot overflow a sum between two checks.
 constexpr std::int64_t sum_limit = std::int64_t{1} << 62;
@@ -30,6 +30,8 @@ constexpr double dither_below = 0x1p12;
 constexpr std::size_t hit_slot = feature_channels;
 template <class Value>
 constexpr bool is_number = std::is_same_v<Value, std::optional<float>>;
+template <class Value>
+constexpr double steps_of = is_number<Value> || std::is_same_v<Value, Position> ? number_steps : unit_steps;
 // Slot numbers are hashed for stochastic rounding: slots of samples, then of splats, of spectral values, and of parts.
 constexpr unsigned parts_slot = 64;
 constexpr std::size_t chunk_pixels = 4096;
@@ -62,21 +64,29 @@ std::string spectral_channel(double nm) {
   return "S0." + std::to_string(rounded / parts) + "," + fraction + "nm";
 }
 
-std::vector<std::string> resolved_channels(const FilmContents& contents) {
-  std::vector<std::string> names{"R", "G", "B"};
-  const auto add_color = [&](const std::string& layer) {
-    for (const char* component : {".R", ".G", ".B"}) names.push_back(layer + component);
-  };
-  for (const std::string& layer : contents.light) add_color(layer);
-  for (const std::string& layer : contents.repeated) add_color(layer);
+void add_color(std::vector<std::string>& channels, const std::string& layer) {
+  for (const char* component : {".R", ".G", ".B"}) channels.push_back(layer + component);
+}
+
+// Of the light layers, features and samples.
+std::vector<std::string> surface_channels(const FilmContents& contents) {
+  std::vector<std::string> names;
+  for (const std::string& layer : contents.light) add_color(names, layer);
+  for (const std::string& layer : contents.repeated) add_color(names, layer);
   Features{}.for_each([&](const std::string& layer, const auto& value) {
     for (const char channel : channels_of(value)) names.push_back(layer + "." + channel);
   });
   names.emplace_back("samples");
+  return names;
+}
+
+std::vector<std::string> resolved_channels(const FilmContents& contents) {
+  std::vector<std::string> names{"R", "G", "B"};
+  for (std::string& name : surface_channels(contents)) names.push_back(std::move(name));
   const Decomposition& d = contents.decomposition;
-  for (const std::string& part : d.parts) add_color(part);
-  if (!d.splats.empty()) add_color(d.splats);
-  if (d.shares) add_color(d.shares->name);
+  for (const std::string& part : d.parts) add_color(names, part);
+  if (!d.splats.empty()) add_color(names, d.splats);
+  if (d.shares) add_color(names, d.shares->name);
   for (std::size_t b = 0; b < (contents.buckets ? contents.buckets->count : 0); ++b)
     names.push_back(spectral_channel(contents.buckets->centre(b)));
   return names;
@@ -114,8 +124,7 @@ Film Film::with_exponent(int width, int height, int step_exponent, const FilmCon
   std::fill_n(film.sample_steps_.begin(), film.light_slots(), film.radiance_steps_);
   double* steps = &film.sample_steps_[film.light_slots()];
   Features{}.for_each([&]<class Value>(const char*, const Value& value) {
-    if (is_number<Value>) *steps = number_steps;
-    steps += channels_of(value).size();
+    steps = std::fill_n(steps, channels_of(value).size(), steps_of<Value>);
   });
   const std::size_t buckets = contents.buckets ? contents.buckets->count : 0;
   for (Half& half : film.halves_) {
@@ -202,14 +211,17 @@ void Film::add(std::uint32_t pixel, const PixelSample& sample) {
     put(color.g);
     put(color.b);
   };
+  const auto put_vector = [&](const Vec3& value) { put_color({value.x, value.y, value.z}); };
   const auto put_light = [&](const Rgb& value) { put_color(sensor_.balanced(factor == 1 ? value : factor * value)); };
   for (const Rgb& layer : layers) put_light(layer);
   if (contents_.bias) put_light(sample.bias);
   sample.features.for_each([&]<class Value>(const char*, const Value& value) {
     if constexpr (is_number<Value>)
       values[slot++] = static_cast<double>(value.value_or(0.0f)) * hit;
+    else if constexpr (std::is_same_v<Value, Position>)
+      put_vector(value.at);
     else if constexpr (std::is_same_v<Value, Vec3>)
-      put_color({value.x, value.y, value.z});
+      put_vector(value);
     else
       put_color(value);
   });
@@ -303,32 +315,34 @@ void Film::write_spectrum(std::uint32_t pixel, std::uint64_t passes, float* out)
   }
 }
 
-Film::SampleSums Film::sample_sums(std::uint32_t pixel) const {
-  SampleSums sums;
-  const std::size_t stride = samples_stride(), first = std::size_t{pixel} * stride;
-  std::copy_n(&halves_[0].samples[first], stride, sums.begin());
-  for (std::size_t i = 0; i < stride; ++i) saturating_add(sums[i], halves_[1].samples[first + i]);
+Film::PixelSums Film::sums_of_half(FilmHalf half, std::uint32_t pixel) const {
+  const Half& own = halves_[static_cast<std::size_t>(half)];
+  PixelSums sums{};
+  std::copy_n(&own.samples[std::size_t{pixel} * samples_stride()], samples_stride(), sums.samples.begin());
+  if (contents_.splats)
+    std::copy_n(&own.splats[std::size_t{pixel} * splats_stride()], splats_stride(), sums.splats.begin());
   return sums;
 }
 
-std::int64_t Film::splat_sum(std::uint32_t pixel, std::size_t slot) const {
-  const std::size_t place = std::size_t{pixel} * splats_stride() + slot;
-  std::int64_t sum = halves_[0].splats[place];
-  saturating_add(sum, halves_[1].splats[place]);
-  return sum;
+Film::PixelSums Film::sums_of(std::uint32_t pixel) const {
+  PixelSums sums = sums_of_half(FilmHalf::first, pixel);
+  const PixelSums second = sums_of_half(FilmHalf::second, pixel);
+  for (std::size_t i = 0; i < samples_stride(); ++i) saturating_add(sums.samples[i], second.samples[i]);
+  for (std::size_t i = 0; i < splats_stride(); ++i) saturating_add(sums.splats[i], second.splats[i]);
+  return sums;
 }
 
-Film::LightMeans Film::light_means(std::uint32_t pixel, std::uint64_t passes, const SampleSums& samples) const {
+Film::LightMeans Film::light_means(const PixelSums& sums, std::uint64_t passes) const {
   LightMeans means{};
   const double step = std::ldexp(1.0, step_exponent_);
   const std::size_t values = splats_stride();
-  if (samples[weight_slot()] != 0) {
-    const double scale = step * unit_steps / static_cast<double>(samples[weight_slot()]);
-    for (std::size_t i = 0; i < values; ++i) means[i] = static_cast<double>(samples[i]) * scale;
+  if (sums.samples[weight_slot()] != 0) {
+    const double scale = step * unit_steps / static_cast<double>(sums.samples[weight_slot()]);
+    for (std::size_t i = 0; i < values; ++i) means[i] = static_cast<double>(sums.samples[i]) * scale;
   }
   if (contents_.splats && passes > 0) {
     const double scale = step / static_cast<double>(passes);
-    for (std::size_t i = 0; i < values; ++i) means[i] += static_cast<double>(splat_sum(pixel, i)) * scale;
+    for (std::size_t i = 0; i < values; ++i) means[i] += static_cast<double>(sums.splats[i]) * scale;
   }
   return means;
 }
@@ -372,26 +386,26 @@ Film::PartMeans Film::part_means(std::uint32_t pixel, double weight) const {
 }
 
 // Mean splatted light, summed over the light layers.
-Rgb Film::splat_mean(std::uint32_t pixel, std::uint64_t passes) const {
+Rgb Film::splat_mean(const SplatSums& splats, std::uint64_t passes) const {
   const double step = std::ldexp(1.0, step_exponent_);
   Rgb sum;
   for (std::size_t layer = 0; layer < contents_.light.size() && contents_.splats && passes > 0; ++layer) {
     const auto mean = [&](std::size_t component) {
-      const std::int64_t steps = splat_sum(pixel, 3 * layer + component);
-      return static_cast<float>(static_cast<double>(steps) * step / static_cast<double>(passes));
+      return static_cast<float>(static_cast<double>(splats[3 * layer + component]) * step /
+                                static_cast<double>(passes));
     };
     sum += {mean(0), mean(1), mean(2)};
   }
   return sum;
 }
 
-float* Film::write_decomposition(std::uint32_t pixel, std::uint64_t passes, double weight, const Rgb& balance,
+float* Film::write_decomposition(std::uint32_t pixel, std::uint64_t passes, const PixelSums& sums, const Rgb& balance,
                                  float* out) const {
   const Decomposition& d = contents_.decomposition;
-  PartMeans light = part_means(pixel, weight);
+  PartMeans light = part_means(pixel, static_cast<double>(sums.samples[weight_slot()]));
   for (Rgb& part : light) part = balance * part;
   for (std::size_t p = 0; p < d.parts.size(); ++p) out = write(light[p], out);
-  const Rgb splats = balance * splat_mean(pixel, passes);
+  const Rgb splats = balance * splat_mean(sums.splats, passes);
   if (!d.splats.empty()) out = write(splats, out);
   if (!d.shares) return out;
   std::array<float, 3> shares{};
@@ -404,16 +418,23 @@ float* Film::write_decomposition(std::uint32_t pixel, std::uint64_t passes, doub
   return out;
 }
 
-namespace {
-
-float mean_of_samples(std::int64_t sum, double weight) {
-  return weight != 0 ? static_cast<float>(static_cast<double>(sum) / weight) : 0.0f;
-}
-float mean_of_hits(std::int64_t sum, double hits) {
-  return hits > 0 ? static_cast<float>(static_cast<double>(sum) / number_steps / (hits / unit_steps)) : 0.0f;
+float* Film::write_light(const LightMeans& means, float* out) const {
+  return std::transform(means.begin(), means.begin() + static_cast<std::ptrdiff_t>(splats_stride()), out,
+                        [](double x) { return static_cast<float>(x); });
 }
 
-}  // namespace
+float* Film::write_features(const SampleSums& samples, float* out) const {
+  const std::int64_t* sums = &samples[light_slots()];
+  const auto weight = static_cast<double>(samples[weight_slot()]) / unit_steps,
+             hits = static_cast<double>(sums[hit_slot]) / unit_steps;
+  Features{}.for_each([&]<class Value>(const char*, const Value& value) {
+    const double count = is_number<Value> ? hits : weight;
+    for (std::size_t c = 0; c < channels_of(value).size(); ++c, ++sums)
+      *out++ = count != 0 ? static_cast<float>(static_cast<double>(*sums) / steps_of<Value> / count) : 0.0f;
+  });
+  *out++ = static_cast<float>(weight);
+  return out;
+}
 
 template <class Body>
 void Film::for_each_pixel(Body&& body) const {
@@ -427,21 +448,12 @@ Image Film::resolve(std::uint64_t passes, const Rgb& balance) const {
   const std::size_t stride = image.channel_count();
   for_each_pixel([&](std::uint32_t pixel) {
     float* out = &image.pixels[pixel * stride];
-    const SampleSums sums = sample_sums(pixel);
-    LightMeans means = light_means(pixel, passes, sums);
-    const std::span<double> light = std::span(means).first(splats_stride());
-    scale_colours(balance, light);
-    write_color(light.first(3 * contents_.light.size()), out);
-    out = std::transform(light.begin(), light.end(), out + 3, [](double x) { return static_cast<float>(x); });
-    const double weight = static_cast<double>(sums[weight_slot()]);
-    const std::int64_t* surface = &sums[light_slots()];
-    const double hits = static_cast<double>(surface[hit_slot]);
-    Features{}.for_each([&]<class Value>(const char*, const Value& value) {
-      for (std::size_t c = 0; c < channels_of(value).size(); ++c, ++surface)
-        *out++ = is_number<Value> ? mean_of_hits(*surface, hits) : mean_of_samples(*surface, weight);
-    });
-    *out++ = static_cast<float>(weight / unit_steps);
-    if (!parts_.empty()) out = write_decomposition(pixel, passes, weight, balance, out);
+    const PixelSums sums = sums_of(pixel);
+    LightMeans means = light_means(sums, passes);
+    scale_colours(balance, means);
+    write_color(std::span(means).first(3 * contents_.light.size()), out);
+    out = write_features(sums.samples, write_light(means, out + 3));
+    if (!parts_.empty()) out = write_decomposition(pixel, passes, sums, balance, out);
     if (contents_.buckets) write_spectrum(pixel, passes, out);
   });
   return image;
@@ -450,9 +462,21 @@ Image Film::resolve(std::uint64_t passes, const Rgb& balance) const {
 Image Film::resolve_color(std::uint64_t passes, const Rgb& balance) const {
   Image image(width_, height_, {"R", "G", "B"});
   for_each_pixel([&](std::uint32_t pixel) {
-    LightMeans light = light_means(pixel, passes, sample_sums(pixel));
+    LightMeans light = light_means(sums_of(pixel), passes);
     scale_colours(balance, light);
     write_color(std::span(light).first(3 * contents_.light.size()), &image.pixels[std::size_t{pixel} * 3]);
+  });
+  return image;
+}
+
+Image Film::resolve_first_half(std::uint64_t passes, const Rgb& balance) const {
+  Image image(width_, height_, surface_channels(contents_));
+  const std::size_t stride = image.channel_count();
+  for_each_pixel([&](std::uint32_t pixel) {
+    const PixelSums sums = sums_of_half(FilmHalf::first, pixel);
+    LightMeans means = light_means(sums, passes);
+    scale_colours(balance, means);
+    write_features(sums.samples, write_light(means, &image.pixels[pixel * stride]));
   });
   return image;
 }

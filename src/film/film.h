@@ -70,17 +70,17 @@ struct FilmContents {
   friend bool operator==(const FilmContents&, const FilmContents&) = default;
 };
 
-/// The passes of a render in two halves, whose difference shows the noise of the picture. Samples are stratified over
-/// passes: the 2^k passes from a multiple of 2^k on are a net, whose noise is less than that of independent samples.
-/// Each half is therefore made of whole nets. One has the passes 0 to 3, 8 to 15, 32 to 63 ..., the other 4 to 7, 16 to
-/// 31, 64 to 127 ... They are not equally large, but each has a quarter of the passes or more, from 8 on.
+/// The passes of a render in two halves, whose difference shows the noise of the picture. Of passes 2k and 2k + 1, each
+/// half has one: by the parity of the ones in the pass's number (Thue & Morse), so that what is ordered by bit
+/// reversal, such as the wavelengths of passes, is as even in each half as in all. Each half has random numbers of its
+/// own
+/// (`eye_sampler`): halves are independent, and each is stratified over its passes.
 enum class FilmHalf : std::uint8_t { first, second };
-inline constexpr std::uint64_t first_net = 4;
-/// One past the last pass of the net that the pass belongs to.
-inline std::uint64_t end_of_net(std::uint64_t pass) { return first_net * std::bit_ceil(pass / first_net + 1); }
 inline FilmHalf half_of_pass(std::uint64_t pass) {
-  return std::bit_width(pass / first_net) % 2 == 0 ? FilmHalf::first : FilmHalf::second;
+  return std::popcount(pass) % 2 == 0 ? FilmHalf::first : FilmHalf::second;
 }
+/// The number of a pass among those of its half.
+inline std::uint64_t number_in_half(std::uint64_t pass) { return pass / 2; }
 
 /// R, G, B of one half of the passes.
 struct HalfPicture {
@@ -93,7 +93,7 @@ struct HalfPicture {
 /// steps (4 million samples of the largest radiance); one contribution is clamped at 2^56 steps (65536 times the
 /// largest radiance). Floats above 2^-17 of the largest radiance are stored without rounding. Values below 2^12 steps
 /// are rounded stochastically, by a hash of pass, pixel of the full film and value, so that sums of tiny contributions
-/// stay unbiased. Weights and features use 2^40 steps per unit, features that are numbers 2^28.
+/// stay unbiased. Weights and features use 2^40 steps per unit, features that are numbers or positions 2^28.
 ///
 /// Spectral buckets, if present, hold the mean radiance of all light within them, per nanometre. A value at a
 /// wavelength counts with 1 / (4 pdf width). The buckets of samples are divided by the sum of these counts, so that a
@@ -161,15 +161,18 @@ class Film {
 
   /// The image after `passes` passes (divides splats by `passes`, samples by the sum of their weights). Channels, in
   /// this order: R, G, B (color); the light layers by their names (emission.R ... caustic.B, media.R ...); albedo.R ..
-  /// B; normal.X .. Z (mean, not unit length); depth.Z (mean over hits, 0 without hits); samples (sum of weights); the
-  /// parts of the decomposition by their names (technique.hit.R ..., term.A.R ...), its splats and its shares (in red,
-  /// green and blue the luminance share of the first, second and third group); the spectral buckets by their centres
-  /// (S0.360,5nm
+  /// B; normal.X .. Z (mean, not unit length); position.X .. Z; depth.Z (mean over hits, 0 without hits); samples (sum
+  /// of weights); the parts of the decomposition by their names (technique.hit.R ..., term.A.R ...), its splats and its
+  /// shares (in red, green and blue the luminance share of the first, second and third group); the spectral buckets by
+  /// their centres (S0.360,5nm
   /// ...). Pixels without samples are 0, and so are buckets in which no wavelength was drawn. `balance`: factors
   /// of the colours of light; the other channels are as measured.
   Image resolve(std::uint64_t passes, const Rgb& balance = {1, 1, 1}) const;
   /// Only R, G, B of `resolve`, for previews.
   Image resolve_color(std::uint64_t passes, const Rgb& balance = {1, 1, 1}) const;
+  /// The light layers and features of the first half of the passes, and its samples, as `resolve` names them. `passes`:
+  /// of this half.
+  Image resolve_first_half(std::uint64_t passes, const Rgb& balance = {1, 1, 1}) const;
   /// R, G, B of one half of the passes, of which there are `passes`, and its estimate of the bias, if the film has one.
   HalfPicture resolve_half(FilmHalf half, std::uint64_t passes, const Rgb& balance = {1, 1, 1}) const;
 
@@ -205,6 +208,7 @@ class Film {
   static constexpr std::size_t most_slots = (most_light_layers + 1) * 3 + surface_slots;  ///< of a sample
   using SampleValues = std::array<double, most_slots>;                                    ///< times the sample's weight
   using SampleSums = std::array<std::int64_t, most_slots>;
+  using SplatSums = std::array<std::int64_t, most_light_layers * 3>;  ///< 0 for missing layers
 
   /// Integers per pixel: splats, samples, and the parts of samples.
   std::size_t splats_stride() const { return 3 * contents_.layer_count(); }
@@ -235,14 +239,20 @@ class Film {
   template <class Body>
   void for_each_pixel(Body&& body) const;
   void note(Problem& problem, std::uint32_t pixel) const;
-  /// The sums of a pixel, over both halves.
-  SampleSums sample_sums(std::uint32_t pixel) const;
-  std::int64_t splat_sum(std::uint32_t pixel, std::size_t slot) const;
-  LightMeans light_means(std::uint32_t pixel, std::uint64_t passes, const SampleSums& samples) const;
+  /// Of one pixel. None for splats: the film has none.
+  struct PixelSums {
+    SampleSums samples;
+    SplatSums splats;
+  };
+  PixelSums sums_of_half(FilmHalf half, std::uint32_t pixel) const;
+  PixelSums sums_of(std::uint32_t pixel) const;
+  LightMeans light_means(const PixelSums& sums, std::uint64_t passes) const;
+  float* write_light(const LightMeans& means, float* out) const;
+  float* write_features(const SampleSums& samples, float* out) const;
   using PartMeans = std::array<Rgb, most_light_layers>;
   PartMeans part_means(std::uint32_t pixel, double weight) const;
-  Rgb splat_mean(std::uint32_t pixel, std::uint64_t passes) const;
-  float* write_decomposition(std::uint32_t pixel, std::uint64_t passes, double weight, const Rgb& balance,
+  Rgb splat_mean(const SplatSums& splats, std::uint64_t passes) const;
+  float* write_decomposition(std::uint32_t pixel, std::uint64_t passes, const PixelSums& sums, const Rgb& balance,
                              float* out) const;
 
   int width_ = 0;

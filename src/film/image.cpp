@@ -75,6 +75,21 @@ std::optional<Image> select_layer(const Image& image, std::string_view name) {
   return layer;
 }
 
+Image with_layers(const Image& picture, const Image& layers) {
+  const std::size_t own = picture.channel_count(), added = layers.channel_count();
+  std::vector<std::string> channels = picture.channels;
+  channels.insert(channels.end(), layers.channels.begin(), layers.channels.end());
+  Image out(picture.width, picture.height, std::move(channels));
+  out.window = picture.window;
+  for (std::size_t i = 0; i * own < picture.pixels.size(); ++i) {
+    float* const to = std::copy_n(&picture.pixels[i * own], own, &out.pixels[i * (own + added)]);
+    std::copy_n(&layers.pixels[i * added], added, to);
+  }
+  return out;
+}
+
+bool is_noise_channel(std::string_view channel) { return channel.starts_with("noise."); }
+
 bool is_spectral_channel(std::string_view channel) { return channel.starts_with("S0.") && channel.ends_with("nm"); }
 
 std::vector<std::string> layer_names(const Image& image) {

@@ -14,6 +14,7 @@
 #include "base/parallel.h"
 #include "image/image_encoder.h"
 #include "lanthorn/error.h"
+#include "lanthorn/packed_float.h"
 
 namespace lanthorn {
 
@@ -23,7 +24,7 @@ using Bytes = std::vector<unsigned char>;
 
 constexpr std::uint32_t magic_number = 20000630, format_version = 2, has_long_names = 0x400;
 constexpr std::size_t longest_short_name = 31, longest_name = 255;
-constexpr std::int32_t type_float = 2;
+constexpr std::int32_t type_half = 1, type_float = 2;
 constexpr unsigned char compression_zip = 3, increasing_y = 0;
 constexpr int lines_per_chunk = 16;  // of ZIP
 
@@ -55,7 +56,7 @@ Bytes list_of_channels(const Image& image, const std::vector<std::size_t>& order
   Bytes list;
   for (const std::size_t c : order) {
     append_text(list, channel_name(image.channels[c]));
-    append_number(list, type_float);
+    append_number(list, is_noise_channel(image.channels[c]) ? type_half : type_float);
     append_number(list, std::uint32_t{0});               // not for perceptually linear compression
     for (int i = 0; i < 2; ++i) append_number(list, 1);  // a sample for each column and line
   }
@@ -101,16 +102,28 @@ Bytes header_of(const Image& image, const std::vector<std::size_t>& order,
   return header;
 }
 
+std::size_t bytes_of_pixel(const Image& image) {
+  std::size_t bytes = 0;
+  for (const std::string& channel : image.channels)
+    bytes += is_noise_channel(channel) ? sizeof(std::uint16_t) : sizeof(float);
+  return bytes;
+}
+
+template <class Value>
+unsigned char* put(Value value, unsigned char* to) {
+  return std::copy_n(reinterpret_cast<const unsigned char*>(&value), sizeof(value), to);
+}
+
 // Line by line, channel by channel.
 Bytes pixels_of_lines(const Image& image, const std::vector<std::size_t>& order, int begin, int end) {
-  Bytes bytes(static_cast<std::size_t>(end - begin) * static_cast<std::size_t>(image.width) * order.size() *
-              sizeof(float));
+  Bytes bytes(static_cast<std::size_t>(end - begin) * static_cast<std::size_t>(image.width) * bytes_of_pixel(image));
   unsigned char* to = bytes.data();
   for (int y = begin; y < end; ++y)
     for (const std::size_t c : order) {
       const float* from = image.pixels.data() + image.index(0, y, c);
-      for (int x = 0; x < image.width; ++x, from += image.channel_count(), to += sizeof(float))
-        std::copy_n(reinterpret_cast<const unsigned char*>(from), sizeof(float), to);
+      const bool is_half = is_noise_channel(image.channels[c]);
+      for (int x = 0; x < image.width; ++x, from += image.channel_count())
+        to = is_half ? put(encode_finite_half(*from), to) : put(*from, to);
     }
   return bytes;
 }
@@ -137,7 +150,7 @@ Bytes compressed(const Bytes& raw) {
 std::vector<unsigned char> encode_openexr(const Image& image, const std::vector<ImageAttribute>& attributes) {
   const std::vector<std::size_t> order = sorted_channels(image);
   const double chunk_bytes =
-      static_cast<double>(lines_per_chunk * sizeof(float)) * image.width * static_cast<double>(image.channel_count());
+      static_cast<double>(lines_per_chunk) * image.width * static_cast<double>(bytes_of_pixel(image));
   if (image.width < 1 || image.height < 1 || chunk_bytes > std::numeric_limits<std::int32_t>::max())
     throw Error("cannot write: OpenEXR has no images of " + std::to_string(image.width) + " x " +
                 std::to_string(image.height) + " pixels with " + std::to_string(image.channel_count()) + " channels");

@@ -29,7 +29,8 @@ enum class Stream : std::uint32_t {
   caustic,
   pilot_emission,
   irradiance,
-  shadow
+  shadow,
+  camera_of_second_half
 };
 
 /// A stream by name (FNV-1a hash), distinct from the streams above, which are small numbers.
@@ -53,7 +54,7 @@ constexpr std::uint32_t second_sobol_coordinate(std::uint32_t i) {
 /// shuffled independently per group (Burley 2020, "Practical Hash-based Owen Scrambling"); later groups are hashes.
 class Sampler {
  public:
-  /// Eye path: stratified over the passes of its pixel.
+  /// Eye path: stratified over the passes of its pixel, as they are numbered here.
   static Sampler for_pixel(std::uint64_t seed, Stream stream, std::uint32_t pixel, std::uint32_t pass);
   /// Photon `index` of light `light`: stratified over the photons that this light emits in the pass.
   static Sampler for_light_path(std::uint64_t seed, Stream stream, std::uint32_t light, std::uint32_t pass,

@@ -13,7 +13,7 @@
 
 namespace lanthorn {
 
-/// Collects the light of one eye path by class, and the albedo, normal and depth that it sees, into one film sample.
+/// Collects the light of one eye path by class, and the features that it sees, into one film sample.
 /// Visitors show it each vertex and flight by `see` before they add light there.
 class LightLayers {
  public:
@@ -67,7 +67,7 @@ class LightLayers {
   /// Sum of a class so far, with the factor of dispersion.
   const Spectrum& light(PathClass path_class) const { return sums_[static_cast<std::size_t>(path_class)]; }
 
-  /// Records the depth of the first surface, and albedo and normal of the first one with a non-delta lobe.
+  /// Records the depth of the first surface, and albedo, normal and position of the first one with a non-delta lobe.
   void see(const SurfaceVertex& vertex) {
     come_from(false, vertex.state);
     if (!features_.depth) features_.depth = std::sqrt(distance_squared(vertex.state.previous, vertex.at.position));
@@ -75,6 +75,7 @@ class LightLayers {
     seen_ = true;
     features_.albedo = w_.to_rgb(albedo(vertex.at.bsdf, vertex.wi_local));
     features_.normal = vertex.at.shading.n;
+    features_.position = {vertex.at.position};
   }
 
   void see(const MediumVertex& vertex) { come_from(true, vertex.state); }

@@ -11,6 +11,7 @@
 #include <string>
 #include <utility>
 
+#include "lanthorn/image.h"
 #include "render/colour_balance.h"
 
 namespace lanthorn {
@@ -31,10 +32,8 @@ std::uint64_t passes_or_one(const Passes& passes) { return std::max<std::uint64_
 Passes passes_in(const Passes& passes, FilmHalf half) {
   Passes own;
   for (const PassRange& range : passes)
-    for (std::uint64_t begin = range.begin, end = begin; begin < range.end; begin = end) {
-      end = std::min(range.end, end_of_net(begin));
-      if (half_of_pass(begin) == half) own.push_back({begin, end});
-    }
+    for (std::uint64_t pass = range.begin; pass < range.end; ++pass)
+      if (half_of_pass(pass) == half) own.push_back({pass, pass + 1});
   return own;
 }
 
@@ -50,17 +49,26 @@ MeasuredError measure_error(const RenderState& state, const Film& film, const Pa
   return lanthorn::measure_error(pictures);
 }
 
-// Adds layers of colours.
-void add_layers(Image& image, const std::vector<std::pair<std::string, const Image*>>& layers) {
-  const std::size_t before = image.channel_count(), after = before + 3 * layers.size();
-  std::vector<float> pixels(image.pixels.size() / before * after);
-  for (std::size_t i = 0; i * before < image.pixels.size(); ++i) {
-    float* out = std::copy_n(&image.pixels[i * before], before, &pixels[i * after]);
-    for (const auto& [name, layer] : layers) out = std::copy_n(&layer->pixels[i * 3], 3, out);
+// Adds the channels of another picture, each with this before its name.
+void add_channels(Image& image, const std::string& prefix, Image other) {
+  for (std::string& channel : other.channels) channel.insert(0, prefix);
+  image = with_layers(image, other);
+}
+
+// Of each layer but `samples`, how much more the first half of the passes has than the picture; and that half's share
+// of the samples.
+Image noise_of(const Image& picture, Image first_half) {
+  const std::size_t channels = first_half.channel_count(), samples = channels - 1;
+  std::vector<std::size_t> from;
+  for (const std::string& channel : first_half.channels) from.push_back(*picture.find_channel(channel));
+  for (std::size_t i = 0; i * channels < first_half.pixels.size(); ++i) {
+    float* const noise = &first_half.pixels[i * channels];
+    const float* const all = &picture.pixels[i * picture.channel_count()];
+    for (std::size_t c = 0; c < samples; ++c) noise[c] -= all[from[c]];
+    noise[samples] = all[from[samples]] != 0 ? noise[samples] / all[from[samples]] : 0.0f;
   }
-  for (const auto& [name, layer] : layers)
-    for (const char* component : {".R", ".G", ".B"}) image.channels.push_back(name + component);
-  image.pixels = std::move(pixels);
+  first_half.channels[samples] = "share";
+  return first_half;
 }
 
 }  // namespace
@@ -76,9 +84,16 @@ MeasuredError measure_error(const RenderState& state) {
 Image picture_of(const RenderState& state, const Film& film, const Passes& passes) {
   Image image = film.resolve(passes_or_one(passes), colour_balance(state, passes));
   const MeasuredError error = measure_error(state, film, passes, *select_layer(image, "color"));
-  std::vector<std::pair<std::string, const Image*>> layers{{"error", &error.standard_error}};
-  if (film.contents().bias) layers.emplace_back("bias", &error.bias);
-  add_layers(image, layers);
+  add_channels(image, "error.", error.standard_error);
+  if (film.contents().bias) add_channels(image, "bias.", error.bias);
+  return image;
+}
+
+Image picture_with_noise(const RenderState& state) {
+  Image image = picture_of(state);
+  const Passes first = passes_in(state.passes, FilmHalf::first);
+  add_channels(image, "noise.",
+               noise_of(image, state.film.resolve_first_half(count(first), colour_balance(state, first))));
   return image;
 }
 

@@ -22,7 +22,7 @@ class Noise : public Cli {
 TEST_F(Noise, EndsTheRenderWhenTheBoundIsReached) {
   for (const char* method : {"path", "bdpt", "vcm", "probppm", "sppm"}) {
     SCOPED_TRACE(method);
-    std::uint64_t passes = 4;
+    std::uint64_t passes = 3;
     for (const auto& [noise, bound] : {std::pair("60%", 0.6), std::pair("0.2", 0.2)}) {
       succeed(until(method, noise, {"-o", "a.exr", "--json", "a.json"}));
       const nlohmann::json report = json("a.json"), error = report["error"];
@@ -53,8 +53,8 @@ TEST_F(Noise, EndsAtTheSamePassWithAnyNumberOfThreads) {
 TEST_F(Noise, EndsAtTheSamePassAfterAResume) {
   for (const char* method : {"path", "vcm", "sppm"}) {
     succeed(until(method, "30%", {"-o", "whole.exr", "-o", "whole.state"}));
-    succeed(until(method, "30%", {"-p", "6", "-o", "part.state"}));
-    EXPECT_EQ(load_state(path("part.state")).pass_count(), 6u);
+    succeed(until(method, "30%", {"-p", "4", "-o", "part.state"}));
+    EXPECT_EQ(load_state(path("part.state")).pass_count(), 4u);
     succeed(until(method, "30%", {"--resume", "part.state", "-o", "resumed.exr", "-o", "resumed.state"}));
     expect_equal_files("whole.exr", "resumed.exr");
     expect_equal_files("whole.state", "resumed.state");

@@ -26,7 +26,8 @@ class CliOptions : public Cli {
     fs::create_directories(path(to).parent_path());
     fs::copy_file(path(from), path(to), fs::copy_options::overwrite_existing);
   }
-  /// Renders a scene of 16 x 16 pixels and a part of it, in two passes. `rounding`: share of a value.
+  /// Renders a scene of 16 x 16 pixels and a part of it, in two passes. `rounding`: share of a value. Estimates of the
+  /// error are means over neighbouring pixels, which a part lacks.
   void expect_pixels_of_whole(const Words& words, float rounding = 0) const {
     SCOPED_TRACE(testing::PrintToString(words));
     succeed(words + Words{"-p", "2", "-o", "whole.exr"});
@@ -39,6 +40,7 @@ class CliOptions : public Cli {
     for (int y = 0; y < part.height; ++y)
       for (int x = 0; x < part.width; ++x)
         for (std::size_t c = 0; c < part.channel_count(); ++c) {
+          if (part.channels[c].starts_with("error.") || part.channels[c].starts_with("bias.")) continue;
           const float a = part.at(x, y, c), b = whole.at(x + 3, y + 5, c);
           const bool equal = std::fabs(a - b) <= rounding * std::fabs(b) || (std::isnan(a) && std::isnan(b));
           different += equal ? 0 : 1;

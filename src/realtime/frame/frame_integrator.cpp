@@ -50,7 +50,8 @@ PixelSample sample_of(const FrameOnCpu& frame, std::size_t pixel, float weight, 
   const glm::vec4& colour = frame.colours[pixel];
   sample.features.albedo = {colour.x, colour.y, colour.z};
   sample.features.normal = decode_octahedral<16>(frame.surfaces[pixel].x);
-  sample.features.depth = std::sqrt(distance_squared(Point(frame.positions[pixel]), eye));
+  sample.features.position = {Point(frame.positions[pixel])};
+  sample.features.depth = std::sqrt(distance_squared(sample.features.position.at, eye));
   return sample;
 }
 
@@ -67,7 +68,7 @@ float place_frame(const RenderJob& job, std::uint32_t pass, FrameSettings& setti
   return place.weight;
 }
 
-/// Adds the last frame to the film: light, albedo, normal and depth.
+/// Adds the last frame to the film: light and features.
 void add_frame(const Renderer& renderer, const RenderJob& job, const FrameSettings& settings, float weight,
                Film& film) {
   const FrameOnCpu seen = read_frame(renderer);

@@ -29,6 +29,8 @@ namespace {
 
 // Four layers of light, as most methods have.
 constexpr std::size_t emission = 0, direct = 1, indirect = 2, caustic = 3;
+constexpr std::size_t first_splats =
+    3 * 4 + feature_channels + 2;  // plane of a film without bias: after light, features, hits, weights
 const std::vector<std::string> layers{"emission", "direct", "indirect", "caustic"};
 const Decomposition techniques{{"technique.hit", "technique.nee", "technique.vc", "technique.vm"},
                                "technique.splat",
@@ -141,17 +143,21 @@ TEST(Film, HalvesAreFilmsOfTheirPasses) {
   }
 }
 
-TEST(Film, HalvesAreMadeOfNets) {
-  std::array<int, 2> counts{};
-  for (std::uint64_t pass = 0; pass < 4096; ++pass) {
-    ++counts[static_cast<std::size_t>(half_of_pass(pass))];
-    EXPECT_EQ(half_of_pass(pass), half_of_pass(end_of_net(pass) - 1)) << pass;
-    EXPECT_NE(half_of_pass(pass), half_of_pass(end_of_net(pass))) << pass;
-    const int smaller = std::min(counts[0], counts[1]), all = counts[0] + counts[1];
-    if (all >= 8) {
-      EXPECT_GE(4 * smaller, all) << pass;
-    }
+// Also of what is ordered by bit reversal, as wavelengths are: a half of the passes has as many in each part of the
+// range.
+TEST(Film, HalvesHaveOneOfEachTwoPassesAndAreEven) {
+  constexpr std::uint64_t passes = 64;
+  constexpr std::uint32_t parts = 16;
+  std::array<std::array<int, parts>, 2> counts{};
+  for (std::uint64_t pass = 0; pass < passes; ++pass) {
+    EXPECT_NE(half_of_pass(pass), half_of_pass(pass ^ 1)) << pass;
+    EXPECT_EQ(number_in_half(pass), number_in_half(pass ^ 1)) << pass;
+    std::uint32_t reversed = 0;
+    for (int bit = 0; bit < 6; ++bit) reversed |= static_cast<std::uint32_t>(pass >> bit & 1) << (5 - bit);
+    ++counts[static_cast<std::size_t>(half_of_pass(pass))][reversed * parts / passes];
   }
+  for (const auto& half : counts)
+    for (const int count : half) EXPECT_EQ(count, static_cast<int>(passes / parts / 2));
 }
 
 TEST(Film, BiasIsAMeanOfSamplesAndNotOfTheColor) {
@@ -160,7 +166,7 @@ TEST(Film, BiasIsAMeanOfSamplesAndNotOfTheColor) {
     film.begin_pass(pass);
     PixelSample s;
     s.light[direct] = {1, 2, 3};
-    s.bias = pass < 4 ? Rgb{-1, 0, 2} : Rgb{3, 0, 0};
+    s.bias = half_of_pass(pass) == FilmHalf::first ? Rgb{-1, 0, 2} : Rgb{3, 0, 0};
     s.weight = 0.5f;
     film.add(0, s);
   }
@@ -306,7 +312,7 @@ TEST(Film, BucketsAreSavedAndMergedExactly) {
   ASSERT_TRUE(merged.compatible(whole));
   EXPECT_FALSE(merged.compatible(Film(2, 2, 4, {.light = layers, .splats = true})));
   merged.merge(film_of_passes(0, 5));
-  ASSERT_EQ(whole.plane_count(), 2 * (21 + 12) + 3 * 5);
+  ASSERT_EQ(whole.plane_count(), 2 * (first_splats + 12) + 3 * 5);
   Film copy = Film::with_exponent(2, 2, whole.step_exponent(), {.light = layers, .splats = true, .buckets = buckets});
   for (std::size_t i = 0; i < whole.plane_count(); ++i) {
     EXPECT_EQ(merged.plane(i), whole.plane(i)) << i;
@@ -365,9 +371,9 @@ TEST(Film, TinyContributionsAreNotLost) {
   // The sum of count rounding errors has a standard deviation of at most sqrt(count) / 2 steps. |z| > 5: 6e-7.
   const double tolerance = 5 * 0.5 * std::sqrt(count) * 0x1p-40;
   EXPECT_NEAR(sum(9), expected, tolerance);
-  EXPECT_NEAR(sum(21 + 6), expected, tolerance);
-  EXPECT_NEAR(sum(21 + 7), count * 0x1p-45, tolerance) << "equal values must be rounded differently";
-  EXPECT_NEAR(sum(21 + 8), -expected, tolerance);
+  EXPECT_NEAR(sum(first_splats + 6), expected, tolerance);
+  EXPECT_NEAR(sum(first_splats + 7), count * 0x1p-45, tolerance) << "equal values must be rounded differently";
+  EXPECT_NEAR(sum(first_splats + 8), -expected, tolerance);
 }
 
 TEST(Film, FloatsInRangeAreStoredExactly) {
@@ -398,10 +404,10 @@ TEST(Film, ReportsNonFiniteValuesWithTheirPlace) {
 
 TEST(Film, ReportsOverflowAndSaturates) {
   Film film(2, 1, 1, {.light = layers, .decomposition = techniques, .splats = true});
-  film.begin_pass(2);
+  film.begin_pass(3);
   film.splat(1, direct, {0x1p16f, 0x1p17f, 0});  // at the limit of a contribution, and beyond
   EXPECT_EQ(film.report().too_large, 1u);
-  EXPECT_EQ(film.report().first_too_large, (FilmPlace{2, 1}));
+  EXPECT_EQ(film.report().first_too_large, (FilmPlace{3, 1}));
   EXPECT_EQ(film.report().saturated, 0u);
   PixelSample s;
   s.light[emission] = {-0x1p16f, 0x1p15f, 0};
@@ -411,13 +417,13 @@ TEST(Film, ReportsOverflowAndSaturates) {
     film.add(0, s);
   }
   EXPECT_EQ(film.report().saturated, 3u);
-  EXPECT_EQ(film.plane(21 + 3)[1], std::int64_t{1} << 62);
+  EXPECT_EQ(film.plane(first_splats + 3)[1], std::int64_t{1} << 62);
   EXPECT_EQ(film.plane(0)[0], -(std::int64_t{1} << 62));
   film.splat(1, direct, {-1, 0, 0});
   s.light[emission].r = 1;
   film.add(0, s);
   EXPECT_EQ(film.plane(0)[0], -(std::int64_t{1} << 62)) << "saturation sticks";
-  EXPECT_EQ(film.plane(21 + 3)[1], std::int64_t{1} << 62) << "saturation sticks";
+  EXPECT_EQ(film.plane(first_splats + 3)[1], std::int64_t{1} << 62) << "saturation sticks";
   Film other = film;
   film.merge(other);
   EXPECT_EQ(film.report().saturated, 4u) << "twice 100 * 2^15 is too much as well";
@@ -426,7 +432,7 @@ TEST(Film, ReportsOverflowAndSaturates) {
 TEST(Film, ConcurrentOverflowSaturates) {
   Film film(1, 1, 1, {.light = layers, .splats = true});
   parallel_for(0, 2000, [&](int) { film.splat(0, direct, {0x1.9p15f, -0x1.7p15f, 1}); });
-  EXPECT_EQ(film.plane(21 + 3)[0], std::int64_t{1} << 62);
+  EXPECT_EQ(film.plane(first_splats + 3)[0], std::int64_t{1} << 62);
   EXPECT_EQ(film.report().saturated, 2u);
 }
 
