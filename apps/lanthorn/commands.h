@@ -18,6 +18,7 @@ void add_info(CLI::App& app);
 void add_compare(CLI::App& app);
 void add_convert(CLI::App& app);
 void add_converge(CLI::App& app);
+void add_denoise(CLI::App& app);
 void add_develop(CLI::App& app);
 void add_merge(CLI::App& app);
 void add_photons(CLI::App& app);

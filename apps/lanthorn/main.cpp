@@ -68,6 +68,7 @@ int run(int argc, char** argv) {
   add_info(app);
   add_compare(app);
   add_converge(app);
+  add_denoise(app);
   add_develop(app);
   add_convert(app);
   add_merge(app);

@@ -41,7 +41,8 @@ void run(const MergeCommand& o) {
   const StateSummary summary = summarize(*merged);
   if (fs::path(o.output).extension() == ".state" && !o.settings.force)
     check_replaced_state(o.output, *merged, summary.passes, "merge it, too");
-  write_output(o.output, *merged, estimate_error(*merged), o.settings);
+  FinishedPicture picture(*merged, o.settings);
+  write_output(o.output, *merged, picture, estimate_error(*merged), o.settings);
   announce("{}: {} passes of {} from {} files\n", o.output, summary.pass_count, summary.integrator, o.inputs.size());
   report_film(summary.report);
 }

@@ -19,8 +19,6 @@ namespace lanthorn::program {
 
 namespace fs = std::filesystem;
 
-namespace {
-
 nlohmann::json metadata_of(const StateSummary& state, const ErrorEstimate& error, bool reproducible,
                            const nlohmann::json& statistics) {
   const nlohmann::json settings = nlohmann::json::parse(state.settings);
@@ -40,6 +38,8 @@ nlohmann::json metadata_of(const StateSummary& state, const ErrorEstimate& error
   if (!statistics.is_null()) metadata["statistics"] = statistics;
   return metadata;
 }
+
+namespace {
 
 std::vector<float> brightest_channels(const Image& color) {
   std::vector<float> brightest;
@@ -153,6 +153,11 @@ OptionTable output_options(OutputSettings& settings) {
       {{.names = "--reproducible",
         .value = flag(settings.reproducible),
         .brief = "Omit times from the files, so that equal images are equal files"},
+       {.names = "--denoise",
+        .value = flag(settings.denoise),
+        .brief = "Remove the noise that is left, layer by layer",
+        .details = ".exr files have the layers denoised, denoised.direct and so on beside those with noise; .png, .jpg "
+                   "and .tif show the denoised picture."},
        force_option(settings.force, "a .state that holds another render or more passes, and write-protected files")});
 }
 
@@ -202,12 +207,36 @@ void write_picture(const fs::path& path, const Image& image, const OutputSetting
     warn_of_exposure(path, image, display);
 }
 
-void write_output(const fs::path& path, const RenderState& state, const ErrorEstimate& error,
+FinishedPicture::FinishedPicture(const RenderState& state, const OutputSettings& settings) : state_(state) {
+  if (!settings.denoise) return;
+  if (summarize(state).pass_count > 1)
+    denoised_ = denoise(picture_with_noise(state));
+  else
+    warn("a picture of a single pass is not denoised: what is noise shows in the difference of passes");
+}
+
+const Image& FinishedPicture::for_file(const fs::path& path) {
+  if (lower_extension(path) == ".exr") {
+    if (denoised_) return denoised_->picture;
+    if (!all_) all_ = picture_with_noise(state_);
+    return *all_;
+  }
+  if (!shown_) shown_ = denoised_ ? with_denoised_light(denoised_->picture) : picture_of(state_);
+  return *shown_;
+}
+
+std::optional<ErrorEstimate> FinishedPicture::denoised_error() const {
+  if (!denoised_) return std::nullopt;
+  return denoised_->error;
+}
+
+void write_output(const fs::path& path, const RenderState& state, FinishedPicture& picture, const ErrorEstimate& error,
                   const OutputSettings& settings, const nlohmann::json& statistics) {
   if (path.extension() == ".state") return save_state(state, path, {.times = !settings.reproducible});
   const StateSummary summary = summarize(state);
-  write_picture(path, picture_of(state), settings, summary.measures_exposure,
-                metadata_of(summary, error, settings.reproducible, statistics).dump());
+  nlohmann::json metadata = metadata_of(summary, error, settings.reproducible, statistics);
+  if (const auto denoised = picture.denoised_error()) metadata["denoised_error"] = estimate_json(*denoised);
+  write_picture(path, picture.for_file(path), settings, summary.measures_exposure, metadata.dump());
 }
 
 void report_film(const FilmReport& report) {

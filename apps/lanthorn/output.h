@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "lanthorn/denoise.h"
 #include "lanthorn/image_file.h"
 #include "lanthorn/state.h"
 #include "options.h"
@@ -19,6 +20,7 @@ struct OutputSettings {
   DisplaySettings display;                ///< of all pictures but .exr
   std::optional<bool> measures_exposure;  ///< from each of them, instead of the display's; none: as the scene wants it
   bool reproducible = false;              ///< no times in the files
+  bool denoise = false;                   ///< .exr files have the denoised layers, too, all others show them
   bool hints = true;                      ///< says the measured exposure, or a better one if it is too bright
   bool force = false;  ///< replace states that hold something else, and files that are write-protected
 };
@@ -47,6 +49,11 @@ inline const std::vector<std::string> output_extensions = [] {
   return extensions;
 }();
 
+/// What an image file says of the render that it shows. `statistics` may be null. `reproducible`: without them and
+/// times.
+nlohmann::json metadata_of(const StateSummary& state, const ErrorEstimate& error, bool reproducible,
+                           const nlohmann::json& statistics);
+
 /// Writes the picture of a running render. Throws Error.
 void write_preview(const std::filesystem::path& path, const RenderState& state, const OutputSettings& settings);
 
@@ -56,11 +63,27 @@ void write_preview(const std::filesystem::path& path, const RenderState& state, 
 void write_picture(const std::filesystem::path& path, const Image& image, const OutputSettings& settings,
                    bool measures_exposure, const std::string& metadata);
 
-/// Writes the picture as `write_picture`, or the state itself, by the extension of `path`. `error`: of the picture.
-/// `statistics`: of the render,
-/// for an image's metadata; may be null. Throws Error.
-void write_output(const std::filesystem::path& path, const RenderState& state, const ErrorEstimate& error,
-                  const OutputSettings& settings, const nlohmann::json& statistics = nullptr);
+/// The picture of a state as files have it, made when it is first asked for.
+class FinishedPicture {
+ public:
+  /// Denoises the picture if the settings say so.
+  FinishedPicture(const RenderState& state, const OutputSettings& settings);
+  /// For a file of this name: .exr files have all layers, and what a denoiser needs.
+  const Image& for_file(const std::filesystem::path& path);
+  /// Of the denoised picture, if it is.
+  std::optional<ErrorEstimate> denoised_error() const;
+
+ private:
+  const RenderState& state_;
+  std::optional<DenoisedPicture> denoised_;
+  std::optional<Image> all_, shown_;
+};
+
+/// Writes the picture as `write_picture`, or the state itself, by the extension of `path`. `error`: of the picture
+/// before it is denoised. `statistics`: of the render, for an image's metadata; may be null. Throws Error.
+void write_output(const std::filesystem::path& path, const RenderState& state, FinishedPicture& picture,
+                  const ErrorEstimate& error, const OutputSettings& settings,
+                  const nlohmann::json& statistics = nullptr);
 
 /// Warns if the film could not add some values exactly.
 void report_film(const FilmReport& report);

@@ -96,17 +96,22 @@ void warn_of_limit(const StateSummary& state) {
 }
 
 void write_report(const std::string& path, const Scene& scene, const RenderState& state, const ErrorEstimate& error,
-                  const RenderStatistics& statistics) {
+                  const std::optional<ErrorEstimate>& denoised_error, const RenderStatistics& statistics) {
   nlohmann::json report = describe(statistics);
   const StateSummary summary = summarize(state);
   report["settings"] = nlohmann::json::parse(summary.settings);
   report["film"] = describe(summary.report);
   report["depth_limit"] = describe_limit(report["settings"], statistics.rays);
   report["error"] = estimate_json(error);
+  if (denoised_error) report["denoised_error"] = estimate_json(*denoised_error);
   report["passes_total"] = summary.pass_count;
   report["scene"] = scene_report(summarize(scene));
   const std::string text = report_text(report);
   write_file(path, std::as_bytes(std::span(text)));
+}
+
+std::string describe_denoised(const std::optional<ErrorEstimate>& error) {
+  return error ? fmt::format("; denoised {}", describe_error(*error)) : std::string();
 }
 
 }  // namespace
@@ -172,22 +177,24 @@ void save_render(const RenderFiles& a, const RenderOptions& options, const std::
   const ErrorEstimate error = is_measured ? *statistics.error : estimate_error(state);
   OutputSettings settings = a.output;
   settings.hints = !a.quiet;
+  FinishedPicture picture(state, settings);
   std::vector<Output> outputs;
   outputs.reserve(paths.size() + 1);
   for (const fs::path& path : paths)
     outputs.push_back({path, path.extension() == ".state" ? OutputKind::state : OutputKind::picture, [&] {
                          check_state(a, path, state, summary.passes);  // fewer than expected, after a signal
-                         write_output(path, state, error, settings, described);
+                         write_output(path, state, picture, error, settings, described);
                        }});
   if (!a.json.empty())
-    outputs.push_back({a.json, OutputKind::report, [&] { write_report(a.json, scene, state, error, statistics); }});
+    outputs.push_back({a.json, OutputKind::report,
+                       [&] { write_report(a.json, scene, state, error, picture.denoised_error(), statistics); }});
   write_outputs(outputs, state);
   report_film(summary.report);
   if (!options.max_depth) warn_of_limit(summary);  // else the user has chosen it
   if (a.quiet) return;
   for (const fs::path& path : paths)
-    announce("{}: {} passes by {} in {}, error {}\n", path.string(), summary.pass_count, summary.integrator,
-             format_duration(summary.seconds), describe_error(error));
+    announce("{}: {} passes by {} in {}, error {}{}\n", path.string(), summary.pass_count, summary.integrator,
+             format_duration(summary.seconds), describe_error(error), describe_denoised(picture.denoised_error()));
 }
 
 }  // namespace lanthorn::program

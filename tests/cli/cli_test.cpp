@@ -23,8 +23,8 @@ namespace {
 
 const Words integrators{"auto",      "probppm",          "sppm",    "ppm", "vcm", "bpm", "bdpt", "path", "light", "mlt",
                         "photonmap", "reversephotonmap", "splitsum"};
-const Words subcommands{"render", "info",    "compare", "converge", "photons",
-                        "ibl",    "convert", "develop", "merge",    "list"};
+const Words subcommands{"render",  "info",    "compare", "converge", "photons", "ibl",
+                        "convert", "denoise", "develop", "merge",    "list"};
 
 TEST_F(Cli, HelpNamesSubcommandsAndOptions) {
   const Ending program = succeed({"--help"});
@@ -40,6 +40,7 @@ TEST_F(Cli, HelpNamesSubcommandsAndOptions) {
       {"converge", {"--integrator", "--passes", "--runs", "--reference", "--fit-from", "--plot", "--json"}},
       {"ibl", {"ENV", "--output", "--maps", "--formats", "--texels", "--mapping", "--size", "--samples", "--check"}},
       {"convert", {"scene", "output", "--sandbox", "pbrt-v3"}},
+      {"denoise", {"input", "--output", "--replace", "--exposure", "--reproducible"}},
       {"develop", {"picture", "output", "--layer", "--exposure", "--view-transform"}},
       {"merge", {"--output", "--exposure", "--view-transform", "--reproducible"}},
       {"list", {"integrator"}}};
@@ -107,6 +108,31 @@ TEST_F(Cli, DevelopMakesThePngThatRenderWrites) {
   refuse({"develop", "a.png", "a.png"}, "is the picture");
   refuse({"develop", "tiny.pbrt", "x.png"}, "tiny.pbrt");
   refuse({"convert", "a.exr", "x.png"}, "develop makes a .png of it");
+}
+
+TEST_F(Cli, DenoiseAfterwardsIsTheSameAsWhileRendering) {
+  succeed(render({"-p", "6", "--denoise", "-o", "a.exr", "-o", "a.png", "-o", "a.state", "--reproducible"}));
+  succeed(render({"-p", "6", "-o", "plain.exr", "--reproducible", "--threads", "3"}));
+  succeed({"denoise", "a.state", "-o", "b.exr", "--reproducible"});
+  expect_equal_files("b.exr", "a.exr");
+  const Ending ending = succeed({"denoise", "plain.exr", "-o", "c.png"});
+  EXPECT_TRUE(contains(ending.out, "c.png: plain.exr without noise, error "));
+  const Image now = read_image(path("a.png")), later = read_image(path("c.png"));  // from 16 bits of the noise
+  for (std::size_t i = 0; i < now.pixels.size(); ++i) EXPECT_NEAR(later.pixels[i], now.pixels[i], 0.02f) << i;
+  succeed({"denoise", "plain.exr", "-o", "d.exr", "--replace"});
+  const Image clean = read_image(path("d.exr")), both = read_image(path("a.exr"));
+  EXPECT_FALSE(clean.find_channel("noise.share") || clean.find_channel("denoised.R"));
+  EXPECT_NEAR(clean.at(3, 3, *clean.find_channel("G")), both.at(3, 3, *both.find_channel("denoised.G")), 0.01f);
+  EXPECT_TRUE(contains(succeed({"info", "a.exr"}).out, "denoised"));
+  refuse({"denoise", "d.exr", "-o", "x.exr"}, "d.exr: the picture has no layers `noise`");
+  refuse({"denoise", "a.png", "-o", "x.exr"}, "a.png: the picture has no layers `noise`");
+  refuse({"denoise", "a.exr", "-o", "x.gif"}, "expected a name that ends in .exr");
+  refuse({"denoise", "a.exr", "-o", "a.exr"}, "is the picture");
+  refuse({"denoise", "none.exr", "-o", "x.exr"}, "none.exr");
+  const Ending single = run(render({"-p", "1", "--denoise", "-o", "x.exr"}));
+  EXPECT_EQ(single.exit_code, 0);
+  EXPECT_TRUE(contains(single.err, "a picture of a single pass is not denoised"));
+  refuse({"denoise", "x.exr", "-o", "y.exr"}, "x.exr: a picture of a single pass cannot be denoised");
 }
 
 TEST_F(Cli, VersionIsANumber) {

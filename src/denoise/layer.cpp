@@ -1,0 +1,208 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "denoise/layer.h"
+
+#include <cmath>
+#include <utility>
+
+namespace lanthorn::denoising {
+
+namespace {
+
+// The estimated variance of the mean over all passes.
+Plane variance_of_mean(const Halves& light, std::size_t channel, const Shares& shares) {
+  const Plane &a = light[0][channel], &b = light[1][channel];
+  return Plane::of(a.width(), a.height(), [&](std::size_t i) { return shares[0] * shares[1] * sqr(a[i] - b[i]); });
+}
+// Summed over channels, and smoothed.
+Plane variance_of_mean(const Halves& light, const Shares& shares, int radius) {
+  Plane sum = variance_of_mean(light, 0, shares);
+  for (std::size_t c = 1; c < color_channels; ++c) {
+    const Plane other = variance_of_mean(light, c, shares);
+    sum.fill([&](std::size_t i) { return sum[i] + other[i]; });
+  }
+  return box_filtered(sum, radius);
+}
+
+bool is_noisy(const Halves& light) {
+  for (std::size_t c = 0; c < color_channels; ++c)
+    for (std::size_t i = 0; i < light[0][c].size(); ++i)
+      if (light[0][c][i] != light[1][c][i]) return true;
+  return false;
+}
+
+Halves halved(const Halves& light) {
+  Halves out;
+  for (std::size_t h = 0; h < 2; ++h)
+    for (std::size_t c = 0; c < color_channels; ++c) out[h][c] = halved(light[h][c]);
+  return out;
+}
+
+// `fine` with the low frequencies of `coarse`, which has half its resolution.
+Halves joined(const Halves& fine, const Halves& coarse) {
+  Halves out = fine;
+  for (std::size_t h = 0; h < 2; ++h)
+    for (std::size_t c = 0; c < color_channels; ++c) {
+      Plane difference = halved(fine[h][c]);
+      difference.fill([&](std::size_t i) { return coarse[h][c][i] - difference[i]; });
+      difference = doubled(difference, fine[h][c].width(), fine[h][c].height());
+      out[h][c].fill([&](std::size_t i) { return out[h][c][i] + difference[i]; });
+    }
+  return out;
+}
+
+// A variance that is much less than any that is seen: the guide may be black, and without noise.
+float least_variance(const ColorPlanes& light) {
+  constexpr double part = 1e-6, tiny = 1e-30;
+  double sum = 0;
+  for (const Plane& plane : light)
+    for (std::size_t i = 0; i < plane.size(); ++i) sum += std::fabs(static_cast<double>(plane[i]));
+  const double mean = sum / static_cast<double>(light[0].size());
+  return static_cast<float>(part * mean * mean + tiny);
+}
+
+Halves demodulated(const Halves& light, const ColorPlanes& factors) {
+  Halves out = light;
+  for (ColorPlanes& half : out)
+    for (std::size_t c = 0; c < color_channels; ++c)
+      half[c].fill([&](std::size_t i) { return half[c][i] * factors[c][i]; });
+  return out;
+}
+
+// Each half is guided by the other of `compared`, whose noise is independent of its own.
+Halves regress_crosswise(const Halves& light, const Halves& compared, const std::array<FeaturePlanes, 2>& features,
+                         const Shares& shares, int variance_radius, const RegressionSettings& settings) {
+  Halves result = light;
+  for (std::size_t h = 0; h < 2; ++h) {
+    const ColorPlanes& other = compared[1 - h];
+    Guide guide{other, variance_of_mean(compared, shares, variance_radius)};
+    const float least = least_variance(other);
+    guide.variance.fill([&](std::size_t i) { return guide.variance[i] / shares[1 - h] + least; });
+    result[h] = regress(light[h], guide, features[h], settings);
+  }
+  return result;
+}
+
+// Both halves are guided by the mean of what they were without noise.
+Halves regress_again(const Halves& light, const Halves& before, const Shares& shares, const Surroundings& around,
+                     const RegressionSettings& settings) {
+  constexpr int variance_radius = 2;
+  constexpr float unseen = 3e-5f;  // of the square of the light
+  Guide guide{{}, variance_of_mean(before, shares, variance_radius)};
+  for (std::size_t c = 0; c < color_channels; ++c) guide.color[c] = mean_of(before, c, shares);
+  guide.variance.fill([&](std::size_t i) { return guide.variance[i] + unseen * around.scale[i]; });
+  Halves result = light;
+  for (std::size_t h = 0; h < 2; ++h) result[h] = regress(light[h], guide, around.features[h], settings);
+  return result;
+}
+
+// Adds the results of `filter(level)` at the first level, with low frequencies of the second, of the second and third
+// ...
+template <class Filter>
+void add_pyramid(std::size_t levels, Filter&& filter, std::vector<Halves>& candidates) {
+  std::vector<Halves> filtered;
+  for (std::size_t level = 0; level < levels; ++level) filtered.push_back(filter(level));
+  for (std::size_t deepest = 0; deepest < levels; ++deepest) {
+    Halves sum = filtered[deepest];
+    for (std::size_t level = deepest; level-- > 0;) sum = joined(filtered[level], sum);
+    candidates.push_back(std::move(sum));
+  }
+}
+
+// For each pixel the candidate of least error around it.
+Halves choose(const Halves& light, const std::vector<Halves>& candidates, const Shares& shares, const Plane& scale) {
+  constexpr int error_radius = 4, border_radius = 2;  // pixels
+  std::vector<Plane> errors, parts(candidates.size(), Plane(scale.width(), scale.height()));
+  errors.reserve(candidates.size());
+  for (const Halves& candidate : candidates)
+    errors.push_back(
+        box_filtered(box_filtered(squared_error(light, candidate, shares, scale), error_radius), error_radius));
+  for (std::size_t i = 0; i < scale.size(); ++i) {
+    std::size_t best = 0;
+    for (std::size_t k = 1; k < candidates.size(); ++k)
+      if (errors[k][i] < errors[best][i]) best = k;
+    parts[best][i] = 1;
+  }
+  for (Plane& part : parts) part = box_filtered(part, border_radius);
+  Halves result = light;
+  for (std::size_t h = 0; h < 2; ++h)
+    for (std::size_t c = 0; c < color_channels; ++c)
+      result[h][c].fill([&](std::size_t i) {
+        float sum = 0;
+        for (std::size_t k = 0; k < candidates.size(); ++k) sum += parts[k][i] * candidates[k][h][c][i];
+        return sum;
+      });
+  return result;
+}
+
+}  // namespace
+
+Plane mean_of(const Halves& light, std::size_t channel, const Shares& shares) {
+  const Plane &a = light[0][channel], &b = light[1][channel];
+  return Plane::of(a.width(), a.height(), [&](std::size_t i) { return shares[0] * a[i] + shares[1] * b[i]; });
+}
+
+Plane squared_error(const Halves& light, const Halves& result, const Shares& shares, const Plane& scale) {
+  const float wa = shares[0], wb = shares[1];
+  return Plane::of(scale.width(), scale.height(), [&](std::size_t i) {
+    float sum = 0;
+    for (std::size_t c = 0; c < color_channels; ++c) {
+      const float a = light[0][c][i], b = light[1][c][i], da = result[0][c][i], db = result[1][c][i];
+      const float noise = sqr(a - b);  // wa of it is the variance of b, wb of it that of a
+      sum += wa * (sqr(da - b) - wa * noise) + wb * (sqr(db - a) - wb * noise) - wa * wb * sqr(da - db);
+    }
+    return sum / (static_cast<float>(color_channels) * scale[i]);
+  });
+}
+
+Surroundings halved(const Surroundings& surroundings) {
+  Surroundings out{.features = {}, .demodulation = {}, .scale = halved(surroundings.scale)};
+  for (std::size_t c = 0; c < color_channels; ++c) out.demodulation[c] = halved(surroundings.demodulation[c]);
+  for (std::size_t h = 0; h < 2; ++h) {
+    for (const Plane& plane : surroundings.features[h].values) out.features[h].values.push_back(halved(plane));
+    for (const Plane& plane : surroundings.features[h].variances) out.features[h].variances.push_back(halved(plane));
+  }
+  return out;
+}
+
+void add_features(const Halves& halves, const Shares& shares, std::array<FeaturePlanes, 2>& features) {
+  constexpr RegressionSettings settings{.window = 5, .patch = 1, .stride = 4, .strength = 0.7f};
+  constexpr int variance_radius = 1;
+  Halves smooth = halves;
+  if (is_noisy(halves))
+    smooth = choose(halves, {halves, regress_crosswise(halves, halves, {}, shares, variance_radius, settings)}, shares,
+                    Plane(halves[0][0].width(), halves[0][0].height(), 1));
+  for (std::size_t h = 0; h < 2; ++h)
+    for (std::size_t c = 0; c < color_channels; ++c) {
+      features[h].values.push_back(smooth[h][c]);
+      Plane variance = box_filtered(variance_of_mean(smooth, c, shares), variance_radius);
+      variance.fill([&](std::size_t i) { return variance[i] / shares[h]; });
+      features[h].variances.push_back(std::move(variance));
+    }
+}
+
+Halves denoise_layer(const Halves& light, const Shares& shares, const std::vector<Surroundings>& levels) {
+  constexpr RegressionSettings crosswise{.window = 7, .patch = 3, .stride = 4, .strength = 0.5f},
+      again{.window = 7, .patch = 1, .stride = 2, .strength = 1};
+  constexpr int variance_radius = 3;
+  if (!is_noisy(light)) return light;
+  std::vector<Halves> of_level{light};
+  while (of_level.size() < levels.size()) of_level.push_back(halved(of_level.back()));
+  std::vector<Halves> candidates{light};
+  add_pyramid(
+      levels.size(),
+      [&](std::size_t k) {
+        return regress_crosswise(of_level[k], demodulated(of_level[k], levels[k].demodulation), levels[k].features,
+                                 shares, variance_radius, crosswise);
+      },
+      candidates);
+  std::vector<Halves> before{choose(light, candidates, shares, levels[0].scale)};
+  while (before.size() < levels.size()) before.push_back(halved(before.back()));
+  candidates = {light, before[0]};
+  add_pyramid(
+      levels.size(), [&](std::size_t k) { return regress_again(of_level[k], before[k], shares, levels[k], again); },
+      candidates);
+  return choose(light, candidates, shares, levels[0].scale);
+}
+
+}  // namespace lanthorn::denoising

@@ -1,0 +1,321 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "denoise/regression.h"
+
+#include <cmath>
+#include <utility>
+
+#include "math/lanes.h"
+
+namespace lanthorn::denoising {
+
+namespace {
+
+constexpr int tile_size = 32;
+constexpr std::size_t group = 3;        // features of one scale
+constexpr std::size_t most_terms = 10;  // the constant and the features
+constexpr std::size_t columns = 2 * Lanes::width;
+constexpr int span = static_cast<int>(columns);  // of weights in a row of a neighbourhood; those beyond it are 0
+static_assert(most_terms + color_channels <= columns);
+
+// The constant, the features and the light at a pixel.
+using Observation = std::array<float, columns>;
+
+// A plane with a border that mirrors it.
+class PaddedPlane {
+ public:
+  PaddedPlane() = default;
+  PaddedPlane(const Plane& plane, int border)
+      : border_(border), plane_(plane.width() + 2 * border, plane.height() + 2 * border) {
+    const auto inside = [](int i, int count) {
+      const int period = 2 * count, at = ((i % period) + period) % period;
+      return at < count ? at : period - 1 - at;
+    };
+    plane_.for_each_row([&](int y) {
+      const float* from = plane.row(inside(y - border, plane.height()));
+      float* to = plane_.row(y);
+      for (int x = 0; x < plane_.width(); ++x) to[x] = from[inside(x - border, plane.width())];
+    });
+  }
+  const float* at(int x, int y) const { return plane_.row(y + border_) + x + border_; }
+  float* at(int x, int y) { return plane_.row(y + border_) + x + border_; }
+
+ private:
+  int border_ = 0;
+  Plane plane_;
+};
+
+// Weighted sums of products of observations, relative to the centre's features.
+struct Moments {
+  std::array<std::array<float, columns>, most_terms> sums;
+};
+
+struct LanePair {
+  Lanes low{0}, high{0};
+
+  static LanePair load(const float* from) {
+    std::array<float, Lanes::width> low, high;
+    std::copy_n(from, Lanes::width, low.begin());
+    std::copy_n(from + Lanes::width, Lanes::width, high.begin());
+    return {Lanes(low), Lanes(high)};
+  }
+  void store(float* to) const {
+    const std::array<float, Lanes::width> first = low.stored(), second = high.stored();
+    std::copy(second.begin(), second.end(), std::copy(first.begin(), first.end(), to));
+  }
+  friend LanePair operator+(const LanePair& a, const LanePair& b) { return {a.low + b.low, a.high + b.high}; }
+  friend LanePair operator-(const LanePair& a, const LanePair& b) { return {a.low - b.low, a.high - b.high}; }
+  friend LanePair operator*(const LanePair& a, const LanePair& b) { return {a.low * b.low, a.high * b.high}; }
+};
+LanePair all_lanes(float x) { return {Lanes(x), Lanes(x)}; }
+
+using Coefficients = std::array<std::array<float, color_channels>, most_terms>;
+
+class Regression {
+ public:
+  Regression(const ColorPlanes& light, const Guide& guide, const FeaturePlanes& features,
+             const RegressionSettings& settings)
+      : light_(light),
+        features_(features),
+        settings_(settings),
+        width_(light[0].width()),
+        height_(light[0].height()),
+        side_(2 * settings.window + 1),
+        terms_(1 + features.values.size()),
+        points_(tile_size / settings.stride),
+        variance_(guide.variance, border()),
+        weight_sums_(Plane(width_, height_), span) {
+    for (const Plane& plane : guide.color) color_.emplace_back(plane, border());
+    for (const Plane& plane : features.values) values_.emplace_back(plane, span);
+    observations_.resize(light[0].size());
+    light[0].for_each_row([&](int y) {
+      for (int x = 0; x < width_; ++x) observe(index(x, y));
+    });
+    sums_.fill(weight_sums_);
+  }
+
+  // Tiles of one phase are so far apart that their neighbourhoods do not overlap: a pixel's sums are added up in the
+  // same order for any number of threads.
+  void run() {
+    const int across = (width_ + tile_size - 1) / tile_size, down = (height_ + tile_size - 1) / tile_size;
+    for (const auto& [first_x, first_y] : {std::pair{0, 0}, {1, 0}, {0, 1}, {1, 1}}) {
+      std::vector<std::pair<int, int>> tiles;
+      for (int y = first_y; y < down; y += 2)
+        for (int x = first_x; x < across; x += 2) tiles.emplace_back(x * tile_size, y * tile_size);
+      parallel_for(std::size_t{0}, tiles.size(), [&](std::size_t i) { fit_tile(tiles[i].first, tiles[i].second); });
+    }
+  }
+
+  ColorPlanes result() const {
+    constexpr float own = 1e-2f;  // weight of a pixel's own light, for pixels that are like no other
+    ColorPlanes result = light_;
+    for (std::size_t c = 0; c < color_channels; ++c)
+      result[c].for_each_row([&](int y) {
+        float* const light = result[c].row(y);
+        const float *sums = sums_[c].at(0, y), *weights = weight_sums_.at(0, y);
+        for (int x = 0; x < width_; ++x) light[x] = (sums[x] + own * light[x]) / (weights[x] + own);
+      });
+    return result;
+  }
+
+ private:
+  // Reaches patches of all centres that a tile may have, in the picture or not.
+  int border() const { return settings_.window + settings_.patch + tile_size; }
+  std::size_t index(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
+  }
+
+  void observe(std::size_t pixel) {
+    Observation& v = observations_[pixel];
+    v.fill(0);
+    v[0] = 1;
+    for (std::size_t f = 1; f < terms_; ++f) v[f] = features_.values[f - 1][pixel];
+    for (std::size_t c = 0; c < color_channels; ++c) v[most_terms + c] = light_[c][pixel];
+  }
+
+  // Weights of the neighbourhood of a centre, row by row.
+  std::size_t weights_of(int column, int row) const {
+    return static_cast<std::size_t>((row * points_ + column) * side_ * span);
+  }
+
+  void fit_tile(int x0, int y0) {
+    std::vector<float> weights(weights_of(0, points_));
+    for (int dy = -settings_.window; dy <= settings_.window; ++dy)
+      for (int dx = -settings_.window; dx <= settings_.window; ++dx) weigh_shift(x0, y0, dx, dy, weights);
+    for (int row = 0; row < points_; ++row)
+      for (int column = 0; column < points_; ++column) {
+        const int x = x0 + settings_.stride * column, y = y0 + settings_.stride * row;
+        if (x < width_ && y < height_) fit(x, y, &weights[weights_of(column, row)]);
+      }
+  }
+
+  // Squared differences of pixels to those (dx, dy) farther, over their variance.
+  void compare(int x, int y, int dx, int dy, int count, float* out) const {
+    std::array<const float*, color_channels> a, b;
+    for (std::size_t c = 0; c < color_channels; ++c) a[c] = color_[c].at(x, y), b[c] = color_[c].at(x + dx, y + dy);
+    const float *va = variance_.at(x, y), *vb = variance_.at(x + dx, y + dy);
+    for (int i = 0; i < count; ++i) {
+      float sum = 0;
+      for (std::size_t c = 0; c < color_channels; ++c) sum += sqr(a[c][i] - b[c][i]);
+      out[i] = sum / (va[i] + vb[i]);
+    }
+  }
+
+  // The weights that the centres of a tile give to the pixels (dx, dy) farther.
+  void weigh_shift(int x0, int y0, int dx, int dy, std::vector<float>& weights) const {
+    const int patch = 2 * settings_.patch + 1, extent = settings_.stride * (points_ - 1) + patch;
+    constexpr int most = tile_size + 8;
+    std::array<float, most * most> differences;
+    for (int j = 0; j < extent; ++j)
+      compare(x0 - settings_.patch, y0 + j - settings_.patch, dx, dy, extent,
+              &differences[static_cast<std::size_t>(j * most)]);
+    const float mean = 1 / static_cast<float>(patch * patch);
+    const float scale = 1 / (settings_.strength * settings_.strength);
+    std::array<float, most> sums;
+    for (int row = 0; row < points_; ++row) {
+      const int y = y0 + settings_.stride * row + dy;
+      if (y < 0 || y >= height_) continue;
+      sums.fill(0);
+      for (int k = 0; k < patch; ++k) {
+        const float* in = &differences[static_cast<std::size_t>((settings_.stride * row + k) * most)];
+        for (int i = 0; i < extent; ++i) sums[static_cast<std::size_t>(i)] += in[i];
+      }
+      for (int column = 0; column < points_; ++column) {
+        const int x = x0 + settings_.stride * column + dx;
+        if (x < 0 || x >= width_) continue;
+        float sum = 0;
+        for (int k = 0; k < patch; ++k) sum += sums[static_cast<std::size_t>(settings_.stride * column + k)];
+        weights[weights_of(column, row) +
+                static_cast<std::size_t>((dy + settings_.window) * span + dx + settings_.window)] =
+            std::exp(-std::max(0.0f, sum * mean - 1) * scale);
+      }
+    }
+  }
+
+  void fit(int x, int y, const float* weights) {
+    const Moments moments = terms_ == 1 ? add_up<1>(x, y, weights) : add_up<most_terms>(x, y, weights);
+    predict(x, y, weights, solve(moments, index(x, y)));
+  }
+
+  template <std::size_t terms>
+  Moments add_up(int x, int y, const float* weights) const {
+    constexpr float least_weight = 1e-3f;
+    Observation origin = observations_[index(x, y)];
+    origin[0] = 0;
+    std::fill(origin.begin() + most_terms, origin.end(), 0.0f);
+    const LanePair from = LanePair::load(origin.data());
+    std::array<LanePair, terms> sums;
+    for (int dy = std::max(-settings_.window, -y); dy <= std::min(settings_.window, height_ - 1 - y); ++dy) {
+      const float* row = weights + (dy + settings_.window) * span + settings_.window;
+      for (int dx = std::max(-settings_.window, -x); dx <= std::min(settings_.window, width_ - 1 - x); ++dx) {
+        const float w = row[dx];
+        if (w < least_weight) continue;
+        const Observation& v = observations_[index(x + dx, y + dy)];
+        const LanePair difference = LanePair::load(v.data()) - from;
+        for (std::size_t t = 0; t < terms; ++t) sums[t] = sums[t] + all_lanes(w * (v[t] - origin[t])) * difference;
+      }
+    }
+    Moments moments;
+    for (std::size_t t = 0; t < terms; ++t) sums[t].store(moments.sums[t].data());
+    return moments;
+  }
+
+  // What is added to a feature's sum of squares: its noise, and a small part of the squares that its group has, so that
+  // features that hardly vary, or vary together, are not trusted to tell more than they do.
+  std::array<double, most_terms> ridge_of(const Moments& moments, std::size_t center) const {
+    constexpr double small = 1e-4, share_of_group = 1e-3, tiny = 1e-30;
+    const auto all = static_cast<double>(moments.sums[0][0]);
+    std::array<double, most_terms> ridge{};
+    for (std::size_t first = 1; first < terms_; first += group) {
+      double spread = 0;
+      for (std::size_t f = first; f < first + group; ++f) spread += static_cast<double>(moments.sums[f][f]);
+      // Positions have no scale of their own.
+      const double least = first + group < terms_ ? small * all : share_of_group * spread;
+      for (std::size_t f = first; f < first + group; ++f)
+        ridge[f] = all * static_cast<double>(features_.variances[f - 1][center]) + least + tiny;
+    }
+    return ridge;
+  }
+
+  // Normal equations, by Cholesky's factorisation; each term scaled to a sum of squares of 1.
+  Coefficients solve(const Moments& moments, std::size_t center) const {
+    const std::array<double, most_terms> ridge = ridge_of(moments, center);
+    std::array<double, most_terms> scale{};
+    for (std::size_t t = 0; t < terms_; ++t)
+      scale[t] = 1 / std::sqrt(static_cast<double>(moments.sums[t][t]) + ridge[t]);
+    std::array<std::array<double, most_terms>, most_terms> m;
+    for (std::size_t r = 0; r < terms_; ++r) {
+      for (std::size_t k = 0; k < r; ++k) m[r][k] = static_cast<double>(moments.sums[r][k]) * scale[r] * scale[k];
+      m[r][r] = 1;
+    }
+    constexpr double least = 1e-9;
+    for (std::size_t k = 0; k < terms_; ++k) {
+      for (std::size_t j = 0; j < k; ++j) m[k][k] -= m[k][j] * m[k][j];
+      m[k][k] = std::sqrt(std::max(m[k][k], least));
+      for (std::size_t r = k + 1; r < terms_; ++r) {
+        for (std::size_t j = 0; j < k; ++j) m[r][k] -= m[r][j] * m[k][j];
+        m[r][k] /= m[k][k];
+      }
+    }
+    Coefficients coefficients{};
+    for (std::size_t c = 0; c < color_channels; ++c) {
+      std::array<double, most_terms> x{};
+      for (std::size_t r = 0; r < terms_; ++r) {
+        x[r] = static_cast<double>(moments.sums[r][most_terms + c]) * scale[r];
+        for (std::size_t j = 0; j < r; ++j) x[r] -= m[r][j] * x[j];
+        x[r] /= m[r][r];
+      }
+      for (std::size_t r = terms_; r-- > 0;) {
+        for (std::size_t j = r + 1; j < terms_; ++j) x[r] -= m[j][r] * x[j];
+        x[r] /= m[r][r];
+        coefficients[r][c] = static_cast<float>(x[r] * scale[r]);
+      }
+    }
+    return coefficients;
+  }
+
+  // Whole rows at once, with weights of 0 beyond the picture.
+  void predict(int x, int y, const float* weights, const Coefficients& coefficients) {
+    const int left = x - settings_.window;
+    const Observation& origin = observations_[index(x, y)];
+    for (int dy = std::max(-settings_.window, -y); dy <= std::min(settings_.window, height_ - 1 - y); ++dy) {
+      std::array<LanePair, color_channels> light;
+      for (std::size_t c = 0; c < color_channels; ++c) light[c] = all_lanes(coefficients[0][c]);
+      for (std::size_t t = 1; t < terms_; ++t) {
+        const LanePair difference = LanePair::load(values_[t - 1].at(left, y + dy)) - all_lanes(origin[t]);
+        for (std::size_t c = 0; c < color_channels; ++c)
+          light[c] = light[c] + all_lanes(coefficients[t][c]) * difference;
+      }
+      const LanePair w = LanePair::load(weights + (dy + settings_.window) * span);
+      const auto add = [&](PaddedPlane& plane, const LanePair& value) {
+        float* const sums = plane.at(left, y + dy);
+        (LanePair::load(sums) + value).store(sums);
+      };
+      add(weight_sums_, w);
+      for (std::size_t c = 0; c < color_channels; ++c) add(sums_[c], w * light[c]);
+    }
+  }
+
+  const ColorPlanes& light_;
+  const FeaturePlanes& features_;
+  RegressionSettings settings_;
+  int width_, height_, side_;
+  std::size_t terms_;
+  int points_;  // in a row of a tile
+  PaddedPlane variance_;
+  std::vector<PaddedPlane> color_, values_;
+  std::vector<Observation> observations_;
+  PaddedPlane weight_sums_;
+  std::array<PaddedPlane, color_channels> sums_;
+};
+
+}  // namespace
+
+ColorPlanes regress(const ColorPlanes& light, const Guide& guide, const FeaturePlanes& features,
+                    const RegressionSettings& settings) {
+  Regression regression(light, guide, features, settings);
+  regression.run();
+  return regression.result();
+}
+
+}  // namespace lanthorn::denoising

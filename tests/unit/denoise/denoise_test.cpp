@@ -1,0 +1,286 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "lanthorn/denoise.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "lanthorn/error.h"
+#include "lanthorn/threads.h"
+
+namespace lanthorn::denoise_test {
+namespace {
+
+using Field = std::function<double(int x, int y)>;
+double none(int /*x*/, int /*y*/) { return 0; }
+
+// A layer of grey light: its truth, and the standard deviation of each half's noise. Pixels share noise within a square
+// of `radius`.
+struct Layer {
+  std::string name;
+  Field truth, sigma = none;
+  int radius = 0;
+};
+
+// Independent normal numbers, or such as are smoothed over squares, of variance 1.
+std::vector<double> noise_field(int width, int height, int radius, std::mt19937& rng) {
+  std::normal_distribution<double> normal;
+  const int w = width + 2 * radius, side = 2 * radius + 1;
+  std::vector<double> raw(static_cast<std::size_t>(w * (height + 2 * radius))), field;
+  for (double& x : raw) x = normal(rng);
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      double sum = 0;
+      for (int j = 0; j < side; ++j)
+        for (int i = 0; i < side; ++i) sum += raw[static_cast<std::size_t>((y + j) * w + x + i)];
+      field.push_back(sum / side);
+    }
+  return field;
+}
+
+// A picture of two halves, as `picture_with_noise` makes them. The surface is white, but for its albedo.
+struct Scene {
+  int width, height;
+  std::vector<Layer> layers;
+  Field albedo = [](int, int) { return 0.5; };
+};
+
+Image picture_of(const Scene& scene, unsigned seed = 1) {
+  std::mt19937 rng(seed);
+  std::vector<std::string> channels{"R", "G", "B"};
+  for (const Layer& layer : scene.layers)
+    for (const char* c : {".R", ".G", ".B"}) channels.push_back(layer.name + c);
+  for (const char* c : {"albedo.R", "albedo.G", "albedo.B", "normal.X", "normal.Y", "normal.Z", "position.X",
+                        "position.Y", "position.Z"})
+    channels.emplace_back(c);
+  const std::size_t with_noise = channels.size();
+  for (std::size_t c = 3; c < with_noise; ++c) channels.push_back("noise." + channels[c]);
+  channels.emplace_back("samples");
+  channels.emplace_back("noise.share");
+  Image image(scene.width, scene.height, channels);
+  const auto channel = [&](const std::string& name) { return *image.find_channel(name); };
+  const auto for_each_pixel = [&](auto&& body) {
+    for (int y = 0; y < image.height; ++y)
+      for (int x = 0; x < image.width; ++x) body(x, y);
+  };
+  for (const Layer& layer : scene.layers)
+    for (std::size_t c = 0; c < 3; ++c) {
+      const std::vector<double> a = noise_field(image.width, image.height, layer.radius, rng),
+                                b = noise_field(image.width, image.height, layer.radius, rng);
+      const std::size_t first = channel(layer.name + ".R") + c, noise = channel("noise." + layer.name + ".R") + c;
+      std::size_t i = 0;
+      for_each_pixel([&](int x, int y) {
+        const double s = layer.sigma(x, y);
+        image.at(x, y, first) = static_cast<float>(layer.truth(x, y) + s * (a[i] + b[i]) / 2);
+        image.at(x, y, noise) = static_cast<float>(s * (a[i] - b[i]) / 2);
+        if (layer.name != "media") image.at(x, y, c) += image.at(x, y, first);
+        ++i;
+      });
+    }
+  for_each_pixel([&](int x, int y) {
+    for (std::size_t c = 0; c < 3; ++c)
+      image.at(x, y, channel("albedo.R") + c) = static_cast<float>(scene.albedo(x, y));
+    image.at(x, y, channel("normal.Z")) = 1;
+    image.at(x, y, channel("position.X")) = static_cast<float>(x);
+    image.at(x, y, channel("position.Y")) = static_cast<float>(y);
+    image.at(x, y, channel("samples")) = 16;
+    image.at(x, y, channel("noise.share")) = 0.5f;
+  });
+  return image;
+}
+
+double mean_square(const Image& image, const std::string& layer, const Field& truth) {
+  const std::size_t first = *image.find_channel(layer + "R");
+  double sum = 0;
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x)
+      for (std::size_t c = 0; c < 3; ++c) {
+        const double d = static_cast<double>(image.at(x, y, first + c)) - truth(x, y);
+        sum += d * d;
+      }
+  return sum / (3.0 * image.width * image.height);
+}
+
+double gain(const Scene& scene, const std::string& layer, const Field& truth, unsigned seed = 1) {
+  const Image noisy = picture_of(scene, seed);
+  return mean_square(noisy, layer + ".", truth) / mean_square(denoise(noisy).picture, "denoised." + layer + ".", truth);
+}
+
+double smooth(int x, int y) { return 1 + 0.5 * std::sin(0.05 * x) + 0.01 * y; }
+double fifth(int /*x*/, int /*y*/) { return 0.2; }
+double step(int x, int /*y*/) { return x < 32 ? 0.3 : 2; }
+
+TEST(Denoise, RemovesNoiseOfSmoothLight) {
+  EXPECT_GT(gain({96, 80, {{"direct", smooth, fifth}}}, "direct", smooth), 25);
+}
+
+TEST(Denoise, KeepsLayersWithoutNoiseToTheBit) {
+  const Image noisy = picture_of({40, 30, {{"emission", step}, {"direct", smooth, fifth}}});
+  const Image out = denoise(noisy).picture;
+  const std::size_t before = *noisy.find_channel("emission.R"), after = *out.find_channel("denoised.emission.R");
+  for (int y = 0; y < 30; ++y)
+    for (int x = 0; x < 40; ++x)
+      for (std::size_t c = 0; c < 3; ++c) ASSERT_EQ(out.at(x, y, after + c), noisy.at(x, y, before + c));
+}
+
+TEST(Denoise, LayersAddUpToThePicture) {
+  const Image noisy =
+      picture_of({64, 48, {{"emission", step, fifth}, {"direct", smooth, fifth}, {"media", smooth, fifth}}});
+  const Image out = denoise(noisy).picture;
+  const auto at = [&](int x, int y, const char* layer, std::size_t c) {
+    return out.at(x, y, *out.find_channel(layer) + c);
+  };
+  for (int y = 0; y < 48; ++y)
+    for (int x = 0; x < 64; ++x)
+      for (std::size_t c = 0; c < 3; ++c) {
+        ASSERT_EQ(at(x, y, "denoised.R", c), at(x, y, "denoised.emission.R", c) + at(x, y, "denoised.direct.R", c));
+        ASSERT_EQ(at(x, y, "R", c), noisy.at(x, y, c));
+      }
+  EXPECT_LT(mean_square(out, "denoised.media.", smooth), mean_square(out, "media.", smooth) / 10);
+}
+
+// No feature shows the edge of a caustic: its two sides may mix by a pixel at most.
+TEST(Denoise, KeepsTheEdgesOfCaustics) {
+  const Scene scene{64, 64, {{"caustic", step, fifth}, {"direct", smooth, fifth}}};
+  const Image out = denoise(picture_of(scene)).picture;
+  const std::size_t red = *out.find_channel("denoised.caustic.R");
+  std::array<double, 64> profile{};
+  for (int y = 0; y < 64; ++y)
+    for (int x = 0; x < 64; ++x) profile[static_cast<std::size_t>(x)] += static_cast<double>(out.at(x, y, red)) / 64;
+  for (const std::size_t x : {20, 28, 30}) EXPECT_NEAR(profile[x], 0.3, 0.06) << x;
+  for (const std::size_t x : {33, 35, 43}) EXPECT_NEAR(profile[x], 2, 0.06) << x;
+  EXPECT_GT(gain(scene, "caustic", step), 8);
+}
+
+// Texture is a feature: it is not smoothed with the noise.
+TEST(Denoise, KeepsTexture) {
+  const auto albedo = [](int x, int y) { return (x / 3 + y / 3) % 2 == 0 ? 0.9 : 0.2; };
+  const auto light = [&](int x, int y) { return albedo(x, y) * smooth(x, y); };
+  EXPECT_GT(gain({72, 72, {{"indirect", light, fifth}}, albedo}, "indirect", light), 10);
+}
+
+// Photons within a kernel are noise that its pixels share.
+TEST(Denoise, RemovesNoiseThatNeighboursShare) {
+  EXPECT_GT(gain({128, 128, {{"caustic", smooth, fifth, 3}}}, "caustic", smooth), 4);
+}
+
+TEST(Denoise, RemovesASpikeOfOneHalf) {
+  Image noisy = picture_of({64, 64, {{"indirect", smooth, fifth}}});
+  const std::size_t red = *noisy.find_channel("indirect.R"), noise = *noisy.find_channel("noise.indirect.R");
+  const float spike = 400;
+  noisy.at(30, 30, red) += spike / 2;
+  noisy.at(30, 30, noise) += spike / 2;
+  const Image out = denoise(noisy).picture;
+  const std::size_t denoised = *out.find_channel("denoised.indirect.R");
+  double around = 0;
+  for (int y = 22; y < 39; ++y)
+    for (int x = 22; x < 39; ++x) {
+      const double excess = static_cast<double>(out.at(x, y, denoised)) - smooth(x, y);
+      around += excess;
+      EXPECT_LT(excess, 8) << x << " " << y;
+    }
+  EXPECT_LT(around, 1.1 * static_cast<double>(spike) / 2);
+}
+
+TEST(Denoise, KnowsItsError) {
+  const auto light = [](int x, int y) { return smooth(x, y) + step(x, y); };
+  const Scene scene{96, 96, {{"direct", light, fifth}}};
+  double expected = 0, found = 0;
+  constexpr unsigned seeds = 4;
+  for (unsigned seed = 1; seed <= seeds; ++seed) {
+    const DenoisedPicture out = denoise(picture_of(scene, seed));
+    double mean = 0;
+    for (int y = 0; y < 96; ++y)
+      for (int x = 0; x < 96; ++x) {
+        const double d =
+            static_cast<double>(out.picture.at(x, y, *out.picture.find_channel("denoised.R"))) - light(x, y);
+        const double scale = light(x, y) * light(x, y);
+        mean += d * d / scale / (96 * 96);
+      }
+    found += mean / seeds;
+    expected += out.error.error * out.error.error / seeds;
+    EXPECT_TRUE(out.error.is_known());
+    EXPECT_GE(out.error.bound, out.error.error);
+  }
+  EXPECT_GT(std::sqrt(expected / found), 0.7);
+  EXPECT_LT(std::sqrt(expected / found), 2);
+}
+
+TEST(Denoise, IsTheSameForAnyNumberOfThreads) {
+  const Image noisy = picture_of({150, 70, {{"direct", smooth, fifth}, {"caustic", step, fifth}}});
+  std::vector<std::vector<float>> results;
+  for (const unsigned threads : {1u, 2u, 3u}) {
+    const ThreadLimit limit(threads);
+    results.push_back(denoise(noisy).picture.pixels);
+  }
+  EXPECT_EQ(results[0], results[1]);
+  EXPECT_EQ(results[0], results[2]);
+}
+
+// What is right of a tile's border does not depend on what is far left of it.
+TEST(Denoise, TilesHaveNoSeams) {
+  const Scene scene{1100, 24, {{"direct", smooth, fifth}}};
+  const Image noisy = picture_of(scene);
+  Image right(300, 24, noisy.channels);
+  for (int y = 0; y < 24; ++y)
+    for (int x = 0; x < 300; ++x)
+      for (std::size_t c = 0; c < noisy.channel_count(); ++c) right.at(x, y, c) = noisy.at(800 + x, y, c);
+  const Image whole = denoise(noisy).picture, part = denoise(right).picture;
+  const std::size_t red = *whole.find_channel("denoised.R");
+  for (int y = 0; y < 24; ++y)
+    for (int x = 1000; x < 1050; ++x)
+      EXPECT_NEAR(whole.at(x, y, red), part.at(x - 800, y, red), 0.02f) << x << " " << y;
+}
+
+TEST(Denoise, TakesAnySizeAndWindow) {
+  for (const auto& [width, height] : {std::pair{1, 1}, {1, 9}, {5, 2}, {33, 31}}) {
+    Image noisy = picture_of({width, height, {{"direct", smooth, fifth}}});
+    noisy.window = {3, 4, 100, 80};
+    const Image out = denoise(noisy).picture;
+    EXPECT_EQ(out.width, width);
+    EXPECT_EQ(out.window, noisy.window);
+    for (const float v : out.pixels) EXPECT_TRUE(std::isfinite(v));
+  }
+}
+
+TEST(Denoise, CountsWhatIsNotFiniteAsBlack) {
+  Image noisy = picture_of({32, 32, {{"direct", smooth, fifth}}});
+  noisy.at(7, 7, *noisy.find_channel("direct.R")) = std::numeric_limits<float>::quiet_NaN();
+  noisy.at(8, 7, *noisy.find_channel("noise.direct.G")) = std::numeric_limits<float>::infinity();
+  const Image out = denoise(noisy).picture;
+  const std::size_t first = *out.find_channel("denoised.R");
+  for (int y = 0; y < 32; ++y)
+    for (int x = 0; x < 32; ++x)
+      for (std::size_t c = first; c < out.channel_count(); ++c) ASSERT_TRUE(std::isfinite(out.at(x, y, c)));
+}
+
+TEST(Denoise, ReplacesWhatWasDenoisedBefore) {
+  const Image noisy = picture_of({32, 32, {{"direct", smooth, fifth}}});
+  const Image once = denoise(noisy).picture, twice = denoise(once).picture;
+  EXPECT_EQ(once.channels, twice.channels);
+  EXPECT_EQ(once.pixels, twice.pixels);
+  const Image clean = with_denoised_light(once);
+  EXPECT_FALSE(clean.find_channel("denoised.R") || clean.find_channel("noise.direct.R"));
+  EXPECT_EQ(clean.at(5, 6, *clean.find_channel("direct.G")), once.at(5, 6, *once.find_channel("denoised.direct.G")));
+  EXPECT_EQ(clean.at(5, 6, 2), once.at(5, 6, *once.find_channel("denoised.B")));
+  EXPECT_FALSE(can_denoise(clean));
+}
+
+TEST(Denoise, RefusesPicturesWithoutHalves) {
+  EXPECT_THROW(denoise(Image(4, 4, {"R", "G", "B"})), Error);
+  Image single = picture_of({8, 8, {{"direct", smooth, fifth}}});
+  for (int y = 0; y < 8; ++y)
+    for (int x = 0; x < 8; ++x) single.at(x, y, *single.find_channel("noise.share")) = 1;
+  EXPECT_THROW(denoise(single), Error);
+}
+
+}  // namespace
+}  // namespace lanthorn::denoise_test
