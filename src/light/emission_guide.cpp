@@ -74,26 +74,28 @@ void AimedDisks::move(EmissionSample& emission, const Vec2& u) const {
 }
 
 float AimedDisks::density(const Point& p, const Direction& direction, const TreeDistribution& numbers,
-                          const std::optional<Vec2>& u_direction) const {
+                          const std::optional<Vec2>& u_direction, float enough) const {
   const DisksAcross disks(*this, direction);
+  TreeDistribution::SomeNumbers at = numbers_of({{}, u_direction});
   const auto by = [&](int disk, const Vec2& square) {
     const Vec2 u = glm::clamp(0.5f * (square / radius(disk) + Vec2(1)), Vec2(0), Vec2(one_minus_epsilon));
-    const Vec2 u_position((static_cast<float>(disk) + u.x) / count, u.y);
-    return numbers.pdf(numbers_of({u_position, u_direction})) * sqr(scene.radius / radius(disk)) / count;
+    at[0] = (static_cast<float>(disk) + u.x) / count;
+    at[1] = u.y;
+    return numbers.pdf(at) * sqr(scene.radius / radius(disk)) / count;
   };
   const Vec2 place = disks.across(p), off_aim = place - disks.aim, square = square_from_disk(off_aim);
   float sum = by(count - 1, square_from_disk(place));
-  for (int disk = 0; disk < count - 1; ++disk)
+  for (int disk = 0; disk < count - 1 && sum < enough; ++disk)
     if (dot(off_aim, off_aim) <= sqr(radius(disk))) sum += by(disk, square);
   return sum;
 }
 
 float guided_density(const EmissionGuide& guide, const Light& light, std::uint32_t index, const EmitterHit& origin,
-                     const Direction& direction) {
+                     const Direction& direction, float enough) {
   const EmissionNumbers u = invert_emission(light, origin, direction);
   const TreeDistribution& numbers = guide.lights[index].numbers;
   if (guide.disks && starts_on_disks(light))
-    return guide.disks->density(origin.position, direction, numbers, u.direction);
+    return guide.disks->density(origin.position, direction, numbers, u.direction, enough);
   return numbers.pdf(numbers_of(u));
 }
 

@@ -30,9 +30,10 @@ struct AimedDisks {
   /// the point is outside the disk that covers the scene. Leaves `pdf_position` as it was.
   void move(EmissionSample& emission, const Vec2& u) const;
   /// Density of photons along the ray through p, over that of photons from the whole disk that covers the scene, if
-  /// their numbers have the density `numbers`, those of the direction being `u_direction`, if there are any.
+  /// their numbers have the density `numbers`, those of the direction being `u_direction`, if there are any. `enough`:
+  /// see `guided_density`.
   float density(const Point& p, const Direction& direction, const TreeDistribution& numbers,
-                const std::optional<Vec2>& u_direction) const;
+                const std::optional<Vec2>& u_direction, float enough) const;
   /// Radius (m) of a disk, from 0 to count - 1.
   float radius(int disk) const { return radius_[static_cast<unsigned>(disk)]; }
 
@@ -57,9 +58,10 @@ struct EmissionGuide {
 };
 
 /// How many times as dense photons of light `index` start along a ray with the guide as without; the mean over numbers
-/// that `invert_emission` leaves empty. `origin` as there.
+/// that `invert_emission` leaves empty. `origin` as there. A density of `enough` or more need not be exact: the result
+/// is between both.
 float guided_density(const EmissionGuide& guide, const Light& light, std::uint32_t index, const EmitterHit& origin,
-                     const Direction& direction);
+                     const Direction& direction, float enough = infinity);
 
 /// Samples the emission of a photon from four numbers. The densities in the sample are those of the light alone.
 /// `disks` may be null.

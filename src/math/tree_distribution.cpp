@@ -28,9 +28,13 @@ std::uint32_t TreeDistribution::add_leaf(float mass) {
 
 std::uint32_t TreeDistribution::add_inner(std::size_t axis, std::uint32_t lower, std::uint32_t upper) {
   const float mass = nodes_[lower].mass + nodes_[upper].mass;
-  nodes_.push_back({mass, nodes_[lower].mass / mass, static_cast<std::uint32_t>(axis), lower, upper});
+  const float p = nodes_[lower].mass / mass;
+  nodes_.push_back({mass, static_cast<std::uint32_t>(axis), {p, 1 - p}, {lower, upper}});
   return static_cast<std::uint32_t>(nodes_.size() - 1);
 }
+
+// Which half a number lies in is as good as random. So both walks below index by it instead of branching: a branch that
+// the processor guesses wrong would cost more than the node.
 
 TreeDistribution::Sample TreeDistribution::sample(const Numbers& u) const {
   if (nodes_.empty()) return {u, 1};
@@ -39,30 +43,42 @@ TreeDistribution::Sample TreeDistribution::sample(const Numbers& u) const {
   float pdf = 1;
   const Node* node = &nodes_.back();
   while (node->axis < dimensions) {
-    const float p = node->lower_share;
-    float& x = rest[node->axis];
-    const bool upper = x >= p;
-    x = std::min(upper ? (x - p) / (1 - p) : x / p, one_minus_epsilon);
-    pdf *= 2 * (upper ? 1 - p : p);
-    cell = cell.half(node->axis, upper);
-    node = &nodes_[upper ? node->upper : node->lower];
+    const std::size_t axis = node->axis;
+    const std::array before{0.0f, node->share[0]};
+    const std::size_t half = rest[axis] >= node->share[0] ? 1 : 0;
+    rest[axis] = std::min((rest[axis] - before[half]) / node->share[half], one_minus_epsilon);
+    pdf *= 2 * node->share[half];
+    cell.size[axis] *= 0.5f;
+    cell.low[axis] += static_cast<float>(half) * cell.size[axis];
+    node = &nodes_[node->halves[half]];
   }
   return {cell.at(rest), pdf};
 }
 
-float TreeDistribution::pdf(const SomeNumbers& at) const { return nodes_.empty() ? 1 : pdf_in(&nodes_.back(), at); }
+float TreeDistribution::pdf(const SomeNumbers& at) const {
+  if (nodes_.empty()) return 1;
+  Numbers numbers{};
+  unsigned known = 0;
+  for (unsigned i = 0; i < dimensions; ++i) {
+    numbers[i] = at[i].value_or(0);
+    known |= at[i] ? 1u << i : 0u;
+  }
+  return pdf_in(&nodes_.back(), numbers, known);
+}
 
-// `at`: relative to the node's cell.
-float TreeDistribution::pdf_in(const Node* node, SomeNumbers at) const {
+// `at`: relative to the node's cell. `known`: a bit for each axis.
+float TreeDistribution::pdf_in(const Node* node, Numbers at, unsigned known) const {
   float pdf = 1;
   while (node->axis < dimensions) {
-    const float p = node->lower_share;
-    std::optional<float>& x = at[node->axis];
-    if (!x) return pdf * (p * pdf_in(&nodes_[node->lower], at) + (1 - p) * pdf_in(&nodes_[node->upper], at));
-    const bool upper = *x >= 0.5f;
-    x = 2 * *x - (upper ? 1.0f : 0.0f);  // exact
-    pdf *= 2 * (upper ? 1 - p : p);
-    node = &nodes_[upper ? node->upper : node->lower];
+    const auto [p, q] = node->share;
+    const auto [lower, upper] = node->halves;
+    if ((known >> node->axis & 1u) == 0)
+      return pdf * (p * pdf_in(&nodes_[lower], at, known) + q * pdf_in(&nodes_[upper], at, known));
+    float& x = at[node->axis];
+    const std::size_t half = x >= 0.5f ? 1 : 0;
+    x = 2 * x - static_cast<float>(half);  // exact
+    pdf *= 2 * node->share[half];
+    node = &nodes_[node->halves[half]];
   }
   return pdf;
 }

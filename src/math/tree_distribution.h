@@ -47,11 +47,11 @@ class TreeDistribution {
  private:
   struct Node {
     float mass = 0;
-    float lower_share = 1;            ///< probability of the lower half of an inner node
-    std::uint32_t axis = dimensions;  ///< `dimensions` for a leaf
-    std::uint32_t lower = 0, upper = 0;
+    std::uint32_t axis = dimensions;            ///< `dimensions` for a leaf
+    std::array<float, 2> share{1, 0};           ///< probabilities of the lower and the upper half of an inner node
+    std::array<std::uint32_t, 2> halves{0, 0};  ///< their nodes
   };
-  float pdf_in(const Node* node, SomeNumbers at) const;
+  float pdf_in(const Node* node, Numbers at, unsigned known) const;
 
   std::vector<Node> nodes_;
 };

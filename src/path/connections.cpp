@@ -99,6 +99,21 @@ Normal receiving_normal(const MediumVertex&) { return Normal(0); }
 // Direct light on surfaces, the light that `EmissionDensities` treats apart: one scattering, at such a receiver.
 bool is_direct(int scatterings, const Normal& receiver) { return scatterings == 1 && receiver != Normal(0); }
 
+// A ray on which a light path may start.
+struct EmittedRay {
+  std::uint32_t light;
+  EmitterHit origin;  // of lights without surface any point of the ray
+  Direction direction;
+};
+// With which light paths start there, per area times per solid angle. `of_direct_light`: as a part of such a path.
+float density_of_start(const PathContext& path, const Bidirectional& pass, const EmittedRay& ray,
+                       bool of_direct_light) {
+  const EmissionPdf pdf = pdf_emission(path.scene.lights()[ray.light], ray.origin, ray.direction);
+  const float factor = of_direct_light ? pass.emission.factor_of_direct_light(ray.light, ray.origin, ray.direction)
+                                       : pass.emission.factor(ray.light, ray.origin, ray.direction);
+  return factor * pdf.position * pdf.direction;
+}
+
 template <class Vertex>
 float weight_of(const PathContext& path, const Bidirectional& pass, const Vertex& v, const NextEvent& event,
                 const Subpath& subpath) {
@@ -107,20 +122,19 @@ float weight_of(const PathContext& path, const Bidirectional& pass, const Vertex
   const Arrival at = arrival(pass, v, l.wi, subpath.flight(), Transport::radiance);
   const float passes = FlightDensity::passing(event.optical_depth);
   const bool on_surface = has_surface(light), far = is_of_rays(light);
-  // Samples of far lights have no position: any point of the ray gives its densities.
-  const EmitterHit origin{far ? position_of(v) : l.position, l.normal, Vec2(0)};
-  const EmissionPdf emission = pdf_emission(light, origin, -l.wi);
   // Next-event estimation always chooses the position of a point light: density 1, which is distance² per solid angle.
   const float pdf = event.pmf * l.pdf * (on_surface || far ? 1.0f : sqr(l.distance));
   const float cos_light = on_surface ? std::fabs(dot(l.normal, l.wi)) : 1.0f;
-  float chosen = pass.emission.factor(event.light, origin, -l.wi);
-  if (is_direct(v.state.depth, receiving_normal(v))) chosen = pass.emission.of_direct_light(event.light, chosen);
   const float pdf_walk = l.delta ? 0.0f : event.pdf_walk * passes;
-  const float density = at.density(passes);
-  const float arrival = chosen * emission.position * emission.direction * density / (pdf * cos_light);
   const float merging = at.volume_merging(pass.techniques.volume, passes, subpath.coherence());
-  return pass.weigh(sum_of_next_event({end_of_eye_path(subpath.densities(), at.reverse), arrival, 0, merging},
-                                      event.pmf * l.pdf, pdf_walk, pass.techniques));
+  ConnectedEnd at_eye{end_of_eye_path(subpath.densities(), at.reverse), 0, 0, merging};
+  if (at_eye.has_other_techniques(pass.techniques)) {
+    // Samples of far lights have no position: any point of the ray gives its densities.
+    const EmittedRay ray{event.light, {far ? position_of(v) : l.position, l.normal, Vec2(0)}, -l.wi};
+    const bool direct = is_direct(v.state.depth, receiving_normal(v));
+    at_eye.arrival = density_of_start(path, pass, ray, direct) * at.density(passes) / (pdf * cos_light);
+  }
+  return pass.weigh(sum_of_next_event(at_eye, event.pmf * l.pdf, pdf_walk, pass.techniques));
 }
 
 // A light that an eye walk has come upon.
@@ -137,12 +151,11 @@ float weight_of_hit(const PathContext& path, const Bidirectional& pass, const Wa
   float direct = next_event_density(path.scene, hit.index, state.previous, state.previous_normal, hit.at, -hit.to_eye);
   if (has_surface(light))
     direct = direct * std::fabs(dot(hit.at.normal, hit.to_eye)) / distance_squared(hit.at.position, state.previous);
-  const EmissionPdf emission = pdf_emission(light, hit.at, hit.to_eye);
-  float factor = pass.emission.factor(hit.index, hit.at, hit.to_eye);
-  if (!state.last_delta && is_direct(hit.scatterings, state.previous_normal))
-    factor = pass.emission.of_direct_light(hit.index, factor);
-  return pass.weigh(
-      sum_of_hit(subpath.densities(), direct, factor * emission.position * emission.direction, pass.techniques));
+  const bool is_of_direct_light = !state.last_delta && is_direct(hit.scatterings, state.previous_normal);
+  const float emission = has_light_paths(subpath.densities(), pass.techniques)
+                             ? density_of_start(path, pass, {hit.index, hit.at, hit.to_eye}, is_of_direct_light)
+                             : 0.0f;
+  return pass.weigh(sum_of_hit(subpath.densities(), direct, emission, pass.techniques));
 }
 
 template <class Vertex>

@@ -31,15 +31,23 @@ class EmissionDensities {
   /// Factor that makes `pdf_emission` the density of light paths. `origin`: where the ray starts; of far lights any
   /// point of it. For all but direct light.
   float factor(std::uint32_t light, const EmitterHit& origin, const Direction& direction) const {
-    const float p = of_lights_[light];
-    if (guide_ == nullptr) return p;
-    const float all = p * guided_density(*guide_, scene_.lights()[light], light, origin, direction);
-    return has_curves_ ? of_direct_light(light, all) : all;
+    return has_curves_ ? factor_of_direct_light(light, origin, direction) : guided(light, origin, direction, infinity);
+  }
+  /// The same for direct light. It asks the guide for no more than whether light paths are denser.
+  float factor_of_direct_light(std::uint32_t light, const EmitterHit& origin, const Direction& direction) const {
+    return of_direct_light(light, guided(light, origin, direction, 1));
   }
   /// The factor for direct light, where that for other light is `factor`.
   float of_direct_light(std::uint32_t light, float factor) const { return std::min(of_lights_[light], factor); }
 
  private:
+  // `enough`: see `guided_density`.
+  float guided(std::uint32_t light, const EmitterHit& origin, const Direction& direction, float enough) const {
+    const float p = of_lights_[light];
+    if (guide_ == nullptr) return p;
+    return p * guided_density(*guide_, scene_.lights()[light], light, origin, direction, enough);
+  }
+
   Scene scene_;
   const EmissionGuide* guide_;
   bool has_curves_;

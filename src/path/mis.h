@@ -290,6 +290,12 @@ struct ConnectedEnd : SubpathEnd {
   float merging = 0;  ///< η of this vertex, on a surface
   float volume_merging = 0;  ///< the same in a medium, times the coherence of the eye path before it
 
+  /// Whether there are other techniques whose other walk makes this vertex, too.
+  bool has_other_techniques(const Techniques& t) const {
+    TechniqueSum sum;
+    ConnectedEnd{*this, 1, merging, volume_merging}.add_other_techniques(1, t, sum);
+    return sum.all() != 0;
+  }
   /// Adds `factor` times w_light, or w_eye: all techniques whose other walk makes this vertex, too (TR eqs. 40, 41).
   void add_other_techniques(float factor, const Techniques& t, TechniqueSum& sum) const {
     const float there = factor * arrival;
@@ -300,9 +306,15 @@ struct ConnectedEnd : SubpathEnd {
   }
 };
 
+/// Whether light paths can make the path of an eye walk that hits a light there.
+inline bool has_light_paths(const SubpathDensities& at_light, const Techniques& t) {
+  return t.lens_part * at_light.ends + t.connections * at_light.vc + t.merging * at_light.vm_apart +
+             t.volume_part * at_light.media !=
+         0;
+}
 /// An eye walk hits a light (TR eq. 43): its last vertex is the point there. `direct`: with which next-event estimation
 /// would have chosen the point, per area (infinite lights: per solid angle); `emission`: with which a light path starts
-/// there in that direction, the product of per area and per solid angle.
+/// there in that direction, the product of per area and per solid angle; any number without `has_light_paths`.
 inline TechniqueSum sum_of_hit(const SubpathDensities& at_light, float direct, float emission, const Techniques& t) {
   return {.walk = 1 + direct * at_light.vcm,
           .lens = emission * t.lens_part * at_light.ends,

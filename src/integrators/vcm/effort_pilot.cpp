@@ -151,10 +151,11 @@ void Pilot::run(std::uint32_t number, const VcmPreparation& prepared) {
 
 void Pilot::trace_light(const VcmPass& pass) {
   std::vector<std::vector<SeenLight>> chunks(pass.light_paths.chunk_count());
-  const RayCounts rays =
-      trace_light_paths(pass, nullptr, [&](const LightArrival& light, const LensLight& seen, std::size_t chunk) {
+  const RayCounts rays = trace_light_paths(
+      pass, nullptr,
+      [&](const LightArrival& light, const LensLight& seen, const PlaceEffort& effort, std::size_t chunk) {
         TechniqueSum weighed;
-        Bidirectional there = pass.bidirectional_at(seen.raster);
+        Bidirectional there = pass.bidirectional_at(seen.raster, effort);
         there.weighed = &weighed;
         const float weight = light.weight(there, seen);
         chunks[chunk].push_back({static_cast<std::uint32_t>(blocks_.block_of(seen.raster)),
@@ -203,10 +204,9 @@ void Pilot::trace_eye(const VcmPass& pass, const VcmPass& other) {
     const PathContext path{pass.job.scene, draw.w, sampler, counts, {pass.max_depth(), settings_.roulette_depth}};
     const RayCounts before = counts;
     PathMoments& moments = of_cells[cell.index];
-    const std::size_t partner = pass.partner(sampler);
     walk_from_camera(path, start.camera, pass.job.view.medium,
-                     TwoSets{moments, EyeVisitor(path, pass, start.raster, partner, layers, &moments),
-                             EyeVisitor(path, other, start.raster, partner, other_layers, &moments)});
+                     TwoSets{moments, EyeVisitor(path, pass, start.raster, layers, &moments),
+                             EyeVisitor(path, other, start.raster, other_layers, &moments)});
     moments.work.rays = static_cast<std::uint32_t>(counts.walk - before.walk);
     caustic[cell.index] = flux_of(layers.light(PathClass::caustic), false, draw.w);
   });

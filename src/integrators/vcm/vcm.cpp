@@ -30,9 +30,11 @@ namespace {
 
 RayCounts trace_light_paths(const VcmPass& pass, Film& film) {
   const View& view = pass.job.view;
-  return trace_light_paths(pass, &film, [&](const LightArrival& light, const LensLight& seen, std::size_t) {
-    splat(film, view, pass.draw.w, seen, light.layers, light.weight(pass.bidirectional_at(seen.raster), seen));
-  });
+  return trace_light_paths(
+      pass, &film, [&](const LightArrival& light, const LensLight& seen, const PlaceEffort& there, std::size_t) {
+        splat(film, view, pass.draw.w, seen, light.layers,
+              light.weight(pass.bidirectional_at(seen.raster, there), seen));
+      });
 }
 
 RayCounts trace_eye_paths(const VcmPass& pass, Film& film) {
@@ -40,10 +42,7 @@ RayCounts trace_eye_paths(const VcmPass& pass, Film& film) {
       pass.job, {pass.number, {pass.max_depth(), pass.settings.roulette_depth}}, film,
       [&](Sampler& sampler) { return pass.draw_of_eye_path(sampler); },
       [&](const PathContext& path, const EyeStart& start, const PixelPlace&, LightLayers& layers) {
-        const std::size_t partner = pass.partner(path.sampler);
-        pass.vertices.prefetch(partner);
-        walk_from_camera(path, start.camera, pass.job.view.medium,
-                         EyeVisitor(path, pass, start.raster, partner, layers));
+        walk_from_camera(path, start.camera, pass.job.view.medium, EyeVisitor(path, pass, start.raster, layers));
       });
 }
 

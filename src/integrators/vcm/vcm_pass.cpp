@@ -59,11 +59,9 @@ void VcmPass::build_merges(PassReport& report) {
   report.volume_radius = volume_kernels.widest_radius();
 }
 
-Bidirectional VcmPass::bidirectional_at(const Vec2& raster, PathMoments* moments) const {
+Bidirectional VcmPass::bidirectional_at(const Vec2& raster, const PlaceEffort& here) const {
   Bidirectional result = bidirectional;
-  if (moments) result.weighed = &moments->weighed;
   Techniques& t = result.techniques;
-  const PlaceEffort here = effort.at(raster);
   t.connections = here.connections;
   t.lens_part = here.sees ? 1.0f : 0.0f;
   t.volume_part = here.merges_in_media ? 1.0f : 0.0f;

@@ -65,8 +65,8 @@ struct VcmPass {
   /// Whether the film has the light of paths with `s` vertices from the light and `t` from the eye.
   bool shows(int s, int t) const { return !settings.only || *settings.only == Strategy{s, t}; }
   /// Paths through one place on the film are weighed with one radius, whatever technique made them: with
-  /// η_VCM = N π r² (TR eq. 20). The same holds for the effort of the place.
-  Bidirectional bidirectional_at(const Vec2& raster, PathMoments* moments = nullptr) const;
+  /// η_VCM = N π r² (TR eq. 20). The same holds for the effort of the place, `here`.
+  Bidirectional bidirectional_at(const Vec2& raster, const PlaceEffort& here) const;
 
   /// The number of the light path that an eye path is connected to. The eye path's sampler draws it: a fixed pairing
   /// would give each pixel the light paths of one light.

@@ -29,7 +29,8 @@ struct LightArrival {
   }
 };
 
-/// Step 1: keeps the vertices of a light path, and connects them to the lens: `see(LightArrival, LensLight)`.
+/// Step 1: keeps the vertices of a light path, and connects them to the lens: `see(LightArrival, LensLight,
+/// PlaceEffort)`.
 template <class See>
 class LightVisitor {
  public:
@@ -76,10 +77,12 @@ class LightVisitor {
     kept.flux_class = pass_.class_of_flux(flux_of(v.state.beta, v.state.dispersed, path_.w));
     if (!pass_.sees || !pass_.shows(v.state.depth + 1, 1)) return;
     const auto lens = find_lens(path_, pass_.job.view, v);
-    if (!lens || !pass_.effort.at(lens->raster).sees) return;
+    if (!lens) return;
+    const PlaceEffort there = pass_.effort.at(lens->raster);
+    if (!there.sees) return;
     if (film_) film_->prefetch_splats(pass_.job.view.window.pixel_at(lens->raster));
     if (const auto seen = connect_to_lens(path_, pass_.job.view, v, *lens))
-      see_(LightArrival{&v, subpath_, layers_of_splat(v)}, *seen);
+      see_(LightArrival{&v, subpath_, layers_of_splat(v)}, *seen, there);
   }
 
   const PathContext& path_;
@@ -97,16 +100,20 @@ class LightVisitor {
 class EyeVisitor {
  public:
   // The path starts (TR eqs. 31-33).
-  EyeVisitor(const PathContext& path, const VcmPass& pass, const Vec2& raster, std::size_t partner, LightLayers& layers,
+  EyeVisitor(const PathContext& path, const VcmPass& pass, const Vec2& raster, LightLayers& layers,
              PathMoments* moments = nullptr)
       : path_(path),
         pass_(pass),
-        bidirectional_(pass.bidirectional_at(raster, moments)),
+        bidirectional_(pass.bidirectional_at(raster, pass.effort.at(raster))),
         moments_(moments),
         raster_(raster),
-        partner_(partner),
         layers_(layers),
         subpath_(pass.bidirectional.techniques) {
+    if (moments) bidirectional_.weighed = &moments->weighed;
+    if (pass.connects() && bidirectional_.techniques.connections > 0) {
+      partner_ = pass.partner(path.sampler);
+      pass.vertices.prefetch(partner_);
+    }
     subpath_.begin_at_lens(pass.job.view.camera);
   }
 
@@ -216,10 +223,10 @@ class EyeVisitor {
 
   const PathContext& path_;
   const VcmPass& pass_;
-  const Bidirectional bidirectional_;
+  Bidirectional bidirectional_;
   PathMoments* moments_;
   const Vec2 raster_;
-  std::size_t partner_;
+  std::size_t partner_ = 0;
   LightLayers& layers_;
   Subpath subpath_;
 };
@@ -233,7 +240,9 @@ RayCounts trace_light_paths(const VcmPass& pass, const Film* film, const See& se
     LightVertices::Chunk& chunk = pass.vertices.chunk(c);
     const PathContext path{pass.job.scene, pass.draw.w, sampler, counts, limits};
     const float time = pass.draw.of_path(sampler).time;
-    const auto see_in_chunk = [&](const LightArrival& light, const LensLight& seen) { see(light, seen, c); };
+    const auto see_in_chunk = [&](const LightArrival& light, const LensLight& seen, const PlaceEffort& there) {
+      see(light, seen, there, c);
+    };
     walk_from_light(path, start, time, LightVisitor(path, pass, start.index, time, film, chunk, see_in_chunk));
     chunk.ends.push_back(static_cast<std::uint32_t>(chunk.vertices.size()));
   });

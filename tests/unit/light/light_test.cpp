@@ -11,6 +11,7 @@
 #include <numeric>
 
 #include "light/brightness.h"
+#include "light/emission_guide.h"
 #include "light/light_sampler.h"
 #include "light/light_texels.h"
 #include "math/hash.h"
@@ -654,6 +655,35 @@ TEST(PhotonAllocation, IsSafeAtItsEnds) {
   const EmissionGuide of_other_scene(2);
   EXPECT_THROW(PhotonAllocation(one, 10, 0.5f, &of_other_scene), std::invalid_argument);
   EXPECT_THROW(emission_probabilities(one, &of_other_scene), std::invalid_argument);
+}
+
+// A density that is asked for up to a bound is exact below it, and between the bound and the truth above.
+TEST(GuidedDensity, NeedNotBeExactAboveWhatIsEnough) {
+  const BoundingSphere scene{{0, 0, 0}, 10};
+  const Light light = UniformInfiniteLight{test_colour(), scene};
+  EmissionGuide guide(1, AimedDisks(scene, {1, 2, 0}, 1));
+  TreeDistribution& numbers = guide.lights[0].numbers;  // few of the photons start from the wide disks
+  numbers.add_inner(0, numbers.add_leaf(0.9f), numbers.add_leaf(0.1f));
+  HashRng rng(13);
+  int exact = 0, bounded = 0;
+  for (int i = 0; i < 10'000; ++i) {
+    const auto ray = sample_emission(light, {rng.next(), rng.next()}, {rng.next(), rng.next()}, rgb);
+    ASSERT_TRUE(ray);
+    const auto density = [&](float enough) {
+      return guided_density(guide, light, 0, {ray->origin, Normal(0), Vec2(0)}, ray->direction, enough);
+    };
+    const float enough = 4 * rng.next(), truth = density(infinity), some = density(enough);
+    if (truth < enough) {
+      ASSERT_EQ(some, truth);
+      ++exact;
+    } else {
+      ASSERT_GE(some, enough);
+      ASSERT_LE(some, truth);
+      bounded += some < truth ? 1 : 0;
+    }
+  }
+  EXPECT_GT(exact, 1000);
+  EXPECT_GT(bounded, 100);
 }
 
 TEST(LightBvh, ProbabilitiesSumToOneAndMatchSamples) {

@@ -228,15 +228,21 @@ float weight_of_connection(const RandomPath& path, const Recursion& r, int s) {
   };
   const auto media = [&](unsigned i) { return path.in_medium[i] ? volume_merging(path, i) : 0.0f; };
   const auto flight = [&](unsigned from, unsigned to) { return path.pass[from] * path.collision[to]; };
-  if (s == 0)
-    return sum_of_hit(r.eye[0], f(path.direct_area), f(path.emission_area * path.emission_direction), path.techniques)
-        .weight();
+  // Where no light path can make the path, the density of its start must not matter.
+  const auto start = [&](bool matters, double density) { return matters ? f(density) : 1e6f; };
+  if (s == 0) {
+    const float emission =
+        start(has_light_paths(r.eye[0], path.techniques), path.emission_area * path.emission_direction);
+    return sum_of_hit(r.eye[0], f(path.direct_area), emission, path.techniques).weight();
+  }
   if (s == 1) {
     const double direct = path.direct_area * path.distance2[0] / path.cos_n[0];  // per solid angle at x_1
     const double ratio =
         path.emission_area * path.emission_direction * path.cos_p[1] * flight(0, 1) / (direct * path.cos_n[0]);
-    return sum_of_next_event({end_of_eye_path(r.eye[1], f(path.forward[1])), f(ratio), merging(1), media(1)}, f(direct),
-                             path.can_be_hit ? f(path.reverse[1] * path.pass[0]) : 0.0f, path.techniques)
+    ConnectedEnd at_eye{end_of_eye_path(r.eye[1], f(path.forward[1])), 0, merging(1), media(1)};
+    at_eye.arrival = start(at_eye.has_other_techniques(path.techniques), ratio);
+    return sum_of_next_event(at_eye, f(direct), path.can_be_hit ? f(path.reverse[1] * path.pass[0]) : 0.0f,
+                             path.techniques)
         .weight();
   }
   if (s == path.last() + 1)
