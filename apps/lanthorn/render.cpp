@@ -182,7 +182,7 @@ void render_view(const RenderCommand& a, const Prepared& prepared, const ViewDes
   if (!a.resume.empty()) session.resume(open_state(a.resume), a.resume);
   check_states(a, outputs, session);
 
-  Onlookers onlookers{ProgressDisplay(session.plan(), session.state(), a.quiet)};
+  Onlookers onlookers{ProgressDisplay(session.plan(), a.quiet)};
   if (auto planned = plan_checkpoints(a, outputs, session, onlookers.progress)) onlookers.checkpoints.emplace(*planned);
   if (auto planned = plan_previews(a, outputs, session.plan(), onlookers.progress))
     onlookers.previews.emplace(*planned);

@@ -16,8 +16,8 @@
 #include "lanthorn/file.h"
 #include "lanthorn/image_file.h"
 #include "lanthorn/state.h"
+#include "lanthorn/text.h"
 #include "output.h"
-#include "progress.h"
 
 namespace lanthorn::program {
 

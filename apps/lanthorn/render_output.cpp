@@ -16,9 +16,9 @@
 #include "lanthorn/file.h"
 #include "lanthorn/image_file.h"
 #include "lanthorn/methods.h"
+#include "lanthorn/text.h"
 #include "lanthorn/threads.h"
 #include "output_check.h"
-#include "progress.h"
 #include "rescue.h"
 #include "scene_report.h"
 

@@ -269,6 +269,7 @@ nlohmann::json Viewer::about(const InteractiveSnapshot& snapshot) {
           {"photons", state.pass_count * photons},
           {"traces_photons", picture.statistics.light_paths > 0},
           {"error", picture.statistics.error ? describe_error(*picture.statistics.error) : ""},
+          {"seconds_left", picture.seconds_left ? nlohmann::json(*picture.seconds_left) : nlohmann::json()},
           {"radius", picture.statistics.radius},
           {"volume_radius", picture.statistics.volume_radius},
           {"integrator", state.integrator},

@@ -239,6 +239,7 @@ void draw_times(const Panel& panel) {
   ImGui::TableSetupColumn("amount", ImGuiTableColumnFlags_WidthStretch, 1);
   if (panel.is_offline) {
     row("Passes", std::to_string(panel.frames));
+    if (!panel.left.empty()) row("Time left", panel.left);
     if (!panel.error.empty()) row("Error", panel.error);
   } else {
     row("Frames in the mean", std::to_string(panel.frames));
