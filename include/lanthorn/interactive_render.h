@@ -70,6 +70,8 @@ struct InteractivePicture {
   /// scene, ask for; 0 then. None: not known yet, coarse, or nothing ends the render.
   std::optional<double> seconds_left{};
   std::string limitation{};  ///< light that the method leaves out; empty: none
+  /// What the method has found and chosen for this picture, as `Observer::remark`; empty: nothing, or coarse.
+  std::string remark{};
 };
 
 /// What there is to see at a moment.

@@ -340,6 +340,7 @@ std::shared_ptr<const InteractivePicture> InteractiveRender::Worker::full_pictur
     const Wanted& wanted, const StopRule& stop, const RenderStatistics& statistics) const {
   InteractivePicture picture = make_picture(wanted, *plan_, statistics);
   picture.seconds_left = progress_of(stop, plan_->state, statistics).seconds_left;
+  picture.remark = plan_->integrator->remark();
   return std::make_shared<const InteractivePicture>(std::move(picture));
 }
 

@@ -63,6 +63,7 @@ struct Panel {
   std::string scene, driver, object_name, message, command;
   std::string error;   ///< of the picture, of an offline method; empty: not known yet
   std::string left;    ///< time until an offline method has reached its bounds; empty: not known yet, or reached
+  std::string remark;  ///< what an offline method has found and chosen; empty: nothing
   std::string notice;  ///< over the picture: why it is not what was asked for
   std::vector<std::string> notes;
   std::vector<LightMark> marks;

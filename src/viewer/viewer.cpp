@@ -378,6 +378,7 @@ void Viewer::refine() {
   panel_.error = error ? describe_error(*error) : "";
   const double left = offline_->seconds_left.value_or(0);
   panel_.left = left > 0 ? format_duration(left) : "";
+  panel_.remark = offline_->remark;
 }
 
 void Viewer::draw() {

@@ -236,7 +236,8 @@ async function changeEnvironment() {
 async function lookAtNumbers() {
   await page.waitForFunction(() => !document.getElementById('left').hidden);
   expect(/^1:59:[0-5][0-9] h$/.test(await text('left')), `the time left is told: ${await text('left')}`);
-  await page.locator('#left').scrollIntoViewIfNeeded();
+  expect((await text('remark')).includes('caustics'), `what auto has found is told: ${await text('remark')}`);
+  await page.locator('#remark').scrollIntoViewIfNeeded();
   await shot('numbers');
   await page.locator('aside').evaluate((panel) => { panel.scrollTop = 0; });
 }

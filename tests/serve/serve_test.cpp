@@ -261,6 +261,11 @@ TEST_F(Serve, AViewWithoutBoundTellsNoTimeLeft) {
   EXPECT_TRUE(frame([](const nlohmann::json& f) { return f["error"] != ""; })["seconds_left"].is_null());
 }
 
+TEST_F(Serve, AViewTellsWhatAutoHasFound) {
+  start({"-p", "1"});
+  EXPECT_TRUE(contains(frame(is_finished)["remark"], "caustics"));
+}
+
 // Not around what is seen between its parts.
 TEST_F(Serve, AModelTurnsAroundItsMiddle) {
   dir_.write("bars.obj",

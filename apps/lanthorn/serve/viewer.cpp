@@ -276,6 +276,7 @@ nlohmann::json Viewer::about(const InteractiveSnapshot& snapshot) {
           {"command", settings_.command(scene, state.pass_count)},
           {"full_size", picture.full_size},
           {"limitation", picture.limitation},
+          {"remark", picture.remark},
           {"camera", to_json(changes.look.value_or(home(picture.image)), is_mirrored_)},
           {"moved", changes.look.has_value() || changes.lens != settings_.start.changes.lens},
           {"lens", to_json(changes.lens, view)},

@@ -252,6 +252,7 @@ void draw_times(const Panel& panel) {
     if (rest > 0) row("Photons, later ones", std::to_string(rest));
   }
   ImGui::EndTable();
+  if (panel.is_offline && !panel.remark.empty()) faint_text(panel.remark);
 }
 
 void load_font(float scale) {

@@ -102,6 +102,18 @@ TEST(InteractiveRender, TellsTheTimeLeftWhereSomethingEndsTheRender) {
   EXPECT_FALSE(await(render, is_full).picture->seconds_left);
 }
 
+TEST(InteractiveRender, TellsWhatTheMethodHasFound) {
+  RenderOptions options = small(1);
+  options.integrator = "auto";
+  std::string remark;
+  Observer observer;
+  observer.remark = [&](const std::string& text) { remark = text; };
+  Session(box(), view_of_angle(40), options).render(observer);
+  EXPECT_NE(remark, "");
+  const InteractiveRender render(box(), view_of_angle(40), options);
+  EXPECT_EQ(await(render, finished).picture->remark, remark);
+}
+
 TEST(InteractiveRender, EachPartCanBeEdited) {
   InteractiveRender render(box(), view_of_angle(40), small());
   render.edit({.view = view_of_angle(30)});
@@ -133,6 +145,7 @@ TEST(InteractiveRender, CoarsePicturesOfAutoHaveNoPilot) {
   EXPECT_TRUE(coarse.picture->is_coarse);
   EXPECT_NE(coarse.picture->state.settings.find("\"integrator\":\"vcm\""), std::string::npos);
   EXPECT_EQ(coarse.picture->state.integrator, "auto");
+  EXPECT_EQ(coarse.picture->remark, "");
   EXPECT_FALSE(coarse.picture->seconds_left);
   const InteractiveSnapshot end = await(render, finished);
   EXPECT_EQ(end.picture->state.integrator, "auto");

@@ -278,8 +278,10 @@ function showProgress(about) {
   byId('pause').textContent = about.paused ? 'Go on' : 'Pause';
   byId('pause').disabled = about.finished;
   for (const id of ['method', 'width', 'height']) byId(id).disabled = false;
-  byId('limitation').hidden = !about.limitation;
-  byId('limitation').textContent = about.limitation;
+  for (const id of ['limitation', 'remark']) {
+    byId(id).hidden = !about[id];
+    byId(id).textContent = about[id];
+  }
   byId('passes').textContent = about.coarse ? 'coarse' : about.passes;
   byId('time').textContent = time(about.seconds);
   byId('left').hidden = byId('left-term').hidden = !(about.seconds_left > 0);
