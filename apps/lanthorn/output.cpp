@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstddef>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "console.h"
@@ -40,6 +41,8 @@ nlohmann::json metadata_of(const StateSummary& state, const ErrorEstimate& error
   if (!statistics.is_null()) metadata["statistics"] = statistics;
   return metadata;
 }
+
+bool has_layers(const fs::path& path) { return lower_extension(path) == ".exr"; }
 
 std::vector<float> brightest_channels(const Image& color) {
   std::vector<float> brightest;
@@ -185,29 +188,53 @@ DisplaySettings write(const fs::path& path, const Image& image, const OutputSett
 
 }  // namespace
 
-void write_preview(const fs::path& path, const RenderState& state, const OutputSettings& settings) {
-  const StateSummary summary = summarize(state);
-  write(path, picture_of(state), settings, settings.measures_exposure.value_or(summary.measures_exposure),
-        metadata_of(summary, estimate_error(state), settings.reproducible, nullptr).dump());
+StatePicture::StatePicture(const RenderState& state, const std::vector<fs::path>& files,
+                           const RenderStatistics& statistics)
+    : state_(state),
+      summary_(summarize(state)),
+      has_error_layers_(std::any_of(files.begin(), files.end(), has_layers)) {
+  if (statistics.error_passes == summary_.pass_count) error_ = statistics.error;
+}
+
+const Image& StatePicture::image() {
+  if (!image_) has_error_layers_ ? measure() : void(image_ = picture_without_error(state_));
+  return *image_;
+}
+
+const ErrorEstimate& StatePicture::error() {
+  if (!error_) has_error_layers_ ? measure() : void(error_ = estimate_error(state_));
+  return *error_;
+}
+
+void StatePicture::measure() {
+  MeasuredPicture measured = measured_picture_of(state_);
+  image_ = std::move(measured.picture);
+  error_ = std::move(measured.error);
+}
+
+void write_preview(const fs::path& path, StatePicture& picture, const OutputSettings& settings) {
+  const StateSummary& summary = picture.summary();
+  write(path, picture.image(), settings, settings.measures_exposure.value_or(summary.measures_exposure),
+        metadata_of(summary, picture.error(), settings.reproducible, nullptr).dump());
 }
 
 void write_picture(const fs::path& path, const Image& image, const OutputSettings& settings, bool measures_exposure,
                    const std::string& metadata) {
   const bool is_measured = settings.measures_exposure.value_or(measures_exposure);
   const DisplaySettings display = write(path, image, settings, is_measured, metadata);
-  if (!settings.hints || lower_extension(path) == ".exr") return;
+  if (!settings.hints || has_layers(path)) return;
   if (is_measured)
     announce("{}: --exposure {:.1f}, measured from the picture\n", path.string(), display.exposure);
   else
     warn_of_exposure(path, image, display);
 }
 
-void write_output(const fs::path& path, const RenderState& state, const ErrorEstimate& error,
-                  const OutputSettings& settings, const nlohmann::json& statistics) {
-  if (path.extension() == ".state") return save_state(state, path, {.times = !settings.reproducible});
-  const StateSummary summary = summarize(state);
-  write_picture(path, picture_of(state), settings, summary.measures_exposure,
-                metadata_of(summary, error, settings.reproducible, statistics).dump());
+void write_output(const fs::path& path, StatePicture& picture, const OutputSettings& settings,
+                  const nlohmann::json& statistics) {
+  if (path.extension() == ".state") return save_state(picture.state(), path, {.times = !settings.reproducible});
+  const StateSummary& summary = picture.summary();
+  write_picture(path, picture.image(), settings, summary.measures_exposure,
+                metadata_of(summary, picture.error(), settings.reproducible, statistics).dump());
 }
 
 void report_film(const FilmReport& report) {

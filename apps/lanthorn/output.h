@@ -11,6 +11,7 @@
 
 #include "lanthorn/image_file.h"
 #include "lanthorn/state.h"
+#include "lanthorn/statistics.h"
 #include "options.h"
 
 namespace lanthorn::program {
@@ -47,8 +48,31 @@ inline const std::vector<std::string> output_extensions = [] {
   return extensions;
 }();
 
+/// The picture of a state and its error, for the files of a command: each is made once, when a file needs it.
+class StatePicture {
+ public:
+  /// `statistics`: of the render, which may have measured the error. An .exr among `files` has the error as a layer.
+  StatePicture(const RenderState& state, const std::vector<std::filesystem::path>& files,
+               const RenderStatistics& statistics = {});
+
+  const RenderState& state() const { return state_; }
+  const StateSummary& summary() const { return summary_; }
+  /// With the layers of the error only if there is an .exr.
+  const Image& image();
+  const ErrorEstimate& error();
+
+ private:
+  void measure();
+
+  const RenderState& state_;
+  StateSummary summary_;
+  bool has_error_layers_;
+  std::optional<Image> image_;
+  std::optional<ErrorEstimate> error_;
+};
+
 /// Writes the picture of a running render. Throws Error.
-void write_preview(const std::filesystem::path& path, const RenderState& state, const OutputSettings& settings);
+void write_preview(const std::filesystem::path& path, StatePicture& picture, const OutputSettings& settings);
 
 /// Writes a picture. Says the measured exposure unless it is an .exr, and warns if many of its pixels are brighter than
 /// white or nearly all are black, if the settings say so. `measures_exposure`: unless the settings say whether. Throws
@@ -56,11 +80,10 @@ void write_preview(const std::filesystem::path& path, const RenderState& state, 
 void write_picture(const std::filesystem::path& path, const Image& image, const OutputSettings& settings,
                    bool measures_exposure, const std::string& metadata);
 
-/// Writes the picture as `write_picture`, or the state itself, by the extension of `path`. `error`: of the picture.
-/// `statistics`: of the render,
+/// Writes the picture as `write_picture`, or the state itself, by the extension of `path`. `statistics`: of the render,
 /// for an image's metadata; may be null. Throws Error.
-void write_output(const std::filesystem::path& path, const RenderState& state, const ErrorEstimate& error,
-                  const OutputSettings& settings, const nlohmann::json& statistics = nullptr);
+void write_output(const std::filesystem::path& path, StatePicture& picture, const OutputSettings& settings,
+                  const nlohmann::json& statistics = nullptr);
 
 /// Warns if the film could not add some values exactly.
 void report_film(const FilmReport& report);

@@ -165,8 +165,8 @@ FileKind kind_of_file(const std::string& file) {
 void show_state(const std::string& file, bool as_json) {
   const std::shared_ptr<RenderState> sums = open_state(file);  // checks its checksum and every number
   const StateSummary state = summarize(*sums);
-  const ErrorEstimate error = estimate_error(*sums);
-  const std::vector<std::string> layers = layer_names(picture_of(*sums));
+  const auto [picture, error] = measured_picture_of(*sums);
+  const std::vector<std::string> layers = layer_names(picture);
   if (as_json) return print_text(report_text(state_json(state, error, layers)));
   print_line("state", file + " (intact)");
   print_settings(settings_of(state));

@@ -95,14 +95,14 @@ void warn_of_limit(const StateSummary& state) {
       settings.at("identity").at("max_depth").get<int>(), 100 * state.cut_share);
 }
 
-void write_report(const std::string& path, const Scene& scene, const RenderState& state, const ErrorEstimate& error,
+void write_report(const std::string& path, const Scene& scene, StatePicture& picture,
                   const RenderStatistics& statistics) {
   nlohmann::json report = describe(statistics);
-  const StateSummary summary = summarize(state);
+  const StateSummary& summary = picture.summary();
   report["settings"] = nlohmann::json::parse(summary.settings);
   report["film"] = describe(summary.report);
   report["depth_limit"] = describe_limit(report["settings"], statistics.rays);
-  report["error"] = estimate_json(error);
+  report["error"] = estimate_json(picture.error());
   report["passes_total"] = summary.pass_count;
   report["scene"] = scene_report(summarize(scene));
   const std::string text = report_text(report);
@@ -167,9 +167,8 @@ void report_warnings(const std::vector<description::Warning>& warnings, SaidLine
 void save_render(const RenderFiles& a, const RenderOptions& options, const std::vector<fs::path>& paths,
                  const Scene& scene, const RenderState& state, const RenderStatistics& statistics) {
   const nlohmann::json described = describe(statistics);
-  const StateSummary summary = summarize(state);
-  const bool is_measured = statistics.error && statistics.error_passes == summary.pass_count;
-  const ErrorEstimate error = is_measured ? *statistics.error : estimate_error(state);
+  StatePicture picture(state, paths, statistics);
+  const StateSummary& summary = picture.summary();
   OutputSettings settings = a.output;
   settings.hints = !a.quiet;
   std::vector<Output> outputs;
@@ -177,17 +176,17 @@ void save_render(const RenderFiles& a, const RenderOptions& options, const std::
   for (const fs::path& path : paths)
     outputs.push_back({path, path.extension() == ".state" ? OutputKind::state : OutputKind::picture, [&] {
                          check_state(a, path, state, summary.passes);  // fewer than expected, after a signal
-                         write_output(path, state, error, settings, described);
+                         write_output(path, picture, settings, described);
                        }});
   if (!a.json.empty())
-    outputs.push_back({a.json, OutputKind::report, [&] { write_report(a.json, scene, state, error, statistics); }});
+    outputs.push_back({a.json, OutputKind::report, [&] { write_report(a.json, scene, picture, statistics); }});
   write_outputs(outputs, state);
   report_film(summary.report);
   if (!options.max_depth) warn_of_limit(summary);  // else the user has chosen it
   if (a.quiet) return;
   for (const fs::path& path : paths)
     announce("{}: {} passes by {} in {}, error {}\n", path.string(), summary.pass_count, summary.integrator,
-             format_duration(summary.seconds), describe_error(error));
+             format_duration(summary.seconds), describe_error(picture.error()));
 }
 
 }  // namespace lanthorn::program
