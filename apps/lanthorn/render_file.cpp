@@ -116,6 +116,7 @@ json state_json(const StateSummary& state, const ErrorEstimate& error, const std
   for (const PassRange& range : state.passes) passes.push_back({range.begin, range.end});
   return {{"kind", "state"},
           {"intact", true},
+          {"method", state.integrator},
           {"settings", settings_of(state)},
           {"passes", passes},
           {"pass_count", state.pass_count},
@@ -187,6 +188,7 @@ void show_picture(const std::string& file, std::uint64_t max_pixels, bool as_jso
   const std::uint64_t non_finite = count_non_finite(image);
   if (as_json) {
     const json report{{"kind", "picture"},
+                      {"method", metadata.value("integrator", json())},
                       {"settings", metadata},
                       {"width", image.width},
                       {"height", image.height},
