@@ -41,8 +41,9 @@ Input read_input(const DenoiseCommand& a) {
   if (fs::path(a.input).extension() == ".state") {
     const std::shared_ptr<RenderState> state = open_state(a.input);
     const StateSummary summary = summarize(*state);
-    return {picture_with_noise(*state), metadata_of(summary, estimate_error(*state), a.settings.reproducible, nullptr),
-            summary.measures_exposure};
+    const MeasuredPicture measured = measured_picture_of(*state);
+    return {with_noise(*state, measured.picture),
+            metadata_of(summary, measured.error, a.settings.reproducible, nullptr), summary.measures_exposure};
   }
   const std::string metadata = read_image_metadata(a.input);
   return {read_image(a.input, ColorEncoding::automatic, a.max_pixels),

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "commands.h"
@@ -35,6 +36,8 @@ std::string per_triangle(const SceneSummary& s) {
                      static_cast<double>(s.geometry_bytes + s.bvh_bytes) / static_cast<double>(s.triangles));
 }
 
+std::string method_of(const Scene& scene) { return default_method(description_of(scene).hints.integrator).name; }
+
 void print_table(const Scene& scene, const SceneSummary& s) {
   const SceneDescription& description = description_of(scene);
   const description::RenderHints& hints = description.hints;
@@ -53,7 +56,7 @@ void print_table(const Scene& scene, const SceneSummary& s) {
   print("film       {} x {} pixels\n", film.width, film.height);
   print("asks for   integrator {}{}\n", hints.integrator.empty() ? "(none)" : hints.integrator,
         hints.pixel_samples ? fmt::format(", {} samples", *hints.pixel_samples) : "");
-  print("method     {}\n", default_method(hints.integrator).name);
+  print("method     {}\n", method_of(scene));
   print("features   {}{}{}\n", s.has_dispersion ? "dispersion " : "", s.has_measured_spectra ? "measured spectra " : "",
         s.has_motion ? "motion " : "");
   print("built in   {:.3f} s\n", s.build_seconds);
@@ -64,10 +67,10 @@ void print_table(const Scene& scene, const SceneSummary& s) {
 void show_scene(const std::string& file, const ReadOptions& reading, bool as_json) {
   const SharedScene scene = build_scene(read_scene(file, reading));
   const SceneSummary summary = summarize(*scene);
-  if (as_json)
-    print_text(report_text(scene_report(summary)));
-  else
-    print_table(*scene, summary);
+  if (!as_json) return print_table(*scene, summary);
+  nlohmann::json report = scene_report(summary);
+  report["method"] = method_of(*scene);
+  print_text(report_text(report));
 }
 
 struct InfoCommand {

@@ -38,11 +38,11 @@ void run(const MergeCommand& o) {
       throw Error({o.inputs[i]}, e.message);
     }
   }
-  const StateSummary summary = summarize(*merged);
+  StatePicture picture(*merged, {o.output}, {}, o.settings.denoise);
+  const StateSummary& summary = picture.summary();
   if (fs::path(o.output).extension() == ".state" && !o.settings.force)
     check_replaced_state(o.output, *merged, summary.passes, "merge it, too");
-  FinishedPicture picture(*merged, o.settings);
-  write_output(o.output, *merged, picture, estimate_error(*merged), o.settings);
+  write_output(o.output, picture, o.settings);
   announce("{}: {} passes of {} from {} files\n", o.output, summary.pass_count, summary.integrator, o.inputs.size());
   report_film(summary.report);
 }

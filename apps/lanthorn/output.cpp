@@ -8,10 +8,12 @@
 #include <cmath>
 #include <cstddef>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "console.h"
 #include "estimate_json.h"
+#include "lanthorn/denoise.h"
 #include "lanthorn/file.h"
 #include "lanthorn/version.h"
 
@@ -40,6 +42,8 @@ nlohmann::json metadata_of(const StateSummary& state, const ErrorEstimate& error
 }
 
 namespace {
+
+bool has_layers(const fs::path& path) { return lower_extension(path) == ".exr"; }
 
 std::vector<float> brightest_channels(const Image& color) {
   std::vector<float> brightest;
@@ -190,53 +194,66 @@ DisplaySettings write(const fs::path& path, const Image& image, const OutputSett
 
 }  // namespace
 
-void write_preview(const fs::path& path, const RenderState& state, const OutputSettings& settings) {
-  const StateSummary summary = summarize(state);
-  write(path, picture_of(state), settings, settings.measures_exposure.value_or(summary.measures_exposure),
-        metadata_of(summary, estimate_error(state), settings.reproducible, nullptr).dump());
+StatePicture::StatePicture(const RenderState& state, const std::vector<fs::path>& files,
+                           const RenderStatistics& statistics, bool is_denoised)
+    : state_(state), summary_(summarize(state)), is_denoised_(is_denoised && summary_.pass_count > 1) {
+  if (is_denoised && !is_denoised_)
+    warn("a picture of a single pass is not denoised: what is noise shows in the difference of passes");
+  needs_all_layers_ = is_denoised_ || std::any_of(files.begin(), files.end(), has_layers);
+  if (statistics.error_passes == summary_.pass_count) error_ = statistics.error;
+}
+
+const Image& StatePicture::with_all_layers() {
+  if (all_layers_) return *all_layers_;
+  MeasuredPicture measured = measured_picture_of(state_);
+  error_ = std::move(measured.error);
+  all_layers_ = with_noise(state_, measured.picture);
+  if (!is_denoised_) return *all_layers_;
+  DenoisedPicture denoised = denoise(*all_layers_);
+  denoised_error_ = std::move(denoised.error);
+  return all_layers_.emplace(std::move(denoised.picture));
+}
+
+const Image& StatePicture::image_for(const fs::path& file) {
+  if (has_layers(file)) return with_all_layers();
+  if (!shown_) shown_ = needs_all_layers_ ? with_denoised_light(with_all_layers()) : picture_without_error(state_);
+  return *shown_;
+}
+
+const ErrorEstimate& StatePicture::error() {
+  if (!error_) needs_all_layers_ ? void(with_all_layers()) : void(error_ = estimate_error(state_));
+  return *error_;
+}
+
+const std::optional<ErrorEstimate>& StatePicture::denoised_error() {
+  if (is_denoised_) with_all_layers();
+  return denoised_error_;
+}
+
+void write_preview(const fs::path& path, StatePicture& picture, const OutputSettings& settings) {
+  const StateSummary& summary = picture.summary();
+  write(path, picture.image_for(path), settings, settings.measures_exposure.value_or(summary.measures_exposure),
+        metadata_of(summary, picture.error(), settings.reproducible, nullptr).dump());
 }
 
 void write_picture(const fs::path& path, const Image& image, const OutputSettings& settings, bool measures_exposure,
                    const std::string& metadata) {
   const bool is_measured = settings.measures_exposure.value_or(measures_exposure);
   const DisplaySettings display = write(path, image, settings, is_measured, metadata);
-  if (!settings.hints || lower_extension(path) == ".exr") return;
+  if (!settings.hints || has_layers(path)) return;
   if (is_measured)
     announce("{}: --exposure {:.1f}, measured from the picture\n", path.string(), display.exposure);
   else
     warn_of_exposure(path, image, display);
 }
 
-FinishedPicture::FinishedPicture(const RenderState& state, const OutputSettings& settings) : state_(state) {
-  if (!settings.denoise) return;
-  if (summarize(state).pass_count > 1)
-    denoised_ = denoise(picture_with_noise(state));
-  else
-    warn("a picture of a single pass is not denoised: what is noise shows in the difference of passes");
-}
-
-const Image& FinishedPicture::for_file(const fs::path& path) {
-  if (lower_extension(path) == ".exr") {
-    if (denoised_) return denoised_->picture;
-    if (!all_) all_ = picture_with_noise(state_);
-    return *all_;
-  }
-  if (!shown_) shown_ = denoised_ ? with_denoised_light(denoised_->picture) : picture_of(state_);
-  return *shown_;
-}
-
-std::optional<ErrorEstimate> FinishedPicture::denoised_error() const {
-  if (!denoised_) return std::nullopt;
-  return denoised_->error;
-}
-
-void write_output(const fs::path& path, const RenderState& state, FinishedPicture& picture, const ErrorEstimate& error,
-                  const OutputSettings& settings, const nlohmann::json& statistics) {
-  if (path.extension() == ".state") return save_state(state, path, {.times = !settings.reproducible});
-  const StateSummary summary = summarize(state);
-  nlohmann::json metadata = metadata_of(summary, error, settings.reproducible, statistics);
-  if (const auto denoised = picture.denoised_error()) metadata["denoised_error"] = estimate_json(*denoised);
-  write_picture(path, picture.for_file(path), settings, summary.measures_exposure, metadata.dump());
+void write_output(const fs::path& path, StatePicture& picture, const OutputSettings& settings,
+                  const nlohmann::json& statistics) {
+  if (path.extension() == ".state") return save_state(picture.state(), path, {.times = !settings.reproducible});
+  const StateSummary& summary = picture.summary();
+  nlohmann::json metadata = metadata_of(summary, picture.error(), settings.reproducible, statistics);
+  if (picture.denoised_error()) metadata["denoised_error"] = estimate_json(*picture.denoised_error());
+  write_picture(path, picture.image_for(path), settings, summary.measures_exposure, metadata.dump());
 }
 
 void report_film(const FilmReport& report) {

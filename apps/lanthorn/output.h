@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "lanthorn/denoise.h"
 #include "lanthorn/image_file.h"
 #include "lanthorn/state.h"
+#include "lanthorn/statistics.h"
 #include "options.h"
 
 namespace lanthorn::program {
@@ -54,8 +54,34 @@ inline const std::vector<std::string> output_extensions = [] {
 nlohmann::json metadata_of(const StateSummary& state, const ErrorEstimate& error, bool reproducible,
                            const nlohmann::json& statistics);
 
+/// The picture of a state and its error, for the files of a command: each is made once, when a file needs it.
+class StatePicture {
+ public:
+  /// `statistics`: of the render, which may have measured the error. An .exr among `files` has all layers, and those
+  /// that a denoiser needs. `is_denoised`: .exr files have the denoised layers, too, all others show them.
+  StatePicture(const RenderState& state, const std::vector<std::filesystem::path>& files,
+               const RenderStatistics& statistics = {}, bool is_denoised = false);
+
+  const RenderState& state() const { return state_; }
+  const StateSummary& summary() const { return summary_; }
+  const Image& image_for(const std::filesystem::path& file);
+  /// Of the picture before it is denoised.
+  const ErrorEstimate& error();
+  /// Nothing if it is not denoised.
+  const std::optional<ErrorEstimate>& denoised_error();
+
+ private:
+  const Image& with_all_layers();
+
+  const RenderState& state_;
+  StateSummary summary_;
+  bool is_denoised_, needs_all_layers_;
+  std::optional<Image> all_layers_, shown_;
+  std::optional<ErrorEstimate> error_, denoised_error_;
+};
+
 /// Writes the picture of a running render. Throws Error.
-void write_preview(const std::filesystem::path& path, const RenderState& state, const OutputSettings& settings);
+void write_preview(const std::filesystem::path& path, StatePicture& picture, const OutputSettings& settings);
 
 /// Writes a picture. Says the measured exposure unless it is an .exr, and warns if many of its pixels are brighter than
 /// white or nearly all are black, if the settings say so. `measures_exposure`: unless the settings say whether. Throws
@@ -63,26 +89,9 @@ void write_preview(const std::filesystem::path& path, const RenderState& state, 
 void write_picture(const std::filesystem::path& path, const Image& image, const OutputSettings& settings,
                    bool measures_exposure, const std::string& metadata);
 
-/// The picture of a state as files have it, made when it is first asked for.
-class FinishedPicture {
- public:
-  /// Denoises the picture if the settings say so.
-  FinishedPicture(const RenderState& state, const OutputSettings& settings);
-  /// For a file of this name: .exr files have all layers, and what a denoiser needs.
-  const Image& for_file(const std::filesystem::path& path);
-  /// Of the denoised picture, if it is.
-  std::optional<ErrorEstimate> denoised_error() const;
-
- private:
-  const RenderState& state_;
-  std::optional<DenoisedPicture> denoised_;
-  std::optional<Image> all_, shown_;
-};
-
-/// Writes the picture as `write_picture`, or the state itself, by the extension of `path`. `error`: of the picture
-/// before it is denoised. `statistics`: of the render, for an image's metadata; may be null. Throws Error.
-void write_output(const std::filesystem::path& path, const RenderState& state, FinishedPicture& picture,
-                  const ErrorEstimate& error, const OutputSettings& settings,
+/// Writes the picture as `write_picture`, or the state itself, by the extension of `path`. `statistics`: of the render,
+/// for an image's metadata; may be null. Throws Error.
+void write_output(const std::filesystem::path& path, StatePicture& picture, const OutputSettings& settings,
                   const nlohmann::json& statistics = nullptr);
 
 /// Warns if the film could not add some values exactly.

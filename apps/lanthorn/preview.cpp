@@ -25,7 +25,8 @@ Previews::Previews(std::vector<fs::path> pictures, const OutputSettings& setting
 
 void Previews::write_if_due(const RenderState& state, const RenderStatistics& statistics) try {
   if (statistics.seconds < next_ || statistics.passes >= last_pass_) return;
-  for (const fs::path& path : pictures_) write_preview(path, state, settings_);
+  StatePicture picture(state, pictures_, statistics);
+  for (const fs::path& path : pictures_) write_preview(path, picture, settings_);
   next_ = std::max(2 * statistics.seconds, statistics.seconds + interval_);
 } catch (const std::exception& problem) {  // the last writing may succeed
   next_ = std::numeric_limits<double>::infinity();

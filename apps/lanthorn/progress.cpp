@@ -9,6 +9,7 @@
 #include <algorithm>
 
 #include "console.h"
+#include "lanthorn/text.h"
 
 namespace lanthorn::program {
 
@@ -40,23 +41,21 @@ std::string fitted(double fraction, const std::string& text) {
   return whole.size() < width ? whole : bare.substr(0, width - 1);
 }
 
-std::uint64_t passes_left(const PassRange& asked, const RenderState& start) {
-  std::uint64_t left = asked.end - asked.begin;
-  for (const PassRange& done : summarize(start).passes) {
-    const std::uint64_t begin = std::max(asked.begin, done.begin), end = std::min(asked.end, done.end);
-    if (begin < end) left -= end - begin;
-  }
-  return left;
+std::string progress_text(const RenderProgress& progress, const RenderStatistics& s) {
+  const double seconds = std::max(1e-9, s.seconds);
+  std::string text = fmt::format("pass {}", s.passes);
+  if (progress.passes_left) text += fmt::format("/{}", s.passes + *progress.passes_left);
+  if (s.light_paths > 0)
+    text += fmt::format("  {} photons/s", format_count(static_cast<double>(s.light_paths) / seconds));
+  text += fmt::format("  {} rays/s", format_count(static_cast<double>(s.rays.walk + s.rays.shadow) / seconds));
+  if (s.radius > 0) text += fmt::format("  radius {:.3g} m", s.radius);
+  if (s.volume_radius > 0) text += fmt::format("  in media {:.3g} m", s.volume_radius);
+  if (s.error) text += "  error " + describe_error(*s.error);
+  if (progress.seconds_left) text += fmt::format("  {} left", format_duration(*progress.seconds_left));
+  return text;
 }
 
 }  // namespace
-
-std::string format_duration(double seconds) {
-  const auto s = static_cast<std::int64_t>(std::max(0.0, seconds) + 0.5);
-  if (s < 60) return fmt::format("{} s", s);
-  if (s < 3600) return fmt::format("{}:{:02} min", s / 60, s % 60);
-  return fmt::format("{}:{:02}:{:02} h", s / 3600, s / 60 % 60, s % 60);
-}
 
 std::string format_count(double count) {
   if (count >= 1e9) return fmt::format("{:.2f} G", count / 1e9);
@@ -90,44 +89,11 @@ void ProgressLine::finish() {
   line_open_ = false;
 }
 
-ProgressDisplay::ProgressDisplay(const StopRule& stop, const RenderState& start, bool quiet)
-    : passes_to_do_(passes_left(stop.passes, start)), seconds_(stop.seconds), noise_(stop.noise), line_(quiet) {}
-
-double ProgressDisplay::fraction_done(const RenderStatistics& statistics, std::uint64_t state_passes) const {
-  double fraction =
-      static_cast<double>(statistics.passes) / static_cast<double>(std::max<std::uint64_t>(1, passes_to_do_));
-  if (seconds_) fraction = std::max(fraction, statistics.seconds / *seconds_);
-  if (noise_) fraction = std::max(fraction, fraction_of_noise(statistics, state_passes));
-  return std::min(1.0, fraction);
-}
-
-// Of the passes of this run that the bound needs: at most nearly all, until it is reached.
-double ProgressDisplay::fraction_of_noise(const RenderStatistics& statistics, std::uint64_t state_passes) const {
-  if (!statistics.error || !statistics.error->is_known()) return 0;
-  if (statistics.error->is_below(*noise_)) return 1;
-  const double needed = growth_to_reach(*statistics.error, *noise_) * static_cast<double>(statistics.error_passes);
-  const auto before = static_cast<double>(state_passes - statistics.passes);
-  return std::min(0.99, static_cast<double>(statistics.passes) / std::max(1.0, needed - before));
-}
-
-std::string ProgressDisplay::text(const RenderStatistics& s, double fraction) const {
-  const double seconds = std::max(1e-9, s.seconds);
-  const bool is_endless = passes_to_do_ > 1u << 31;
-  std::string text =
-      !is_endless ? fmt::format("pass {}/{}", s.passes, passes_to_do_) : fmt::format("pass {}", s.passes);
-  if (s.light_paths > 0)
-    text += fmt::format("  {} photons/s", format_count(static_cast<double>(s.light_paths) / seconds));
-  text += fmt::format("  {} rays/s", format_count(static_cast<double>(s.rays.walk + s.rays.shadow) / seconds));
-  if (s.radius > 0) text += fmt::format("  radius {:.3g} m", s.radius);
-  if (s.volume_radius > 0) text += fmt::format("  in media {:.3g} m", s.volume_radius);
-  if (s.error) text += "  error " + describe_error(*s.error);
-  const bool is_known = !is_endless || seconds_ || (s.error && s.error->is_known());
-  return is_known ? text + fmt::format("  {} left", format_duration(seconds_left(fraction, s.seconds))) : text;
-}
+ProgressDisplay::ProgressDisplay(const StopRule& stop, bool quiet) : stop_(stop), line_(quiet) {}
 
 void ProgressDisplay::update(const RenderState& state, const RenderStatistics& statistics) {
-  const double fraction = fraction_done(statistics, summarize(state).pass_count);
-  line_.show(fraction, statistics.seconds, [&] { return text(statistics, fraction); });
+  const RenderProgress progress = progress_of(stop_, state, statistics);
+  line_.show(progress.fraction, statistics.seconds, [&] { return progress_text(progress, statistics); });
 }
 
 }  // namespace lanthorn::program

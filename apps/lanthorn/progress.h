@@ -2,9 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
 #include <functional>
-#include <optional>
 #include <string>
 
 #include "lanthorn/session.h"
@@ -32,26 +30,19 @@ class ProgressLine {
 /// The progress of a render.
 class ProgressDisplay {
  public:
-  /// `stop` is the work to do, `start` the part that is done already. `quiet` shows nothing.
-  ProgressDisplay(const StopRule& stop, const RenderState& start, bool quiet);
+  /// `stop` is the work to do. `quiet` shows nothing.
+  ProgressDisplay(const StopRule& stop, bool quiet);
 
   void update(const RenderState& state, const RenderStatistics& statistics);
   void finish() { line_.finish(); }
 
  private:
-  std::string text(const RenderStatistics& statistics, double fraction) const;
-  double fraction_done(const RenderStatistics& statistics, std::uint64_t state_passes) const;
-  double fraction_of_noise(const RenderStatistics& statistics, std::uint64_t state_passes) const;
-
-  std::uint64_t passes_to_do_;
-  std::optional<double> seconds_, noise_;
+  StopRule stop_;
   ProgressLine line_;
 };
 
 /// Time left if `fraction` of the work took `seconds`.
 double seconds_left(double fraction, double seconds);
-/// Seconds as "1:02:03", "2:03" or "4 s".
-std::string format_duration(double seconds);
 /// A count with a decimal prefix: "1.25 M".
 std::string format_count(double count);
 

@@ -121,9 +121,9 @@ Observer make_observer(const RenderCommand& a, Onlookers& onlookers) {
 // A picture in which nothing is seen says nothing of what is wrong.
 void explain_black(const RenderCommand& a, const Scene& scene, const ViewDescription& view, const fs::path& output,
                    const Session& session) {
-  const auto color = select_layer(session.picture(), "color");
-  if (a.quiet || !color || std::any_of(color->pixels.begin(), color->pixels.end(), [](float x) { return x != 0; }))
-    return;
+  if (a.quiet) return;
+  const auto color = select_layer(picture_without_error(session.state()), "color");
+  if (!color || std::any_of(color->pixels.begin(), color->pixels.end(), [](float x) { return x != 0; })) return;
   warn("{}: the picture is black: {}", output.string(), reason_for_black(scene, view));
 }
 
@@ -157,7 +157,7 @@ struct Film {
 
 std::optional<float> exposure_measured(const RenderCommand& a, const Session& session) {
   if (!a.output.measures_exposure.value_or(summarize(session.state()).measures_exposure)) return {};
-  return measured_exposure(session.picture());
+  return measured_exposure(picture_without_error(session.state()));
 }
 
 // What is checked before the render, and read for it once.
@@ -182,7 +182,7 @@ void render_view(const RenderCommand& a, const Prepared& prepared, const ViewDes
   if (!a.resume.empty()) session.resume(open_state(a.resume), a.resume);
   check_states(a, outputs, session);
 
-  Onlookers onlookers{ProgressDisplay(session.plan(), session.state(), a.quiet)};
+  Onlookers onlookers{ProgressDisplay(session.plan(), a.quiet)};
   if (auto planned = plan_checkpoints(a, outputs, session, onlookers.progress)) onlookers.checkpoints.emplace(*planned);
   if (auto planned = plan_previews(a, outputs, session.plan(), onlookers.progress))
     onlookers.previews.emplace(*planned);

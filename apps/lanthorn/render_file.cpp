@@ -16,8 +16,8 @@
 #include "lanthorn/file.h"
 #include "lanthorn/image_file.h"
 #include "lanthorn/state.h"
+#include "lanthorn/text.h"
 #include "output.h"
-#include "progress.h"
 
 namespace lanthorn::program {
 
@@ -116,6 +116,7 @@ json state_json(const StateSummary& state, const ErrorEstimate& error, const std
   for (const PassRange& range : state.passes) passes.push_back({range.begin, range.end});
   return {{"kind", "state"},
           {"intact", true},
+          {"method", state.integrator},
           {"settings", settings_of(state)},
           {"passes", passes},
           {"pass_count", state.pass_count},
@@ -165,8 +166,8 @@ FileKind kind_of_file(const std::string& file) {
 void show_state(const std::string& file, bool as_json) {
   const std::shared_ptr<RenderState> sums = open_state(file);  // checks its checksum and every number
   const StateSummary state = summarize(*sums);
-  const ErrorEstimate error = estimate_error(*sums);
-  const std::vector<std::string> layers = layer_names(picture_of(*sums));
+  const auto [picture, error] = measured_picture_of(*sums);
+  const std::vector<std::string> layers = layer_names(picture);
   if (as_json) return print_text(report_text(state_json(state, error, layers)));
   print_line("state", file + " (intact)");
   print_settings(settings_of(state));
@@ -187,6 +188,7 @@ void show_picture(const std::string& file, std::uint64_t max_pixels, bool as_jso
   const std::uint64_t non_finite = count_non_finite(image);
   if (as_json) {
     const json report{{"kind", "picture"},
+                      {"method", metadata.value("integrator", json())},
                       {"settings", metadata},
                       {"width", image.width},
                       {"height", image.height},

@@ -16,9 +16,9 @@
 #include "lanthorn/file.h"
 #include "lanthorn/image_file.h"
 #include "lanthorn/methods.h"
+#include "lanthorn/text.h"
 #include "lanthorn/threads.h"
 #include "output_check.h"
-#include "progress.h"
 #include "rescue.h"
 #include "scene_report.h"
 
@@ -95,15 +95,15 @@ void warn_of_limit(const StateSummary& state) {
       settings.at("identity").at("max_depth").get<int>(), 100 * state.cut_share);
 }
 
-void write_report(const std::string& path, const Scene& scene, const RenderState& state, const ErrorEstimate& error,
-                  const std::optional<ErrorEstimate>& denoised_error, const RenderStatistics& statistics) {
+void write_report(const std::string& path, const Scene& scene, StatePicture& picture,
+                  const RenderStatistics& statistics) {
   nlohmann::json report = describe(statistics);
-  const StateSummary summary = summarize(state);
+  const StateSummary& summary = picture.summary();
   report["settings"] = nlohmann::json::parse(summary.settings);
   report["film"] = describe(summary.report);
   report["depth_limit"] = describe_limit(report["settings"], statistics.rays);
-  report["error"] = estimate_json(error);
-  if (denoised_error) report["denoised_error"] = estimate_json(*denoised_error);
+  report["error"] = estimate_json(picture.error());
+  if (picture.denoised_error()) report["denoised_error"] = estimate_json(*picture.denoised_error());
   report["passes_total"] = summary.pass_count;
   report["scene"] = scene_report(summarize(scene));
   const std::string text = report_text(report);
@@ -172,29 +172,27 @@ void report_warnings(const std::vector<description::Warning>& warnings, SaidLine
 void save_render(const RenderFiles& a, const RenderOptions& options, const std::vector<fs::path>& paths,
                  const Scene& scene, const RenderState& state, const RenderStatistics& statistics) {
   const nlohmann::json described = describe(statistics);
-  const StateSummary summary = summarize(state);
-  const bool is_measured = statistics.error && statistics.error_passes == summary.pass_count;
-  const ErrorEstimate error = is_measured ? *statistics.error : estimate_error(state);
+  StatePicture picture(state, paths, statistics, a.output.denoise);
+  const StateSummary& summary = picture.summary();
   OutputSettings settings = a.output;
   settings.hints = !a.quiet;
-  FinishedPicture picture(state, settings);
   std::vector<Output> outputs;
   outputs.reserve(paths.size() + 1);
   for (const fs::path& path : paths)
     outputs.push_back({path, path.extension() == ".state" ? OutputKind::state : OutputKind::picture, [&] {
                          check_state(a, path, state, summary.passes);  // fewer than expected, after a signal
-                         write_output(path, state, picture, error, settings, described);
+                         write_output(path, picture, settings, described);
                        }});
   if (!a.json.empty())
-    outputs.push_back({a.json, OutputKind::report,
-                       [&] { write_report(a.json, scene, state, error, picture.denoised_error(), statistics); }});
+    outputs.push_back({a.json, OutputKind::report, [&] { write_report(a.json, scene, picture, statistics); }});
   write_outputs(outputs, state);
   report_film(summary.report);
   if (!options.max_depth) warn_of_limit(summary);  // else the user has chosen it
   if (a.quiet) return;
   for (const fs::path& path : paths)
     announce("{}: {} passes by {} in {}, error {}{}\n", path.string(), summary.pass_count, summary.integrator,
-             format_duration(summary.seconds), describe_error(error), describe_denoised(picture.denoised_error()));
+             format_duration(summary.seconds), describe_error(picture.error()),
+             describe_denoised(picture.denoised_error()));
 }
 
 }  // namespace lanthorn::program

@@ -18,7 +18,7 @@ struct DenoisedPicture {
 };
 
 /// True if the picture has what `denoise` needs: layers of light, features, and the noise of both
-/// (`picture_with_noise`).
+/// (`with_noise`).
 bool can_denoise(const Image& picture);
 
 /// Each layer of light is denoised by itself, so that layers still add up, and a caustic keeps its edges where the

@@ -66,7 +66,12 @@ struct InteractivePicture {
   std::array<int, 2> full_size{};  ///< width, height of the picture that is not coarse
   StateSummary state{};            ///< passes, seconds, size, settings
   RenderStatistics statistics{};
+  /// Of rendering, until the passes, the time or the bound of the error are reached that the options, or else the
+  /// scene, ask for; 0 then. None: not known yet, coarse, or nothing ends the render.
+  std::optional<double> seconds_left{};
   std::string limitation{};  ///< light that the method leaves out; empty: none
+  /// What the method has found and chosen for this picture, as `Observer::remark`; empty: nothing, or coarse.
+  std::string remark{};
 };
 
 /// What there is to see at a moment.

@@ -44,6 +44,15 @@ struct StopRule {
   Undo undo = Undo::if_cheap;
 };
 
+/// How far a call of `Session::render` has come.
+struct RenderProgress {
+  double fraction = 0;                         ///< of the work, by whatever of the stop rule comes first
+  std::optional<double> seconds_left{};        ///< 0 at the end; none: not known yet, or nothing ends the render
+  std::optional<std::uint64_t> passes_left{};  ///< none: as many as the time or the bound of the error asks for
+};
+/// `state` and `statistics`: as an observer's `progress` has them.
+RenderProgress progress_of(const StopRule& stop, const RenderState& state, const RenderStatistics& statistics);
+
 /// What the pass loop reports. All are called between passes, on the thread that renders.
 struct Observer {
   /// Before the preparation and before every pass: whether `StopRule::drop` will stop it.

@@ -64,13 +64,23 @@ StateSummary summarize(const RenderState& state);
 /// color, `bias` the estimated error of photon methods, which passes do not average out.
 Image picture_of(const RenderState& state);
 
-/// The same with what `denoise` needs besides: for each of its layers of light and features a layer noise.NAME, how
-/// much more the first half of the passes has than all of them, and the channel noise.share, the part of the samples
-/// that this half has.
-Image picture_with_noise(const RenderState& state);
+/// The same without the layers `error` and `bias`, which cost about as much as all others.
+Image picture_without_error(const RenderState& state);
+
+/// A picture of this state with what `denoise` needs besides: for each layer of light and of features a layer
+/// noise.NAME, how much more the first half of the passes has than all of them, and the channel noise.share, the part
+/// of the samples that this half has.
+Image with_noise(const RenderState& state, const Image& picture);
 
 /// How far that picture is from the truth. Costs about as much as the picture.
 ErrorEstimate estimate_error(const RenderState& state);
+
+/// Both, for the cost of `picture_of`.
+struct MeasuredPicture {
+  Image picture;
+  ErrorEstimate error;
+};
+MeasuredPicture measured_picture_of(const RenderState& state);
 
 /// Reads a saved state. Throws Error if the file cannot be read, is truncated, damaged, or of another version.
 std::shared_ptr<RenderState> open_state(const std::filesystem::path& path);

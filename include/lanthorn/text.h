@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Text in messages: names that were misspelt, and text of files. Whatever its bytes, a message stays one line, has no
-// effect on a terminal, and shows no more of a file than one token.
+// Text in messages: names that were misspelt, durations, and text of files. Whatever its bytes, a message stays one
+// line, has no effect on a terminal, and shows no more of a file than one token.
 #pragma once
 
 #include <optional>
@@ -30,5 +30,8 @@ std::optional<std::string> nearest_name(std::string_view word, std::span<const s
 
 /// "; did you mean NAME?", or an empty string, to append to a message.
 std::string did_you_mean(std::string_view word, std::span<const std::string> known);
+
+/// Seconds as "1:02:03 h", "2:03 min" or "4 s".
+std::string format_duration(double seconds);
 
 }  // namespace lanthorn

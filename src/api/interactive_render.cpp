@@ -97,8 +97,12 @@ class InteractiveRender::Worker {
   void render_coarse(const Wanted& wanted);
   double render_coarse(const Wanted& wanted, double pixels, bool is_first);
   void refine(const Wanted& wanted);
-  std::shared_ptr<const InteractivePicture> make_picture(const Wanted& wanted, const RenderPlan& plan,
-                                                         const RenderStatistics& statistics, bool is_coarse) const;
+  InteractivePicture make_picture(const Wanted& wanted, const RenderPlan& plan,
+                                  const RenderStatistics& statistics) const;
+  std::shared_ptr<const InteractivePicture> coarse_picture(const Wanted& wanted, const RenderPlan& plan,
+                                                           const RenderStatistics& statistics) const;
+  std::shared_ptr<const InteractivePicture> full_picture(const Wanted& wanted, const StopRule& stop,
+                                                         const RenderStatistics& statistics) const;
   void make_scene(Wanted& wanted);
   void make_plan(const Wanted& wanted);
   double photons_of(const Wanted& wanted, double pixels) const;
@@ -261,7 +265,7 @@ double InteractiveRender::Worker::render_coarse(const Wanted& wanted, double pix
   const RenderStatistics statistics =
       lanthorn::render(*scene_, plan, {.passes = {0, 1}, .drop = is_first ? &end_ : &drop_, .undo = Undo::never});
   if (plan.state.pass_count() > 0) {
-    auto picture = make_picture(wanted, plan, statistics, true);
+    auto picture = coarse_picture(wanted, plan, statistics);
     const std::lock_guard lock(mutex_);
     show(std::move(picture));
   }
@@ -284,7 +288,7 @@ void InteractiveRender::Worker::refine(const Wanted& wanted) {
   observer.progress = [&](const RenderState&, const RenderStatistics& statistics) {
     const Clock::time_point now = Clock::now();
     if (now < next_picture_) return;
-    auto picture = make_picture(wanted, *plan_, statistics, false);
+    auto picture = full_picture(wanted, stop, statistics);
     {
       const std::lock_guard lock(mutex_);
       show(std::move(picture));
@@ -296,7 +300,7 @@ void InteractiveRender::Worker::refine(const Wanted& wanted) {
   if (statistics.out_of_memory) throw std::bad_alloc();
   if (drop_) return;
   const bool is_news = shown_passes < plan_->state.pass_count();
-  auto last = is_news ? make_picture(wanted, *plan_, statistics, false) : nullptr;
+  auto last = is_news ? full_picture(wanted, stop, statistics) : nullptr;
   // Who sees the end sees its picture, too.
   const std::lock_guard lock(mutex_);
   if (!rest_) note_end(wanted, statistics, stop);
@@ -311,20 +315,33 @@ void InteractiveRender::Worker::note_end(const Wanted& wanted, const RenderStati
   over_ = is_good || has_all ? InteractivePhase::finished : InteractivePhase::out_of_time;
 }
 
-std::shared_ptr<const InteractivePicture> InteractiveRender::Worker::make_picture(const Wanted& wanted,
-                                                                                  const RenderPlan& plan,
-                                                                                  const RenderStatistics& statistics,
-                                                                                  bool is_coarse) const {
+// What coarse and full pictures have in common.
+InteractivePicture InteractiveRender::Worker::make_picture(const Wanted& wanted, const RenderPlan& plan,
+                                                           const RenderStatistics& statistics) const {
   const PixelWindow full = window_of(wanted.view, wanted.options);
-  StateSummary state = summarize(plan.state);
-  state.integrator = plan_->state.integrator;  // whatever stands in for it in a coarse picture
-  return std::make_shared<const InteractivePicture>(InteractivePicture{picture_of(plan.state),
-                                                                       wanted.revision,
-                                                                       is_coarse,
-                                                                       {full.width(), full.height()},
-                                                                       std::move(state),
-                                                                       statistics,
-                                                                       plan.integrator->limitation(*scene_)});
+  InteractivePicture picture{.image = picture_of(plan.state),
+                             .revision = wanted.revision,
+                             .full_size = {full.width(), full.height()},
+                             .state = summarize(plan.state),
+                             .statistics = statistics,
+                             .limitation = plan.integrator->limitation(*scene_)};
+  picture.state.integrator = plan_->state.integrator;  // whatever stands in for it in a coarse picture
+  return picture;
+}
+
+std::shared_ptr<const InteractivePicture> InteractiveRender::Worker::coarse_picture(
+    const Wanted& wanted, const RenderPlan& plan, const RenderStatistics& statistics) const {
+  InteractivePicture picture = make_picture(wanted, plan, statistics);
+  picture.is_coarse = true;
+  return std::make_shared<const InteractivePicture>(std::move(picture));
+}
+
+std::shared_ptr<const InteractivePicture> InteractiveRender::Worker::full_picture(
+    const Wanted& wanted, const StopRule& stop, const RenderStatistics& statistics) const {
+  InteractivePicture picture = make_picture(wanted, *plan_, statistics);
+  picture.seconds_left = progress_of(stop, plan_->state, statistics).seconds_left;
+  picture.remark = plan_->integrator->remark();
+  return std::make_shared<const InteractivePicture>(std::move(picture));
 }
 
 void InteractiveRender::Worker::show(std::shared_ptr<const InteractivePicture> picture) {

@@ -7,7 +7,6 @@
 
 #include "base/parameters.h"
 #include "integrators/integrator.h"
-#include "path/eye_pass.h"
 #include "path/radiance_along.h"
 #include "photon/guides/guide_photons.h"
 #include "photon/guides/rare_light.h"
@@ -38,14 +37,8 @@ class PathTracer final : public Integrator {
     begin(Phase::eye);
     PassReport report;
     if (guides_) report.photon_map_bytes = guides_->memory_bytes();
-    report.rays =
-        trace_eye_paths(job, {pass, {job.settings.max_depth, roulette_depth_}}, film,
-                        [&](const PathContext& path, const EyeStart& start, const PixelPlace&, LightLayers& layers) {
-                          if (guides_)
-                            radiance_along(path, start.camera, job.view.medium, layers, *guides_);
-                          else
-                            radiance_along(path, start.camera, job.view.medium, layers);
-                        });
+    const EyePass eye{pass, {job.settings.max_depth, roulette_depth_}};
+    report.rays = guides_ ? trace_paths(job, eye, film, *guides_) : trace_paths(job, eye, film);
     return report;
   }
 

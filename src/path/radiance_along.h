@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "path/eye_pass.h"
 #include "path/path_visitor.h"
 
 namespace lanthorn {
@@ -31,6 +32,15 @@ template <class Guides>
 void radiance_along(const PathContext& path, const CameraRay& ray, MediumId medium, LightLayers& layers,
                     const Guides& guides) {
   walk_from_camera(path, ray, medium, GuidedPathVisitor<Guides>{{path, layers}, guides});
+}
+
+/// A pass of path tracing: one sample for each pixel. `guides`: none, or one as above.
+template <class... Guides>
+RayCounts trace_paths(const RenderJob& job, const EyePass& pass, Film& film, const Guides&... guides) {
+  return trace_eye_paths(job, pass, film,
+                         [&](const PathContext& path, const EyeStart& start, const PixelPlace&, LightLayers& layers) {
+                           radiance_along(path, start.camera, job.view.medium, layers, guides...);
+                         });
 }
 
 }  // namespace lanthorn

@@ -11,6 +11,7 @@
 #include <string>
 #include <utility>
 
+#include "film/error_estimate.h"
 #include "lanthorn/image.h"
 #include "render/colour_balance.h"
 
@@ -46,7 +47,10 @@ MeasuredError measure_error(const RenderState& state, const Film& film, const Pa
     pictures.passes[h] = count(own);
     pictures.halves[h] = film.resolve_half(half, pictures.passes[h], colour_balance(state, own));
   }
-  return lanthorn::measure_error(pictures);
+  MeasuredError measured = lanthorn::measure_error(pictures);
+  if (nlohmann::json::parse(state.settings).contains("bias_not_measured"))
+    measured.estimate.doubt = fmt::format("the bias of {} is not measured", state.integrator);
+  return measured;
 }
 
 // Adds the channels of another picture, each with this before its name.
@@ -73,28 +77,39 @@ Image noise_of(const Image& picture, Image first_half) {
 
 }  // namespace
 
-MeasuredError measure_error(const RenderState& state) {
-  Image color = state.film.resolve_color(passes_or_one(state.passes), colour_balance(state));
-  MeasuredError measured = measure_error(state, state.film, state.passes, std::move(color));
-  if (nlohmann::json::parse(state.settings).contains("bias_not_measured"))
-    measured.estimate.doubt = fmt::format("the bias of {} is not measured", state.integrator);
+MeasuredPicture measured_picture_of(const RenderState& state, const Film& film, const Passes& passes) {
+  Image image = film.resolve(passes_or_one(passes), colour_balance(state, passes));
+  MeasuredError error = measure_error(state, film, passes, *select_layer(image, "color"));
+  add_channels(image, "error.", error.standard_error);
+  if (film.contents().bias) add_channels(image, "bias.", error.bias);
+  return {std::move(image), std::move(error.estimate)};
+}
+
+MeasuredPicture measured_picture_of(const RenderState& state) {
+  MeasuredPicture measured = measured_picture_of(state, state.film, state.passes);
+  measured.picture.window = window_of(state);
   return measured;
 }
 
-Image picture_of(const RenderState& state, const Film& film, const Passes& passes) {
-  Image image = film.resolve(passes_or_one(passes), colour_balance(state, passes));
-  const MeasuredError error = measure_error(state, film, passes, *select_layer(image, "color"));
-  add_channels(image, "error.", error.standard_error);
-  if (film.contents().bias) add_channels(image, "bias.", error.bias);
+Image picture_of(const RenderState& state) { return measured_picture_of(state).picture; }
+
+Image picture_without_error(const RenderState& state) {
+  Image image = state.film.resolve(passes_or_one(state.passes), colour_balance(state));
+  image.window = window_of(state);
   return image;
 }
 
-Image picture_with_noise(const RenderState& state) {
-  Image image = picture_of(state);
+Image with_noise(const RenderState& state, const Image& picture) {
   const Passes first = passes_in(state.passes, FilmHalf::first);
+  Image image = picture;
   add_channels(image, "noise.",
-               noise_of(image, state.film.resolve_first_half(count(first), colour_balance(state, first))));
+               noise_of(picture, state.film.resolve_first_half(count(first), colour_balance(state, first))));
   return image;
+}
+
+ErrorEstimate estimate_error(const RenderState& state) {
+  Image color = state.film.resolve_color(passes_or_one(state.passes), colour_balance(state));
+  return measure_error(state, state.film, state.passes, std::move(color)).estimate;
 }
 
 }  // namespace lanthorn

@@ -5,19 +5,14 @@
 
 #include <vector>
 
-#include "film/error_estimate.h"
 #include "film/film.h"
-#include "lanthorn/image.h"
 #include "render/state.h"
 
 namespace lanthorn {
 
-/// The picture of a film with the sums of these passes, by the settings of `state`, with all layers: those of
-/// `Film::resolve`, then error.R .. B (one standard error of color, where both halves of the passes have some), and
-/// bias.R .. B (the estimated bias) if the method has one.
-Image picture_of(const RenderState& state, const Film& film, const std::vector<PassRange>& passes);
-
-/// The error of the picture so far.
-MeasuredError measure_error(const RenderState& state);
+/// The picture of a film with the sums of these passes, by the settings of `state`, and its error. With all layers:
+/// those of `Film::resolve`, then error.R .. B (one standard error of color, where both halves of the passes have
+/// some), and bias.R .. B (the estimated bias) if the method has one.
+MeasuredPicture measured_picture_of(const RenderState& state, const Film& film, const std::vector<PassRange>& passes);
 
 }  // namespace lanthorn

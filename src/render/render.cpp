@@ -16,7 +16,6 @@
 #include "integrators/integrator.h"
 #include "lanthorn/error.h"
 #include "render/pass_undo.h"
-#include "render/picture.h"
 
 namespace lanthorn {
 
@@ -96,7 +95,7 @@ class ErrorLooks {
     if (!is_look(state.pass_count())) return;
     if (!is_needed_ && seconds - last_ < cost_ / most_of_time) return;
     const Clock::time_point start = Clock::now();
-    statistics.error = measure_error(state).estimate;
+    statistics.error = estimate_error(state);
     statistics.error_passes = state.pass_count();
     cost_ = seconds_between(start, Clock::now());
     last_ = seconds + cost_;

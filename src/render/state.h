@@ -36,6 +36,10 @@ struct RenderState {
   bool has_pass(std::uint64_t pass) const;
 };
 
+/// The window of the state's pixels in the whole picture. A state without these settings counts as one of the whole
+/// film.
+ImageWindow window_of(const RenderState& state);
+
 /// Throws `lanthorn::Error` if the state's identity differs from that of these settings; the message names the first
 /// difference and `file`.
 void require_same_identity(const RenderState& state, const std::string& settings, const std::string& file);

@@ -8,7 +8,6 @@
 #include <optional>
 #include <vector>
 
-#include "render/picture.h"
 #include "render/state.h"
 
 namespace lanthorn {
@@ -29,14 +28,6 @@ std::optional<std::vector<int>> integers(const json& identity, const char* name,
   return values;
 }
 
-// A state without these settings counts as one of the whole film.
-ImageWindow window_of(const RenderState& state) {
-  const json identity = json::parse(state.settings).value("identity", json::object());
-  const auto resolution = integers(identity, "resolution", 2), crop = integers(identity, "crop", 4);
-  if (!resolution || !crop) return {};
-  return {(*crop)[0], (*crop)[1], (*resolution)[0], (*resolution)[1]};
-}
-
 bool is_set(const RenderState& state, const char* setting) {
   const json settings = json::parse(state.settings);
   const auto found = settings.find(setting);
@@ -44,6 +35,13 @@ bool is_set(const RenderState& state, const char* setting) {
 }
 
 }  // namespace
+
+ImageWindow window_of(const RenderState& state) {
+  const json identity = json::parse(state.settings).value("identity", json::object());
+  const auto resolution = integers(identity, "resolution", 2), crop = integers(identity, "crop", 4);
+  if (!resolution || !crop) return {};
+  return {(*crop)[0], (*crop)[1], (*resolution)[0], (*resolution)[1]};
+}
 
 StateSummary summarize(const RenderState& state) {
   return {.integrator = state.integrator,
@@ -60,14 +58,6 @@ StateSummary summarize(const RenderState& state) {
           .report = state.film.report(),
           .cut_share = std::max(state.eye.share(), state.light.share())};
 }
-
-Image picture_of(const RenderState& state) {
-  Image image = picture_of(state, state.film, state.passes);
-  image.window = window_of(state);
-  return image;
-}
-
-ErrorEstimate estimate_error(const RenderState& state) { return measure_error(state).estimate; }
 
 std::shared_ptr<RenderState> open_state(const std::filesystem::path& path) {
   return std::make_shared<RenderState>(load_state(path));

@@ -62,6 +62,8 @@ struct Panel {
   std::vector<TechniqueDescription> techniques;  ///< with all their parameters, those of lights included
   std::string scene, driver, object_name, message, command;
   std::string error;   ///< of the picture, of an offline method; empty: not known yet
+  std::string left;    ///< time until an offline method has reached its bounds; empty: not known yet, or reached
+  std::string remark;  ///< what an offline method has found and chosen; empty: nothing
   std::string notice;  ///< over the picture: why it is not what was asked for
   std::vector<std::string> notes;
   std::vector<LightMark> marks;

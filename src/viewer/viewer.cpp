@@ -18,6 +18,7 @@
 #include "lanthorn/interactive_render.h"
 #include "lanthorn/methods.h"
 #include "lanthorn/shell.h"
+#include "lanthorn/text.h"
 #include "lanthorn/viewer.h"
 #include "render/scaled_view.h"
 #include "scene/medium_around.h"
@@ -375,6 +376,9 @@ void Viewer::refine() {
   panel_.frames = offline_->state.pass_count;
   const std::optional<ErrorEstimate>& error = offline_->statistics.error;
   panel_.error = error ? describe_error(*error) : "";
+  const double left = offline_->seconds_left.value_or(0);
+  panel_.left = left > 0 ? format_duration(left) : "";
+  panel_.remark = offline_->remark;
 }
 
 void Viewer::draw() {

@@ -23,7 +23,7 @@ const expect = (good, text) => {
   if (!good) failures++;
 };
 
-const server = spawn(program, ['serve', scene, '--port', '0', '-r', '256x256', '--memory', '512M', '-q'], {stdio: ['ignore', 'pipe', 'inherit']});
+const server = spawn(program, ['serve', scene, '--port', '0', '-r', '256x256', '--memory', '512M', '--time', '2h', '-q'], {stdio: ['ignore', 'pipe', 'inherit']});
 const address = await new Promise((resolve, reject) => {
   server.stdout.once('data', (text) => resolve(String(text).trim()));
   server.once('exit', () => reject(new Error('the server ended')));
@@ -233,6 +233,15 @@ async function changeEnvironment() {
   expect(true, 'the file’s own environment comes back');
 }
 
+async function lookAtNumbers() {
+  await page.waitForFunction(() => !document.getElementById('left').hidden);
+  expect(/^1:59:[0-5][0-9] h$/.test(await text('left')), `the time left is told: ${await text('left')}`);
+  expect((await text('remark')).includes('caustics'), `what auto has found is told: ${await text('remark')}`);
+  await page.locator('#remark').scrollIntoViewIfNeeded();
+  await shot('numbers');
+  await page.locator('aside').evaluate((panel) => { panel.scrollTop = 0; });
+}
+
 async function lookAtSmallScreen() {
   await page.setViewportSize({width: 1366, height: 768 - 140});  // less what a browser takes of the screen
   await page.locator('aside').evaluate((panel) => { panel.scrollTop = 0; });
@@ -271,6 +280,7 @@ try {
   await page.waitForTimeout(1500);
   await shot('first');
   expect(sum(await mean()) > 30, 'there is a picture');
+  await lookAtNumbers();
   await drag();
   await steerByKeys();
   await useControls();

@@ -31,7 +31,7 @@ class CheckpointFile : public testing::Test {
 
   test::TemporaryDir dir_;
   fs::path file_ = dir_.path() / "a.state";
-  ProgressDisplay progress_{{}, {}, true};
+  ProgressDisplay progress_{{}, true};
 };
 
 TEST_F(CheckpointFile, IsSavedWhenItIsDue) {

@@ -194,6 +194,18 @@ TEST_F(Cli, InfoCountsWhatIsInAScene) {
   EXPECT_GE(info["materials"]["dielectric"], 1);
   EXPECT_FLOAT_EQ(info["bounds"]["max"][1].get<float>(), 2);
   EXPECT_GT(info["memory_bytes"]["geometry"], 0);
+  EXPECT_EQ(info["method"], "auto");
+}
+
+TEST_F(Cli, InfoNamesTheMethodOfAStateAndOfAPicture) {
+  succeed({"render", "tiny.pbrt", "-i", "bdpt", "-p", "1", "-q", "-o", "a.state", "-o", "a.exr", "-o", "a.png"});
+  for (const char* file : {"a.state", "a.exr", "a.png"}) {
+    EXPECT_TRUE(contains(succeed({"info", file}).out, "\nmethod     bdpt\n")) << file;
+    EXPECT_EQ(nlohmann::json::parse(succeed({"info", file, "--json"}).out)["method"], "bdpt") << file;
+  }
+  write_exr(path("foreign.exr"), Image(2, 2, {"R", "G", "B"}));
+  EXPECT_TRUE(contains(succeed({"info", "foreign.exr"}).out, "\nmethod     (not known"));
+  EXPECT_TRUE(nlohmann::json::parse(succeed({"info", "foreign.exr", "--json"}).out)["method"].is_null());
 }
 
 void expect_plausible_statistics(const nlohmann::json& s, const std::string& integrator) {

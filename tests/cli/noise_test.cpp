@@ -93,6 +93,18 @@ TEST_F(Noise, InfoTellsTheError) {
   EXPECT_TRUE(contains(succeed({"info", "few.state"}).out, "not known: there are too few passes"));
 }
 
+// Whether the error is measured with the layers of an .exr, or by itself.
+TEST_F(Noise, AllFilesTellTheSameError) {
+  succeed(render({"-i", "vcm", "-p", "17", "-o", "a.png", "-o", "a.exr", "-o", "a.state"}));
+  succeed(render({"-i", "vcm", "-p", "17", "-o", "b.png"}));
+  succeed({"merge", "a.state", "-o", "c.exr"});
+  succeed({"merge", "a.state", "-o", "d.png"});
+  const auto info = [&](const char* file) { return nlohmann::json::parse(succeed({"info", "--json", file}).out); };
+  const nlohmann::json error = info("a.state")["error"];
+  for (const char* file : {"a.png", "a.exr", "b.png", "c.exr", "d.png"})
+    EXPECT_EQ(info(file)["settings"]["error"], error) << file;
+}
+
 TEST_F(Noise, MethodsThatDoNotKnowTheirBiasSayNothing) {
   for (const char* method : {"photonmap", "reversephotonmap"}) {
     refuse(until(method, "10%", {"-o", "a.exr"}), "has a bias that it does not measure");

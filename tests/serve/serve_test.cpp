@@ -249,7 +249,25 @@ TEST_F(Serve, AViewIsFinishedWhenItsErrorIsSmall) {
   const nlohmann::json shown = frame(is_finished);
   EXPECT_TRUE(contains(shown["error"], "below ")) << shown["error"];
   EXPECT_GE(shown["passes"], 4);
+  EXPECT_EQ(shown["seconds_left"], 0);
   EXPECT_FALSE(contains(shown["command"], "--noise")) << shown["command"];
+}
+
+TEST_F(Serve, AViewTellsTheTimeLeftUntilItsBound) {
+  start({"-i", "path", "--noise", "0.1%"});
+  const nlohmann::json shown = frame([](const nlohmann::json& f) { return !f["seconds_left"].is_null(); });
+  EXPECT_GT(shown["seconds_left"], 0);
+  EXPECT_FALSE(is_finished(shown));
+}
+
+TEST_F(Serve, AViewWithoutBoundTellsNoTimeLeft) {
+  start({"-i", "path"});
+  EXPECT_TRUE(frame([](const nlohmann::json& f) { return f["error"] != ""; })["seconds_left"].is_null());
+}
+
+TEST_F(Serve, AViewTellsWhatAutoHasFound) {
+  start({"-p", "1"});
+  EXPECT_TRUE(contains(frame(is_finished)["remark"], "caustics"));
 }
 
 // Not around what is seen between its parts.

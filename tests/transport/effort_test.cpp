@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "integrators/vcm/effort_choice.h"
 #include "integrators/vcm/effort_pilot.h"
 #include "integrators/vcm/vcm_pass.h"
 #include "render/picture.h"
@@ -34,7 +33,7 @@ RenderOptions options_of(const std::string& method, double light_paths, std::uin
   return options;
 }
 
-// As CandidateEstimate::variance.
+// Of a pass: the mean over pixels, of the sum of the components of radiance.
 double variance_of(const Scene& scene, const std::string& method, double light_paths) {
   constexpr unsigned count = 96;
   std::vector<double> sum(size * height), squares(sum.size());
@@ -51,6 +50,16 @@ double variance_of(const Scene& scene, const std::string& method, double light_p
   for (std::size_t i = 0; i < sum.size(); ++i)
     result += (squares[i] - sum[i] * sum[i]) * count / (count - 1) / static_cast<double>(sum.size());
   return result;
+}
+
+// The same, as the pilot expects it of a candidate.
+double expected_variance(const EffortMeasurement& measured, std::size_t candidate) {
+  double sum = 0;
+  for (const EffortBlock& block : measured.blocks) {
+    const EffortBlock::Moments& m = block.moments[candidate];
+    sum += (m.second + m.rare() - m.square) / block.paths;
+  }
+  return sum / static_cast<double>(measured.blocks.size());
 }
 
 struct Case {
@@ -74,13 +83,14 @@ TEST_P(Estimates, OfVarianceAreThoseOfRendersWithinAFifth) {
     const VcmSettings settings(Parameters(find_integrator("vcm").parameters, fixed, "vcm"), {});
     VcmPreparation prepared(job, settings);
     prepared.effort = Effort(pilot_light_paths(job));
-    const std::vector<CandidateEstimate> all = estimate_candidates(job, measure_candidates(job, settings, prepared));
-    const auto found = std::find_if(all.begin(), all.end(), [&](const CandidateEstimate& e) {
-      return e.candidate.light_paths == c.light_paths && e.candidate.connections == (c.light_paths > 0 ? 1 : 0) &&
-             e.candidate.merges == c.merges && e.candidate.sees == (c.light_paths > 0);
+    const EffortMeasurement measured = measure_candidates(job, settings, prepared);
+    const std::vector<EffortCandidate>& all = measured.candidates;
+    const auto found = std::find_if(all.begin(), all.end(), [&](const EffortCandidate& e) {
+      return e.light_paths == measured.scale * c.light_paths && e.connections == (c.light_paths > 0 ? 1 : 0) &&
+             e.merges == c.merges && e.sees == (c.light_paths > 0);
     });
     ASSERT_NE(found, all.end());
-    expected += found->variance / pilots;
+    expected += expected_variance(measured, static_cast<std::size_t>(found - all.begin())) / pilots;
   }
   EXPECT_NEAR(expected / variance_of(scene, c.method, static_cast<double>(c.light_paths)), 1, 0.2);
 }

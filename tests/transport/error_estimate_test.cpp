@@ -13,7 +13,6 @@
 #include <string>
 #include <vector>
 
-#include "render/picture.h"
 #include "support/render_scene.h"
 #include "support/runs.h"
 
@@ -39,7 +38,7 @@ RenderOptions options_of(const std::string& method, std::uint64_t passes, std::u
 // Independent renders: their pictures, and what each says of itself.
 struct Runs {
   std::vector<Image> pictures;
-  std::vector<MeasuredError> said;
+  std::vector<ErrorEstimate> said;
   Image mean;
 
   Runs(const std::string& method, std::uint64_t passes, unsigned count,
@@ -48,7 +47,7 @@ struct Runs {
       RenderOptions options = options_of(method, passes, seed);
       options.set = parameters;
       const RenderState state = test::render_state(cornell(), options);
-      said.push_back(measure_error(state));
+      said.push_back(estimate_error(state));
       pictures.push_back(*select_layer(picture_of(state), "color"));
     }
     mean = pictures.front();
@@ -89,7 +88,7 @@ class NoiseOf : public testing::TestWithParam<const char*> {};
 TEST_P(NoiseOf, AMethodIsKnownWithinAFifth) {
   const Runs runs(GetParam(), 32, 12);
   double said = 0;
-  for (const MeasuredError& error : runs.said) said += error.estimate.noise / static_cast<double>(runs.said.size());
+  for (const ErrorEstimate& error : runs.said) said += error.noise / static_cast<double>(runs.said.size());
   EXPECT_NEAR(said / runs.true_noise(), 1, 0.2);
 }
 INSTANTIATE_TEST_SUITE_P(Methods, NoiseOf,
@@ -105,7 +104,7 @@ TEST_P(BiasOf, AMethodIsKnown) {
     return std::pow(static_cast<double>(biased.mean.pixels[i]) - static_cast<double>(truth.pixels[i]), 2);
   });
   double said = 0;
-  for (const MeasuredError& error : biased.said) said += error.estimate.bias / static_cast<double>(biased.said.size());
+  for (const ErrorEstimate& error : biased.said) said += error.bias / static_cast<double>(biased.said.size());
   EXPECT_NEAR(said / true_bias, 1, 0.3);
 }
 INSTANTIATE_TEST_SUITE_P(Methods, BiasOf, testing::Values("vcm", "probppm", "sppm"));
@@ -138,12 +137,12 @@ TEST_P(Promise, IsKept) {
     const Scene scene(read_scene(std::string(LANTHORN_SOURCE_DIR "/scenes/") + kind.scene + ".pbrt"));
     const RenderState best = render_to(scene, "vcm", GetParam() / 4, seed_of_truth);
     const Image truth = *select_layer(picture_of(best), "color");
-    const double own = measure_error(best).estimate.error;
+    const double own = estimate_error(best).error;
     for (const char* const method : kind.methods) {
       int kept_by_method = 0;
       for (unsigned seed = 0; seed < runs; ++seed) {
         const RenderState state = render_to(scene, method, GetParam(), seed);
-        ASSERT_TRUE(measure_error(state).estimate.is_below(GetParam())) << kind.scene << " by " << method;
+        ASSERT_TRUE(estimate_error(state).is_below(GetParam())) << kind.scene << " by " << method;
         const Image color = *select_layer(picture_of(state), "color");
         const double error = Runs::relative(truth, [&](std::size_t i) {
           return std::pow(static_cast<double>(color.pixels[i]) - static_cast<double>(truth.pixels[i]), 2);

@@ -52,10 +52,6 @@ class EffortChoice {
   }
 
   Effort best() const;
-  // Of an eye path, in a block.
-  double work_of(const EffortBlock& block, const EffortCandidate& c) const;
-  // Of a pass, for each pixel, but for connections to the lens. `light_paths`: over those of the settings.
-  double work_of_light(float light_paths) const;
 
  private:
   // Variance and work of a choice for each block.
@@ -69,6 +65,10 @@ class EffortChoice {
     return variances_[block * m_.candidates.size() + candidate];
   }
   double variance_around(std::size_t block, std::size_t candidate) const;
+  // Of an eye path, in a block.
+  double work_of(const EffortBlock& block, const EffortCandidate& c) const;
+  // Of a pass, for each pixel, but for connections to the lens. `light_paths`: over those of the settings.
+  double work_of_light(float light_paths) const;
   // For each pixel of a pass, what the pilot has counted at all of its light paths.
   double count_per_pixel(float light_paths, double of_pilot) const;
   double per_pixel(float light_paths) const;
@@ -262,23 +262,6 @@ Effort EffortChoice::best() const {
 
 Effort choose_effort(const RenderJob& job, const EffortMeasurement& measured) {
   return EffortChoice(job, measured).best();
-}
-
-std::vector<CandidateEstimate> estimate_candidates(const RenderJob& job, const EffortMeasurement& measured) {
-  const EffortChoice choice(job, measured);
-  const auto count = static_cast<double>(measured.blocks.size());
-  std::vector<CandidateEstimate> result;
-  for (std::size_t k = 0; k < measured.candidates.size(); ++k) {
-    EffortCandidate candidate = measured.candidates[k];
-    candidate.light_paths /= measured.scale;
-    CandidateEstimate& e =
-        result.emplace_back(CandidateEstimate{candidate, 0, choice.work_of_light(candidate.light_paths)});
-    for (const EffortBlock& block : measured.blocks) {
-      e.variance += block.moments[k].variance() / block.paths / count;
-      e.work += choice.work_of(block, measured.candidates[k]) / count;
-    }
-  }
-  return result;
 }
 
 }  // namespace lanthorn

@@ -30,7 +30,6 @@ struct EffortBlock {
     /// that are displaced within the radius, which makes `all_squares` larger than `squares` where nothing is rare,
     /// too.
     double rare() const { return std::max(0.0, all_squares - 3 * squares); }
-    double variance() const { return second + rare() - square; }
   };
   std::vector<Moments> moments;  ///< by candidate
   double light = 0, from_light_paths = 0, caustic = 0;

@@ -46,14 +46,6 @@ RayCounts trace_eye_paths(const VcmPass& pass, Film& film) {
       });
 }
 
-// Without light paths the method is path tracing.
-RayCounts trace_paths(const RenderJob& job, std::uint32_t number, int roulette_depth, Film& film) {
-  return trace_eye_paths(job, {number, {job.settings.max_depth, roulette_depth}}, film,
-                         [&](const PathContext& path, const EyeStart& start, const PixelPlace&, LightLayers& layers) {
-                           radiance_along(path, start.camera, job.view.medium, layers);
-                         });
-}
-
 class VertexConnectionAndMerging final : public Integrator {
  public:
   explicit VertexConnectionAndMerging(const VcmSettings& settings) : settings_(settings) {}
@@ -72,10 +64,10 @@ class VertexConnectionAndMerging final : public Integrator {
   void prepare(const RenderJob& job) override { prepared_.emplace(job, settings_); }
 
   PassReport render_pass(const RenderJob& job, std::uint32_t number, Film& film, const PhaseObserver& begin) override {
-    if (prepared_->effort.light_paths() == 0) {
+    if (prepared_->effort.light_paths() == 0) {  // path tracing
       begin(Phase::eye);
       PassReport report;
-      report.rays = trace_paths(job, number, settings_.roulette_depth, film);
+      report.rays = trace_paths(job, {number, {job.settings.max_depth, settings_.roulette_depth}}, film);
       return report;
     }
     begin(Phase::photons);

@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <iterator>
 #include <span>
 #include <utility>
 #include <vector>
 
+#include "light/light_sampler.h"
 #include "photon/guides/credit_round.h"
 #include "photon/guides/credit_subdivision.h"
 #include "photon/guides/hit_points.h"
@@ -77,9 +79,15 @@ void credit_seeds(std::vector<CreditedStart>& seeds, const std::vector<CreditedS
 bool guides_directions(PhotonUse use) { return use == PhotonUse::indirect || use == PhotonUse::gathering; }
 
 // Photons distributed among the lights by power. By a projection map's own masses, an environment with a coarse map
-// would get almost all of them.
-EmissionGuide shared_by_power(EmissionGuide guide) {
-  for (EmissionGuide::OfLight& light : guide.lights) light.relevance = 1;
+// would get almost all of them. Lights that would get next to none, because others are far stronger, get some all the
+// same: they may be all the light of a part of the picture.
+EmissionGuide shared_by_power(EmissionGuide guide, const Scene& scene) {
+  constexpr float least = 1.0f / 16;  // of an even share
+  const std::vector<float> by_power = emission_probabilities(scene.lights());
+  const auto emitters = std::count_if(by_power.begin(), by_power.end(), [](float share) { return share > 0; });
+  const float least_share = least / static_cast<float>(emitters);
+  for (std::size_t i = 0; i < by_power.size(); ++i)
+    guide.lights[i].relevance = by_power[i] > 0 ? std::max(1.0f, least_share / by_power[i]) : 1.0f;
   return guide;
 }
 
@@ -103,14 +111,14 @@ LearnedEmission learn_emission(const RenderJob& job, PhotonUse use, bool in_medi
   Landings landings = find_landings(job, use, in_media, draw);
   if (!may_gain(scene, landings)) return {};
   const std::optional<AimedDisks> disks = disks_around(landings.places, hits, scene.bounding_sphere());
-  LightGuide guide{shared_by_power(make_projection_map(scene, PhotonTarget::specular, disks))};
+  LightGuide guide{shared_by_power(make_projection_map(scene, PhotonTarget::specular, disks), scene)};
   if (guides_directions(use)) guide.directions = GuidePhotons::build(landings.importance, draw.w);
   CreditRound round = trace_round(job, 0, guide, in_media, draw);
   std::vector<CreditedStart> seeds = round.starts, known;
   if (use != PhotonUse::caustics) {
     std::vector<PhotonBox> boxes;
     add_boxes(landings.places, boxes);
-    guide.emission = shared_by_power(make_projection_map(scene, boxes, disks));
+    guide.emission = shared_by_power(make_projection_map(scene, boxes, disks), scene);
     round.append(trace_round(job, 1, guide, in_media, draw));
   }
   LearnedEmission learned;

@@ -239,6 +239,7 @@ void draw_times(const Panel& panel) {
   ImGui::TableSetupColumn("amount", ImGuiTableColumnFlags_WidthStretch, 1);
   if (panel.is_offline) {
     row("Passes", std::to_string(panel.frames));
+    if (!panel.left.empty()) row("Time left", panel.left);
     if (!panel.error.empty()) row("Error", panel.error);
   } else {
     row("Frames in the mean", std::to_string(panel.frames));
@@ -251,6 +252,7 @@ void draw_times(const Panel& panel) {
     if (rest > 0) row("Photons, later ones", std::to_string(rest));
   }
   ImGui::EndTable();
+  if (panel.is_offline && !panel.remark.empty()) faint_text(panel.remark);
 }
 
 void load_font(float scale) {

@@ -89,6 +89,29 @@ TEST(InteractiveRender, ItsPictureIsThatOfASession) {
   EXPECT_EQ(end.picture->state.pass_count, 3u);
   EXPECT_EQ(end.picture->revision, end.status.revision);
   EXPECT_EQ(end.picture->image.pixels, pixels_of(box(), view_of_angle(40), small()));
+  EXPECT_EQ(end.picture->seconds_left, 0);
+}
+
+TEST(InteractiveRender, TellsTheTimeLeftWhereSomethingEndsTheRender) {
+  const auto is_full = [](const InteractiveSnapshot& now) {
+    return now.picture && !now.picture->is_coarse && now.picture->revision == now.status.revision;
+  };
+  InteractiveRender render(box(), view_of_angle(40), small(1'000'000));
+  EXPECT_GT(await(render, is_full).picture->seconds_left.value_or(0), 0);
+  render.edit({.options = small(0xffffffff)});
+  EXPECT_FALSE(await(render, is_full).picture->seconds_left);
+}
+
+TEST(InteractiveRender, TellsWhatTheMethodHasFound) {
+  RenderOptions options = small(1);
+  options.integrator = "auto";
+  std::string remark;
+  Observer observer;
+  observer.remark = [&](const std::string& text) { remark = text; };
+  Session(box(), view_of_angle(40), options).render(observer);
+  EXPECT_NE(remark, "");
+  const InteractiveRender render(box(), view_of_angle(40), options);
+  EXPECT_EQ(await(render, finished).picture->remark, remark);
 }
 
 TEST(InteractiveRender, EachPartCanBeEdited) {
@@ -122,6 +145,8 @@ TEST(InteractiveRender, CoarsePicturesOfAutoHaveNoPilot) {
   EXPECT_TRUE(coarse.picture->is_coarse);
   EXPECT_NE(coarse.picture->state.settings.find("\"integrator\":\"vcm\""), std::string::npos);
   EXPECT_EQ(coarse.picture->state.integrator, "auto");
+  EXPECT_EQ(coarse.picture->remark, "");
+  EXPECT_FALSE(coarse.picture->seconds_left);
   const InteractiveSnapshot end = await(render, finished);
   EXPECT_EQ(end.picture->state.integrator, "auto");
   EXPECT_EQ(end.picture->image.pixels, pixels_of(scene, description_of(*scene).view, options));

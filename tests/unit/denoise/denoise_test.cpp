@@ -46,7 +46,7 @@ std::vector<double> noise_field(int width, int height, int radius, std::mt19937&
   return field;
 }
 
-// A picture of two halves, as `picture_with_noise` makes them. The surface is white, but for its albedo.
+// A picture of two halves, as `with_noise` makes them. The surface is white, but for its albedo.
 struct Scene {
   int width, height;
   std::vector<Layer> layers;

@@ -53,6 +53,29 @@ RenderState shard(std::uint64_t first, std::uint64_t end, bool splats = true) {
   return state;
 }
 
+TEST(State, PicturesWithAndWithoutTheirErrorAreTheSame) {
+  RenderState state = shard(0, 9);
+  state.settings = patched(state.settings, R"({"identity": {"resolution": [8, 4], "crop": [1, 0, 7, 4]}})");
+  const MeasuredPicture measured = measured_picture_of(state);
+  EXPECT_EQ(measured.picture.pixels, picture_of(state).pixels);
+  EXPECT_GT(measured.error.noise, 0);
+  EXPECT_EQ(measured.error.noise, estimate_error(state).noise);
+  EXPECT_EQ(measured.error.bound, estimate_error(state).bound);
+  const Image bare = picture_without_error(state);
+  EXPECT_EQ(bare.window.x, 1);
+  EXPECT_EQ(measured.picture.window.x, 1);
+  for (const std::string& layer : layer_names(measured.picture)) {
+    const auto own = select_layer(bare, layer);
+    ASSERT_EQ(own.has_value(), layer != "error") << layer;
+    if (own) {
+      EXPECT_EQ(own->pixels, select_layer(measured.picture, layer)->pixels) << layer;
+    }
+  }
+  state.settings = patched(state.settings, R"({"bias_not_measured": true})");
+  EXPECT_FALSE(measured_picture_of(state).error.is_known());
+  EXPECT_FALSE(estimate_error(state).is_known());
+}
+
 TEST(State, KeepsLayersAndTheirDecomposition) {
   RenderState state = shard(0, 3);
   const Decomposition parts{{"by.a", "by.b"}, "by.splat", Decomposition::Shares{"by.share", {{{0}, {1, 2}, {}}}}};

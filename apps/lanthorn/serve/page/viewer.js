@@ -241,7 +241,8 @@ const nearestAxis = (v) => {
 // Text
 
 const grouped = (n) => n >= 1e9 ? `${(n / 1e9).toFixed(2)} G` : n >= 1e6 ? `${(n / 1e6).toFixed(2)} M` : n >= 1e4 ? `${(n / 1e3).toFixed(1)} k` : `${n}`;
-const time = (s) => s < 60 ? `${s.toFixed(1)} s` : `${Math.floor(s / 60)}:${String(Math.floor(s % 60)).padStart(2, '0')} min`;
+const two = (x) => String(Math.floor(x)).padStart(2, '0');
+const time = (s) => s < 60 ? `${s.toFixed(1)} s` : s < 3600 ? `${Math.floor(s / 60)}:${two(s % 60)} min` : `${Math.floor(s / 3600)}:${two(s / 60 % 60)}:${two(s % 60)} h`;
 const place = (v) => v.map((x) => Number(x.toPrecision(3))).join(', ');
 
 function showState(state, text) {
@@ -277,10 +278,14 @@ function showProgress(about) {
   byId('pause').textContent = about.paused ? 'Go on' : 'Pause';
   byId('pause').disabled = about.finished;
   for (const id of ['method', 'width', 'height']) byId(id).disabled = false;
-  byId('limitation').hidden = !about.limitation;
-  byId('limitation').textContent = about.limitation;
+  for (const id of ['limitation', 'remark']) {
+    byId(id).hidden = !about[id];
+    byId(id).textContent = about[id];
+  }
   byId('passes').textContent = about.coarse ? 'coarse' : about.passes;
   byId('time').textContent = time(about.seconds);
+  byId('left').hidden = byId('left-term').hidden = !(about.seconds_left > 0);
+  byId('left').textContent = time(about.seconds_left ?? 0);
   byId('error').textContent = about.error || '–';
   byId('samples').textContent = grouped(about.samples);
   for (const id of ['photons', 'photons-term']) byId(id).hidden = !about.traces_photons;
