@@ -1,0 +1,102 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// What a denoiser is told of a render, and what it makes of one.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstddef>
+#include <string>
+
+#include "lanthorn/denoise.h"
+#include "lanthorn/scene.h"
+#include "lanthorn/session.h"
+#include "lanthorn/state.h"
+
+namespace lanthorn::denoised_render_test {
+namespace {
+
+SharedScene box() { return build_scene(read_scene(LANTHORN_SOURCE_DIR "/scenes/cornell-caustics.pbrt")); }
+
+RenderOptions options(const std::string& integrator, int size, std::uint64_t seed = 0) {
+  RenderOptions options;
+  options.integrator = integrator;
+  options.resolution = {size, size};
+  options.color = ColorMode::rgb;
+  options.seed = seed;
+  return options;
+}
+
+double relative_mse(const Image& a, const std::string& layer, const Image& reference) {
+  const Image found = *select_layer(a, layer), truth = *select_layer(reference, "color");
+  double mean = 0, sum = 0;
+  for (const float v : truth.pixels) mean += static_cast<double>(v) / static_cast<double>(truth.pixels.size());
+  for (std::size_t i = 0; i < truth.pixels.size(); ++i) {
+    const auto r = static_cast<double>(truth.pixels[i]), d = static_cast<double>(found.pixels[i]) - r;
+    sum += std::min(1.0, d * d / (r * r + 0.01 * mean * mean));
+  }
+  return sum / static_cast<double>(truth.pixels.size());
+}
+
+// Picture and noise add up to the picture of the first half's passes alone.
+TEST(DenoisedRender, NoiseIsWhatTheFirstHalfDiffersBy) {
+  const SharedScene scene = box();
+  for (const std::string method : {"path", "vcm"}) {
+    Session all(scene, options(method, 16)), half(scene, options(method, 16));
+    all.render({.passes = {0, 8}});
+    for (const std::uint64_t pass : {0, 3, 5, 6}) half.render({.passes = {pass, pass + 1}});
+    const Image picture = with_noise(all.state(), picture_of(all.state())), first = picture_of(half.state());
+    ASSERT_TRUE(can_denoise(picture));
+    for (const char* channel :
+         {"direct.R", "indirect.G", "caustic.B", "emission.R", "albedo.G", "normal.Y", "position.X"}) {
+      const std::size_t a = *picture.find_channel(channel), n = *picture.find_channel(std::string("noise.") + channel),
+                        b = *first.find_channel(channel);
+      for (int y = 0; y < 16; ++y)
+        for (int x = 0; x < 16; ++x)
+          ASSERT_NEAR(picture.at(x, y, a) + picture.at(x, y, n), first.at(x, y, b), 1e-5f * (1 + first.at(x, y, b)))
+              << method << " " << channel << " " << x << " " << y;
+    }
+    EXPECT_FLOAT_EQ(picture.at(3, 3, *picture.find_channel("noise.share")), 0.5f);
+  }
+}
+
+// Surfaces are seen by way of mirrors and glass.
+TEST(DenoisedRender, PositionsAreThoseOfTheFirstSurfaceThatIsNoMirror) {
+  const SharedScene scene = box();
+  Session session(scene, options("path", 32));
+  session.render({.passes = {0, 4}});
+  const Image picture = picture_of(session.state());
+  const std::size_t x = *picture.find_channel("position.X");
+  Bounds seen;
+  for (int row = 8; row < 24; ++row)
+    for (int column = 8; column < 24; ++column) {
+      const Point p{picture.at(column, row, x), picture.at(column, row, x + 1), picture.at(column, row, x + 2)};
+      for (int c = 0; c < 3; ++c) ASSERT_TRUE(std::isfinite(p[c]));
+      seen.extend(p);
+    }
+  EXPECT_GT(seen.max.x - seen.min.x, 0.1f);
+}
+
+TEST(DenoisedRender, HasLessErrorByAnyMethod) {
+  const SharedScene scene = box();
+  constexpr int size = 48;
+  Session reference(scene, options("vcm", size, 7));
+  reference.render({.passes = {0, 384}});
+  const Image truth = picture_of(reference.state());
+  struct Case {
+    std::string method;
+    double gain;
+  };
+  for (const Case& c : {Case{"auto", 1.3}, Case{"vcm", 1.3}, Case{"probppm", 1.2}, Case{"path", 1.6}}) {
+    Session session(scene, options(c.method, size));
+    session.render({.passes = {0, 8}});
+    const Image noisy = picture_of(session.state());
+    const DenoisedPicture denoised = denoise(with_noise(session.state(), noisy));
+    const double before = relative_mse(noisy, "color", truth),
+                 after = relative_mse(denoised.picture, "denoised", truth);
+    EXPECT_GT(before / after, c.gain) << c.method;
+    EXPECT_LT(denoised.error.error, 2 * std::sqrt(after)) << c.method;
+  }
+}
+
+}  // namespace
+}  // namespace lanthorn::denoised_render_test
