@@ -53,6 +53,7 @@ struct ChannelChoice {
 
 Image chosen(const Image& picture, const std::vector<ChannelChoice>& choices) {
   std::vector<std::string> channels;
+  channels.reserve(choices.size());
   for (const ChannelChoice& choice : choices) channels.push_back(choice.name);
   Image out(picture.width, picture.height, std::move(channels));
   out.window = picture.window;

@@ -12,6 +12,7 @@ namespace lanthorn::denoising {
 namespace {
 
 constexpr int tile_size = 32;
+constexpr std::size_t size(int count) { return static_cast<std::size_t>(count); }
 constexpr std::size_t group = 3;        // features of one scale
 constexpr std::size_t most_terms = 10;  // the constant and the features
 constexpr std::size_t columns = 2 * Lanes::width;
@@ -121,9 +122,7 @@ class Regression {
  private:
   // Reaches patches of all centres that a tile may have, in the picture or not.
   int border() const { return settings_.window + settings_.patch + tile_size; }
-  std::size_t index(int x, int y) const {
-    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
-  }
+  std::size_t index(int x, int y) const { return size(y) * size(width_) + size(x); }
 
   void observe(std::size_t pixel) {
     Observation& v = observations_[pixel];
@@ -135,7 +134,7 @@ class Regression {
 
   // Weights of the neighbourhood of a centre, row by row.
   std::size_t weights_of(int column, int row) const {
-    return static_cast<std::size_t>((row * points_ + column) * side_ * span);
+    return (size(row) * size(points_) + size(column)) * size(side_) * size(span);
   }
 
   void fit_tile(int x0, int y0) {
@@ -167,8 +166,7 @@ class Regression {
     constexpr int most = tile_size + 8;
     std::array<float, most * most> differences;
     for (int j = 0; j < extent; ++j)
-      compare(x0 - settings_.patch, y0 + j - settings_.patch, dx, dy, extent,
-              &differences[static_cast<std::size_t>(j * most)]);
+      compare(x0 - settings_.patch, y0 + j - settings_.patch, dx, dy, extent, &differences[size(j) * size(most)]);
     const float mean = 1 / static_cast<float>(patch * patch);
     const float scale = 1 / (settings_.strength * settings_.strength);
     std::array<float, most> sums;
@@ -177,16 +175,15 @@ class Regression {
       if (y < 0 || y >= height_) continue;
       sums.fill(0);
       for (int k = 0; k < patch; ++k) {
-        const float* in = &differences[static_cast<std::size_t>((settings_.stride * row + k) * most)];
-        for (int i = 0; i < extent; ++i) sums[static_cast<std::size_t>(i)] += in[i];
+        const float* in = &differences[size(settings_.stride * row + k) * size(most)];
+        for (int i = 0; i < extent; ++i) sums[size(i)] += in[i];
       }
       for (int column = 0; column < points_; ++column) {
         const int x = x0 + settings_.stride * column + dx;
         if (x < 0 || x >= width_) continue;
         float sum = 0;
-        for (int k = 0; k < patch; ++k) sum += sums[static_cast<std::size_t>(settings_.stride * column + k)];
-        weights[weights_of(column, row) +
-                static_cast<std::size_t>((dy + settings_.window) * span + dx + settings_.window)] =
+        for (int k = 0; k < patch; ++k) sum += sums[size(settings_.stride * column + k)];
+        weights[weights_of(column, row) + size(dy + settings_.window) * size(span) + size(dx + settings_.window)] =
             std::exp(-std::max(0.0f, sum * mean - 1) * scale);
       }
     }

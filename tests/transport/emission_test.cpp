@@ -148,12 +148,13 @@ double relative_variance(const std::vector<Image>& images, double mean) {
   return sum / static_cast<double>(count) / sqr(mean);
 }
 
-// One photon in 30 000 finds the ball, 20 in the four renders without a guide: that none does, which would pass for no
-// noise, has a probability of 1e-9. Paths of vcm have other ways than photons to it. Gains are 2500 and 600.
+// One photon in 30 000 finds the ball, and few of these land within the radius of an eye path: about one in four
+// renders without a guide. That none of a hundred does, which would pass for no noise, has a probability of 1e-12.
+// Paths of vcm have other ways than photons to it. Gains are 2500 and 600.
 TEST(LearnedEmission, FindsWhatIsSmall) {
   const Scene scene = test::scene_from_text(view_of_the_ball + corner_of_a_plain(near_lamp));
   for (const auto& [integrator, least_gain] : {std::pair<const char*, double>{"probppm", 10}, {"vcm", 10}}) {
-    const std::vector<Image> plain = caustics_of(scene, integrator, false, 4),
+    const std::vector<Image> plain = caustics_of(scene, integrator, false, 100),
                              learned = caustics_of(scene, integrator, true, 16);
     EXPECT_TRUE(
         test::below(least_gain * relative_variance(learned, mean_caustic) / relative_variance(plain, mean_caustic), 1))

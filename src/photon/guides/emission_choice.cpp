@@ -13,6 +13,7 @@
 #include "base/parameters.h"
 #include "light/light_sampler.h"
 #include "path/direct_light.h"
+#include "photon/gather/photon_gather.h"
 #include "photon/gather/pilot_radius.h"
 #include "photon/guides/learned_emission.h"
 #include "photon/guides/projection_map.h"
