@@ -424,7 +424,7 @@ const std::vector<Fog> fogs{
      "\"integer nz\" 1 \"float g\" -0.3 \"rgb sigma_a\" [0.1 0.2 0.3  0.3 0.1 0] \"rgb sigma_s\" [1 3 0.5  4 1 2]",
      "interface"},
     {"forward", "\"homogeneous\" \"rgb sigma_a\" [0.1 0.2 0.4] \"rgb sigma_s\" [2 2 1] \"float g\" [0.9]", "interface",
-     24},
+     48},
     {"in glass", "\"homogeneous\" \"rgb sigma_a\" [0.1 0.2 0.4] \"rgb sigma_s\" [1 2 1]", "dielectric"}};
 
 /// By t-tests of the whole picture, of `checks` in a test. Radii of 5 cm blur.
