@@ -80,7 +80,7 @@ OptionTable denoise_options(DenoiseCommand& a) {
                      .required = true},
                     {.names = "--replace",
                      .value = flag(a.replace),
-                     .brief = "Of an .exr, write the denoised layers in place of those with noise"}};
+                     .brief = "Write the denoised layers of an .exr in place of the noisy ones"}};
   table = joined(std::move(table), display_options(a.settings, "0; the scene's if the input is a state"));
   table.push_back({.names = "--reproducible",
                    .value = flag(a.settings.reproducible),
@@ -95,14 +95,14 @@ OptionTable denoise_options(DenoiseCommand& a) {
 void add_denoise(CLI::App& app) {
   const auto a = std::make_shared<DenoiseCommand>();
   constexpr const char* footer =
-      "The same as render --denoise, afterwards. Each layer of light is denoised by itself, and the layer denoised is "
+      "Does what render --denoise does, afterwards. Each layer of light is denoised by itself; the layer denoised is "
       "their\n"
-      "sum. Pictures of one pass cannot be denoised: what is noise shows in the difference of passes.\n\n"
+      "sum. It takes two passes or more: the noise is the difference of passes.\n\n"
       "Examples:\n"
       "  lanthorn denoise picture.exr -o clean.exr\n"
       "  lanthorn denoise render.state -o clean.png";
-  add_command(app, {"denoise", "Remove the noise of a picture that is rendered", denoise_options(*a), footer,
-                    [a] { run(*a); }});
+  add_command(app,
+              {"denoise", "Remove the noise of a rendered picture", denoise_options(*a), footer, [a] { run(*a); }});
 }
 
 }  // namespace lanthorn::program

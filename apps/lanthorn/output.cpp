@@ -198,7 +198,7 @@ StatePicture::StatePicture(const RenderState& state, const std::vector<fs::path>
                            const RenderStatistics& statistics, bool is_denoised)
     : state_(state), summary_(summarize(state)), is_denoised_(is_denoised && summary_.pass_count > 1) {
   if (is_denoised && !is_denoised_)
-    warn("a picture of a single pass is not denoised: what is noise shows in the difference of passes");
+    warn("a picture of a single pass is not denoised: the noise is the difference of passes");
   needs_all_layers_ = is_denoised_ || std::any_of(files.begin(), files.end(), has_layers);
   if (statistics.error_passes == summary_.pass_count) error_ = statistics.error;
 }

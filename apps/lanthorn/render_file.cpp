@@ -9,6 +9,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <string_view>
+#include <utility>
 
 #include "console.h"
 #include "estimate_json.h"
@@ -201,8 +202,9 @@ void show_picture(const std::string& file, std::uint64_t max_pixels, bool as_jso
   if (metadata.empty()) print_line("method", "(not known: the file holds no settings of Lanthorn)");
   print_settings(metadata);
   if (const auto passes = metadata.find("passes"); passes != metadata.end()) print_line("passes", text_of(*passes));
-  if (const auto error = metadata.find("error"); error != metadata.end() && is_error(*error))
-    print_line("error", error_line(*error));
+  for (const auto& [title, member] : {std::pair("error", "error"), std::pair("denoised", "denoised_error")})
+    if (const auto error = metadata.find(member); error != metadata.end() && is_error(*error))
+      print_line(title, error_line(*error));
   if (const auto cut = metadata.find("cut_share"); cut != metadata.end() && cut->is_number())
     if (const std::string limit = limit_text(cut->get<double>()); !limit.empty()) print_line("depth", limit);
   print_line("size", size_text(image.window, image.width, image.height));

@@ -21,13 +21,13 @@ struct DenoisedPicture {
 /// (`with_noise`).
 bool can_denoise(const Image& picture);
 
-/// Each layer of light is denoised by itself, so that layers still add up, and a caustic keeps its edges where the
-/// light beside it is smooth. Light is regressed over albedo, normal and position in neighbourhoods of like pixels, and
-/// each half of the passes tells what is noise in the other (Bitterli et al. 2016, "Nonlinearly Weighted First-order
+/// Denoises each layer of light by itself, so that layers still add up, and a caustic keeps its edges where the light
+/// beside it is smooth. Light is regressed over albedo, normal and position in neighbourhoods of like pixels; the
+/// difference of the two halves of the passes is the noise (Bitterli et al. 2016, "Nonlinearly Weighted First-order
 /// Regression for Denoising Monte Carlo Renderings"). Pixels that are not finite count as black.
 ///
-/// A function of the picture, the same for any number of threads. Large pictures are done in tiles: memory for a tile
-/// of 1024 x 1024 pixels is about 1.5 GB. Throws Error if `can_denoise` is false.
+/// A function of the picture, the same for any number of threads. A picture of 1024 x 1024 pixels takes about 1.6 GB;
+/// larger ones are done in tiles of this size. Throws Error if `can_denoise` is false.
 DenoisedPicture denoise(const Image& picture);
 
 /// The picture as it is shown and saved without its noise: the layers of light and `color` are the denoised ones, and

@@ -60,7 +60,7 @@ std::optional<Image> select_layer(const Image& image, std::string_view name);
 /// Pacanowski & Wilkie 2021).
 bool is_spectral_channel(std::string_view channel);
 
-/// True for channels that say what is noise in another one (`with_noise`). Files have half floats of them.
+/// True for the channels that `with_noise` adds, which are the noise of others. Files store them as half floats.
 bool is_noise_channel(std::string_view channel);
 
 /// Names of the layers of an image, each once, in the order of its channels.

@@ -99,15 +99,16 @@ class Denoiser {
  public:
   explicit Denoiser(const Image& picture) : picture_(picture), layers_(light_layers(picture)) {
     const std::size_t share = channel_of(share_channel), samples = channel_of("samples");
+    const std::array<std::size_t, color_channels> color{channel_of("R"), channel_of("G"), channel_of("B")};
     double first = 0, all = 0, light = 0;
     for (std::size_t i = 0; i < pixels(); ++i) {
       first += value(i, share) * value(i, samples);
       all += value(i, samples);
-      for (const char* const c : components) light += value(i, channel_of(c)) / 3;
+      for (const std::size_t c : color) light += value(i, c) / color_channels;
     }
     const auto own = all > 0 ? std::clamp(static_cast<float>(first / all), 0.0f, 1.0f) : 0.0f;
     if (own == 0 || own == 1)
-      throw Error("a picture of a single pass cannot be denoised: what is noise shows in the difference of passes");
+      throw Error("a picture of a single pass cannot be denoised: the noise is the difference of passes");
     shares_ = {own, 1 - own};
     fewest_passes_ = std::min(own, 1 - own) * all / static_cast<double>(pixels());
     mean_ = static_cast<float>(light / static_cast<double>(pixels()));
@@ -302,8 +303,8 @@ class Denoiser {
     if (fewest_passes_ < fewest_passes) e.doubt = "there are too few passes";
   }
 
-  // The least of several estimates is taken, and the second guide knows both halves: true errors are 1.1 to 1.5 times
-  // as large as estimated (48 renders of 4 to 64 passes).
+  // The estimate is too small, because the least of several is taken and the second guide knows both halves. True
+  // errors are mostly 1.1 to 1.5 times as large (48 renders of 4 to 64 passes).
   static constexpr float optimism = 1.3f;
 
   struct Block {
@@ -334,8 +335,7 @@ bool can_denoise(const Image& picture) {
 DenoisedPicture denoise(const Image& picture) {
   if (!can_denoise(picture))
     throw Error(
-        "the picture has no layers `noise`, which say what of it is noise; pictures that lanthorn renders to .exr "
-        "files have them");
+        "the picture has no layers `noise`, by which its noise is known; .exr files that lanthorn renders have them");
   return Denoiser(picture).run();
 }
 

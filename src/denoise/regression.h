@@ -29,10 +29,10 @@ struct Guide {
 };
 
 struct RegressionSettings {
-  int window = 7;         ///< radius of the neighbourhood that a pixel's light is regressed over, pixels
-  int patch = 3;          ///< radius of the patches that are compared, pixels
-  int stride = 2;         ///< pixels between the centres of regressions
-  float strength = 0.5f;  ///< patches that differ by so many standard deviations more than noise does weigh 1/e
+  int window;      ///< radius of the neighbourhood that a pixel's light is regressed over, pixels; at most 7
+  int patch;       ///< radius of the patches that are compared, pixels; at most 3
+  int stride;      ///< pixels between the centres of regressions
+  float strength;  ///< patches that differ by so many standard deviations more than noise does weigh 1/e
 };
 
 /// Nonlinearly weighted first-order regression (Bitterli et al. 2016): around every centre, light is fitted by a linear

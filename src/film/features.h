@@ -11,7 +11,8 @@
 
 namespace lanthorn {
 
-/// A position as a feature: its film sums reach farther than those of directions and colours.
+/// A position as a feature. A type of its own, because the film stores it in coarser steps of a larger range than
+/// directions and colours.
 struct Position {
   Point at{0, 0, 0};
 };

@@ -53,10 +53,10 @@ MeasuredError measure_error(const RenderState& state, const Film& film, const Pa
   return measured;
 }
 
-// Adds the channels of another picture, each with this before its name.
-void add_channels(Image& image, const std::string& prefix, Image other) {
-  for (std::string& channel : other.channels) channel.insert(0, prefix);
-  image = with_layers(image, other);
+// The picture with this before the name of each channel.
+Image prefixed(const std::string& prefix, Image image) {
+  for (std::string& channel : image.channels) channel.insert(0, prefix);
+  return image;
 }
 
 // Of each layer but `samples`, how much more the first half of the passes has than the picture; and that half's share
@@ -80,8 +80,8 @@ Image noise_of(const Image& picture, Image first_half) {
 MeasuredPicture measured_picture_of(const RenderState& state, const Film& film, const Passes& passes) {
   Image image = film.resolve(passes_or_one(passes), colour_balance(state, passes));
   MeasuredError error = measure_error(state, film, passes, *select_layer(image, "color"));
-  add_channels(image, "error.", error.standard_error);
-  if (film.contents().bias) add_channels(image, "bias.", error.bias);
+  image = with_layers(image, prefixed("error.", std::move(error.standard_error)));
+  if (film.contents().bias) image = with_layers(image, prefixed("bias.", std::move(error.bias)));
   return {std::move(image), std::move(error.estimate)};
 }
 
@@ -101,10 +101,8 @@ Image picture_without_error(const RenderState& state) {
 
 Image with_noise(const RenderState& state, const Image& picture) {
   const Passes first = passes_in(state.passes, FilmHalf::first);
-  Image image = picture;
-  add_channels(image, "noise.",
-               noise_of(picture, state.film.resolve_first_half(count(first), colour_balance(state, first))));
-  return image;
+  Image noise = noise_of(picture, state.film.resolve_first_half(count(first), colour_balance(state, first)));
+  return with_layers(picture, prefixed("noise.", std::move(noise)));
 }
 
 ErrorEstimate estimate_error(const RenderState& state) {

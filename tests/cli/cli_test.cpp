@@ -123,7 +123,7 @@ TEST_F(Cli, DenoiseAfterwardsIsTheSameAsWhileRendering) {
   const Image clean = read_image(path("d.exr")), both = read_image(path("a.exr"));
   EXPECT_FALSE(clean.find_channel("noise.share") || clean.find_channel("denoised.R"));
   EXPECT_NEAR(clean.at(3, 3, *clean.find_channel("G")), both.at(3, 3, *both.find_channel("denoised.G")), 0.01f);
-  EXPECT_TRUE(contains(succeed({"info", "a.exr"}).out, "denoised"));
+  EXPECT_TRUE(contains(succeed({"info", "a.exr"}).out, "\ndenoised   "));
   refuse({"denoise", "d.exr", "-o", "x.exr"}, "d.exr: the picture has no layers `noise`");
   refuse({"denoise", "a.png", "-o", "x.exr"}, "a.png: the picture has no layers `noise`");
   refuse({"denoise", "a.exr", "-o", "x.gif"}, "expected a name that ends in .exr");
