@@ -10,8 +10,8 @@
 
 namespace lanthorn::gl {
 
-/// Collects what OpenGL reports of the context that was current when the log was made: errors, deprecated and undefined
-/// behaviour, and whatever is not a mere notification. Must live as long as the context is used.
+/// Collects the errors and the undefined behaviour that OpenGL reports of the context that was current when the log was
+/// made. Must live as long as the context is used.
 class DebugLog {
  public:
   DebugLog();

@@ -140,7 +140,7 @@ Material "conductor" "spectrum eta" "metal-Cu-eta" "spectrum k" "metal-Cu-k" "fl
 }
 
 // Relative to the brightness there, and at least to the mean. Pixels whose sample lies on an edge may see either side:
-// a few are left out.
+// a few are left out. Graphics cards know only 256 steps between two texels of a map.
 TEST_F(EnvironmentTest, FrameIsThePictureOfTheCpu) {
   const Scene scene = balls_under_the_sky();
   RenderOptions options = test::options_for("splitsum", 1);
@@ -153,11 +153,12 @@ TEST_F(EnvironmentTest, FrameIsThePictureOfTheCpu) {
   renderer.draw(view, settings);
   const Image found = *select_layer(renderer.read_layers(), "direct");
   const double mean = image_errors(expected, found).mean_image;
+  const double tolerance = context_->driver().software ? 1e-3 : 1.0 / 256;
   int differ = 0, lit = 0;
   for (std::size_t i = 0; i < expected.pixels.size(); ++i) {
     const double value = static_cast<double>(expected.pixels[i]);
     if (value > 0) ++lit;
-    if (std::fabs(static_cast<double>(found.pixels[i]) - value) > 1e-3 * std::max(mean, value)) ++differ;
+    if (std::fabs(static_cast<double>(found.pixels[i]) - value) > tolerance * std::max(mean, value)) ++differ;
   }
   EXPECT_GT(lit, 1000);
   EXPECT_LE(differ, lit / 200);

@@ -328,8 +328,25 @@ TEST_F(RendererTest, LostContextIsAnError) {
   EXPECT_NO_THROW(renderer.draw(view, {}));
 }
 
+// A driver's remarks, such as NVIDIA's on shaders that it compiles again, must not end a frame.
+TEST_F(RendererTest, RemarksOfDriversAreNoErrors) {
+  const gl::DebugLog log;
+  const auto say = [](GLenum type) {
+    glDebugMessageInsert(GL_DEBUG_SOURCE_APPLICATION, type, 1, GL_DEBUG_SEVERITY_HIGH, -1, "a remark");
+  };
+  for (const GLenum type :
+       {GL_DEBUG_TYPE_PERFORMANCE, GL_DEBUG_TYPE_PORTABILITY, GL_DEBUG_TYPE_DEPRECATED_BEHAVIOR, GL_DEBUG_TYPE_OTHER})
+    say(type);
+  EXPECT_NO_THROW(log.check());
+  say(GL_DEBUG_TYPE_ERROR);
+  EXPECT_THROW(log.check(), Error);
+  say(GL_DEBUG_TYPE_UNDEFINED_BEHAVIOR);
+  EXPECT_THROW(log.check(), Error);
+}
+
 // Exits with 0 if the lack of OpenGL is told.
 void make_context_without_drivers() {
+  unsetenv("__EGL_VENDOR_LIBRARY_FILENAMES");  // counts before the other
   setenv("__EGL_VENDOR_LIBRARY_DIRS", "/nonexistent", 1);
   try {
     gl::Context::headless();
