@@ -3,6 +3,7 @@
 #include "lanthorn/denoise.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cmath>
 #include <optional>
@@ -34,14 +35,17 @@ bool has_layer(const Image& picture, const std::string& layer, const std::array<
     if (!picture.find_channel(layer + "." + name)) return false;
   return true;
 }
+bool has_layer_with_noise(const Image& picture, const std::string& layer, const std::array<const char*, 3>& names) {
+  return has_layer(picture, layer, names) && has_layer(picture, noise_prefix + layer, names);
+}
 
-// Those that have a half, but for features.
+// Those whose noise is known.
 std::vector<std::string> light_layers(const Image& picture) {
   std::vector<std::string> layers;
   for (const std::string& channel : picture.channels) {
     if (!channel.starts_with(noise_prefix) || !channel.ends_with(".R")) continue;
     const std::string layer = channel.substr(noise_prefix.size(), channel.size() - noise_prefix.size() - 2);
-    if (layer != "albedo" && has_layer(picture, layer, components)) layers.push_back(layer);
+    if (layer != "albedo" && has_layer_with_noise(picture, layer, components)) layers.push_back(layer);
   }
   return layers;
 }
@@ -106,6 +110,7 @@ class Denoiser {
       all += value(i, samples);
       for (const std::size_t c : color) light += value(i, c) / color_channels;
     }
+    check_sum(light);
     const auto own = all > 0 ? std::clamp(static_cast<float>(first / all), 0.0f, 1.0f) : 0.0f;
     if (own == 0 || own == 1)
       throw Error("a picture of a single pass cannot be denoised: the noise is the difference of passes");
@@ -135,6 +140,23 @@ class Denoiser {
   double value(std::size_t pixel, std::size_t channel) const {
     const float v = picture_.pixels[pixel * picture_.channel_count() + channel];
     return std::isfinite(v) ? static_cast<double>(v) : 0.0;
+  }
+
+  // Layers may be missing from files that other programs have written. `light`: of all pixels.
+  void check_sum(double light) const {
+    constexpr double rounding = 1e-2;  // of files in half precision
+    double sum = 0;
+    for (const std::string& layer : layers_) {
+      if (is_repeated(layer)) continue;
+      for (const char* const c : components) {
+        const std::size_t channel = channel_of(layer + "." + c);
+        for (std::size_t i = 0; i < pixels(); ++i) sum += value(i, channel) / color_channels;
+      }
+    }
+    if (std::fabs(sum - light) > rounding * std::fabs(light))
+      throw Error(
+          fmt::format("the layers whose noise is known ({}) have {:.3g} times the light of color; expected all of it",
+                      fmt::join(layers_, ", "), sum / light));
   }
 
   // A channel of the tile with its margin.
@@ -325,9 +347,7 @@ class Denoiser {
 
 bool can_denoise(const Image& picture) {
   for (const FeatureLayer& layer : feature_layers)
-    if (!has_layer(picture, layer.name, layer.components) ||
-        !has_layer(picture, noise_prefix + layer.name, layer.components))
-      return false;
+    if (!has_layer_with_noise(picture, layer.name, layer.components)) return false;
   return picture.find_channel(share_channel) && picture.find_channel("samples") && select_layer(picture, "color") &&
          !light_layers(picture).empty();
 }

@@ -282,5 +282,19 @@ TEST(Denoise, RefusesPicturesWithoutHalves) {
   EXPECT_THROW(denoise(single), Error);
 }
 
+// Files from which another program has left out channels.
+TEST(Denoise, RefusesPicturesOfWhichLightIsMissing) {
+  const Image whole = picture_of({16, 8, {{"direct", smooth, fifth}, {"caustic", smooth, fifth}}});
+  const auto without = [&](const std::string& prefix) {
+    Image part = whole;
+    for (std::string& channel : part.channels)
+      if (channel.starts_with(prefix)) channel = "other." + channel;
+    return part;
+  };
+  EXPECT_NO_THROW(denoise(without("nothing")));
+  for (const char* const prefix : {"noise.caustic", "noise.caustic.G", "caustic.B", "noise.direct", "noise.position.Y"})
+    EXPECT_THROW(denoise(without(prefix)), Error) << prefix;
+}
+
 }  // namespace
 }  // namespace lanthorn::denoise_test
