@@ -72,9 +72,8 @@ struct FilmContents {
 
 /// The passes of a render in two halves, whose difference shows the noise of the picture. Of passes 2k and 2k + 1, each
 /// half has one: by the parity of the ones in the pass's number (Thue & Morse), so that what is ordered by bit
-/// reversal, such as the wavelengths of passes, is as even in each half as in all. Each half has random numbers of its
-/// own
-/// (`eye_sampler`): halves are independent, and each is stratified over its passes.
+/// reversal, such as the parts of the shutter interval, is as even in each half as in all. Eye paths and wavelengths of
+/// each half have random numbers of their own.
 enum class FilmHalf : std::uint8_t { first, second };
 inline FilmHalf half_of_pass(std::uint64_t pass) {
   return std::popcount(pass) % 2 == 0 ? FilmHalf::first : FilmHalf::second;

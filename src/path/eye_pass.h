@@ -50,13 +50,11 @@ inline CameraRay eye_ray(const View& view, const Vec2& raster, const Vec2& u_len
   return ray;
 }
 
-/// The random numbers of eye path `number` of a pixel: stratified over the passes of its half of the film, and
-/// independent of those of the other half.
+/// The random numbers of eye path `number` of a pixel (`PlaceInHalf`).
 inline Sampler eye_sampler(const RenderJob& job, const PixelPlace& place, std::uint32_t number) {
-  const std::uint32_t parts = job.settings.parts, pass = number / parts;
-  const Stream stream = half_of_pass(pass) == FilmHalf::first ? Stream::camera : Stream::camera_of_second_half;
-  const auto in_half = static_cast<std::uint32_t>(number_in_half(pass)) * parts + number % parts;
-  return Sampler::for_pixel(job.settings.seed, stream, job.view.pixel_key(place.x, place.y), in_half);
+  const PlaceInHalf in_half = place_in_half(number, job.settings.parts);
+  const Stream stream = in_half.half == FilmHalf::first ? Stream::camera : Stream::camera_of_second_half;
+  return Sampler::for_pixel(job.settings.seed, stream, job.view.pixel_key(place.x, place.y), in_half.number);
 }
 
 /// The start of an eye path of a pixel. Draws from dimension group 0; group 1 is for the path's time and wavelengths.

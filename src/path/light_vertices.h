@@ -3,12 +3,15 @@
 // The vertices of a pass's light paths, to which eye paths are connected.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <numeric>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "base/parallel.h"
 #include "base/prefetch.h"
 #include "path/light_pass.h"
 #include "path/subpath.h"
@@ -79,6 +82,22 @@ class LightVertices {
     const std::size_t i = number % light_path_chunk;
     const std::uint32_t begin = i == 0 ? 0 : c.ends[i - 1];
     return std::span(c.vertices).subspan(begin, c.ends[i] - begin);
+  }
+  /// The vertices for which `is_wanted`, path by path. Found in parallel.
+  template <class Predicate>
+  std::vector<const LightVertex*> select(Predicate&& is_wanted) const {
+    std::vector<std::size_t> first(chunks_.size() + 1);  // of a chunk
+    parallel_for(std::size_t{0}, chunks_.size(), [&](std::size_t c) {
+      first[c + 1] = static_cast<std::size_t>(std::ranges::count_if(chunks_[c].vertices, is_wanted));
+    });
+    std::partial_sum(first.begin(), first.end(), first.begin());
+    std::vector<const LightVertex*> selected(first.back());
+    parallel_for(std::size_t{0}, chunks_.size(), [&](std::size_t c) {
+      std::size_t i = first[c];
+      for (const LightVertex& v : chunks_[c].vertices)
+        if (is_wanted(v)) selected[i++] = &v;
+    });
+    return selected;
   }
   /// Tells the processor that the vertices of path `number` will be read soon.
   [[gnu::always_inline]] void prefetch(std::size_t number) const {

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "film/film.h"
 #include "math/hash.h"
 #include "math/sampler.h"
 #include "path/render_job.h"
@@ -56,32 +57,50 @@ class OwnPathDraw {
   std::optional<PathDraw> same_for_all_;
 };
 
-/// The wavelengths that all paths of a pass share. The offsets of the first 2^m passes are equidistant, shifted by a
-/// number that depends on the seed: the mean of 2^m passes is a rectangle rule with 4 · 2^m nodes, which for smooth
+/// Where a pass, or a part of it, stands in the random sequences of its half of the film. Each half has sequences of
+/// its own: the halves are independent, and each is stratified over its passes.
+struct PlaceInHalf {
+  FilmHalf half = FilmHalf::first;
+  std::uint32_t number = 0;
+};
+/// `number` counts the parts of all passes before it (`RenderSettings::parts`).
+inline PlaceInHalf place_in_half(std::uint32_t number, std::uint32_t parts) {
+  const std::uint32_t pass = number / parts;
+  return {half_of_pass(pass), static_cast<std::uint32_t>(number_in_half(pass)) * parts + number % parts};
+}
+
+/// The wavelengths of sequence `seed`, each of which all paths of a pass share. The first 2^m offsets are equidistant,
+/// shifted by a number that depends on the seed: their mean is a rectangle rule with 4 · 2^m nodes, which for smooth
 /// spectra converges much faster than stratified random offsets do. The parts of the shutter interval are ordered by
 /// bit reversal, the first Sobol' coordinate; the offset is the second, so that the colour of a pass does not follow
 /// its time.
 ///
 /// Where something `disperses`, light has the colour of the heroes alone, and these must be as even as the offsets are.
-/// In spectral mode 32 passes are then a block of eight offsets, of which each of the four wavelengths is the hero
-/// once. After a block, the heroes are the same rectangle rule with 32 nodes that all wavelengths are. Eight passes
+/// In spectral mode 32 numbers are then a block of eight offsets, of which each of the four wavelengths is the hero
+/// once. After a block, the heroes are the same rectangle rule with 32 nodes that all wavelengths are. Eight numbers
 /// have the eight offsets, and their heroes lie in the eight eighths of the range. Of the orders with these properties,
-/// this is one whose heroes have the best colour after 2, 4, 8 and 16 passes. `round` changes which offsets go with
+/// this is one whose heroes have the best colour after 2, 4, 8 and 16 numbers. `round` changes which offsets go with
 /// which quarter of the shutter interval, and heroes go with all quarters alike.
-inline Wavelengths wavelengths_of_pass(std::uint64_t seed, ColorMode mode, std::uint32_t pass, bool disperses) {
+inline Wavelengths wavelengths_in_order(std::uint64_t seed, ColorMode mode, std::uint32_t number, bool disperses) {
   const float shift = unit_float(hash_words({seed, static_cast<std::uint64_t>(Stream::pass), 1}));
   const auto shifted = [shift](float u) { return u + shift < 1 ? u + shift : u + shift - 1; };
   if (mode == ColorMode::rgb || !disperses) {
-    Sampler sampler = Sampler::for_pass(seed, pass);
+    Sampler sampler = Sampler::for_pass(seed, number);
     sampler.seek(1);
-    return wavelengths_of(mode, shifted(unit_float(second_sobol_coordinate(pass))), sampler.next());
+    return wavelengths_of(mode, shifted(unit_float(second_sobol_coordinate(number))), sampler.next());
   }
   constexpr std::uint32_t offsets = 8, heroes = 4;
-  const std::uint32_t block = pass / (offsets * heroes), round = pass / offsets % heroes;
-  const std::uint32_t offset = (pass % offsets) ^ round;
+  const std::uint32_t block = number / (offsets * heroes), round = number / offsets % heroes;
+  const std::uint32_t offset = (number % offsets) ^ round;
   const std::uint32_t hero = (offset % 2 * 2 + offset / 4) ^ round;
   const float place = unit_float(second_sobol_coordinate(block * offsets + offset));
   return Wavelengths::spectral(shifted((static_cast<float>(hero) + place) / heroes));
+}
+
+/// The wavelengths of a pass or a part of it, in the order of its half of the film.
+inline Wavelengths wavelengths_of_pass(std::uint64_t seed, ColorMode mode, const PlaceInHalf& place, bool disperses) {
+  const std::uint64_t own = place.half == FilmHalf::first ? seed : hash_words({seed, 1});
+  return wavelengths_in_order(own, mode, place.number, disperses);
 }
 
 /// What the paths of a pass share in methods that cache light paths: their wavelengths, and a part of the shutter
@@ -123,7 +142,8 @@ inline PassDraw draw_for_pass(const RenderJob& job, std::uint32_t pass) {
   const ShutterPart part = shutter_part(job.settings.seed, pass);
   const float open = job.view.camera.time(part.begin);
   return {open, depends_on_time(job) ? job.view.camera.time(part.begin + part.length) - open : 0.0f,
-          wavelengths_of_pass(job.settings.seed, job.settings.color, pass, job.scene.has_dispersion())};
+          wavelengths_of_pass(job.settings.seed, job.settings.color, place_in_half(pass, job.settings.parts),
+                              job.scene.has_dispersion())};
 }
 
 }  // namespace lanthorn

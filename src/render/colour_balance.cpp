@@ -53,8 +53,9 @@ Rgb colour_balance(const RenderState& state, std::span<const PassRange> passes) 
   std::array<double, 3> sum{};
   for (const PassRange& range : passes)
     for (std::uint64_t set = range.begin * sets->per_pass; set < range.end * sets->per_pass; ++set) {
-      const Rgb white = white_of(
-          wavelengths_of_pass(sets->seed, ColorMode::spectral, static_cast<std::uint32_t>(set), sets->disperses));
+      const PlaceInHalf place =
+          place_in_half(static_cast<std::uint32_t>(set), static_cast<std::uint32_t>(sets->per_pass));
+      const Rgb white = white_of(wavelengths_of_pass(sets->seed, ColorMode::spectral, place, sets->disperses));
       sum[0] += static_cast<double>(white.r);
       sum[1] += static_cast<double>(white.g);
       sum[2] += static_cast<double>(white.b);

@@ -148,7 +148,7 @@ nlohmann::json identity(const Scene& scene, const ViewDescription& view, const R
   // Named after the density of wavelengths: passes drawn by another one have another colour balance.
   if (plan.integrator->passes_share_wavelengths() && s.color == ColorMode::spectral) {
     result["plateau_wavelength_sets"] = s.parts;
-    if (scene.has_dispersion()) result["heroes_in_blocks"] = true;  // the order of `wavelengths_of_pass`
+    if (scene.has_dispersion()) result["heroes_in_blocks"] = true;  // by `wavelengths_in_order`
   }
   if (plan.view.sensor.path_limit) result["clamp"] = *plan.view.sensor.path_limit;
   // The scene file's own view is part of the file, whose hash stands for it.

@@ -39,7 +39,7 @@ using ByteSpan = std::span<const std::byte>;
 static_assert(std::endian::native == std::endian::little, "state files are little-endian");
 
 constexpr char magic[8] = {'L', 'A', 'N', 'T', 'H', 'O', 'R', 'N'};
-constexpr std::uint32_t format_version = 5;
+constexpr std::uint32_t format_version = 6;
 constexpr std::size_t crc_bytes = sizeof(std::uint32_t);
 constexpr int max_header_depth = 64;
 // Deflate compresses by no more than this factor: a small file cannot claim a large size.

@@ -57,18 +57,17 @@ class MergeMap {
  public:
   /// Vertices of `least_depth` and more.
   MergeMap(const LightVertices& vertices, int least_depth, float radius, int flux_class) {
-    std::vector<const LightVertex*> merged;
-    std::vector<Point> positions;
-    for (std::size_t c = 0; c < vertices.chunk_count(); ++c)
-      for (const LightVertex& v : vertices.chunk(c).vertices)
-        if (!v.phase && v.flux_class == flux_class && v.depth >= least_depth && merges_at(v.at)) {
-          merged.push_back(&v);
-          positions.push_back(v.at.position);
-        }
+    const std::vector<const LightVertex*> merged = vertices.select([&](const LightVertex& v) {
+      return !v.phase && v.flux_class == flux_class && v.depth >= least_depth && merges_at(v.at);
+    });
+    std::vector<Point> positions(merged.size());
+    parallel_chunks(merged.size(), chunk, [&](std::size_t, std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) positions[i] = merged[i]->at.position;
+    });
     IndexBuild<HashGrid> built = HashGrid::build(positions, radius);
     grid_ = std::move(built.index);
     photons_.resize(merged.size());
-    parallel_chunks(merged.size(), 1u << 13, [&](std::size_t, std::size_t begin, std::size_t end) {
+    parallel_chunks(merged.size(), chunk, [&](std::size_t, std::size_t begin, std::size_t end) {
       for (std::size_t slot = begin; slot < end; ++slot) {
         const LightVertex& v = *merged[built.order[slot]];
         const Spectrum power = v.beta * grazing_gain(geometric_cosine(v.at, v.wi));
@@ -88,6 +87,8 @@ class MergeMap {
   std::size_t memory_bytes() const { return grid_.memory_bytes() + std::span(photons_).size_bytes(); }
 
  private:
+  static constexpr std::size_t chunk = 1u << 13;
+
   HashGrid grid_;
   std::vector<MergePhoton> photons_;
 };

@@ -123,7 +123,7 @@ Rgb colour_after(std::uint64_t seed, std::uint64_t passes, float (*reflectance)(
   Rgb mean;
   const auto count = static_cast<std::uint32_t>(passes) * sets;
   for (std::uint32_t set = 0; set < count; ++set) {
-    const Wavelengths w = wavelengths_of_pass(seed, ColorMode::spectral, set, false);
+    const Wavelengths w = wavelengths_of_pass(seed, ColorMode::spectral, place_in_half(set, sets), false);
     Spectrum light;
     for (unsigned i = 0; i < 4; ++i) light.v[i] = reflectance(w.lambda[i]) * illuminant_d65.at(w.lambda[i]);
     mean += (1 / static_cast<float>(count)) * w.to_rgb(light);

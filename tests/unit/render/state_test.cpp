@@ -278,7 +278,7 @@ TEST(State, ErrorsNameTheFile) {
   Bytes newer = encode_state(shard(0, 1));
   newer[8] = std::byte{77};
   EXPECT_EQ(test::error_text([&] { decode_state(newer, "a.state"); }),
-            "a.state: a state file of version 77; this program reads version 5");
+            "a.state: a state file of version 77; this program reads version 6");
 }
 
 TEST(MergeStates, EqualsOneRender) {
