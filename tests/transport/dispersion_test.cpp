@@ -27,11 +27,12 @@ std::array<double, 3> mean_of(const Image& image) {
 
 class Dispersion : public testing::TestWithParam<const char*> {};
 
-// Every path through the ball brings radiance 1: what differs is the colour of the wavelengths alone.
-TEST_P(Dispersion, IsWhiteAfterSixteenPasses) {
+// Every path through the ball brings radiance 1: what differs is the colour of the wavelengths alone. Each half of the
+// passes has a block of them (`wavelengths_in_order`).
+TEST_P(Dispersion, IsWhiteAfterThirtyTwoPasses) {
   const Scene scene = test::scene_from_text(ball_in_white_sky);
   for (std::uint64_t seed = 0; seed < 4; ++seed) {
-    RenderOptions options = test::options_for(GetParam(), 16);
+    RenderOptions options = test::options_for(GetParam(), 32);
     options.seed = seed;
     options.color = ColorMode::spectral;
     options.photons = 2'000;
