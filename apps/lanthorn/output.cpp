@@ -151,17 +151,22 @@ Option force_option(bool& force, const std::string& files) {
   return {.names = "--force", .value = flag(force), .brief = "Replace " + files};
 }
 
+Option denoise_option(bool& denoise, const std::string& brief) {
+  return {.names = "--denoise",
+          .value = flag(denoise),
+          .brief = brief,
+          .details =
+              ".exr files have the layers denoised, denoised.direct and so on beside those with noise; .png, .jpg "
+              "and .tif show the denoised picture."};
+}
+
 OptionTable output_options(OutputSettings& settings) {
   return joined(
       display_options(settings, exposure_of_scene),
       {{.names = "--reproducible",
         .value = flag(settings.reproducible),
         .brief = "Omit times from the files, so that equal images are equal files"},
-       {.names = "--denoise",
-        .value = flag(settings.denoise),
-        .brief = "Remove the noise that is left, layer by layer",
-        .details = ".exr files have the layers denoised, denoised.direct and so on beside those with noise; .png, .jpg "
-                   "and .tif show the denoised picture."},
+       denoise_option(settings.denoise, "Remove the noise that is left, layer by layer"),
        force_option(settings.force, "a .state that holds another render or more passes, and write-protected files")});
 }
 
@@ -216,7 +221,7 @@ const Image& StatePicture::with_all_layers() {
 
 const Image& StatePicture::image_for(const fs::path& file) {
   if (has_layers(file)) return with_all_layers();
-  if (!shown_) shown_ = needs_all_layers_ ? with_denoised_light(with_all_layers()) : picture_without_error(state_);
+  if (!shown_) shown_ = needs_all_layers_ ? picture_for(file, with_all_layers()) : picture_without_error(state_);
   return *shown_;
 }
 
@@ -228,6 +233,10 @@ const ErrorEstimate& StatePicture::error() {
 const std::optional<ErrorEstimate>& StatePicture::denoised_error() {
   if (is_denoised_) with_all_layers();
   return denoised_error_;
+}
+
+Image picture_for(const fs::path& file, const Image& image) {
+  return has_layers(file) ? image : with_denoised_light(image);
 }
 
 void write_preview(const fs::path& path, StatePicture& picture, const OutputSettings& settings) {

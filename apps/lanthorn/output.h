@@ -37,7 +37,9 @@ OptionTable display_options(OutputSettings& settings, const std::string& default
 OutputSettings shown_as(const DisplaySettings& display, bool measures_exposure, bool film_measures);
 /// --force. `files`: what it replaces besides write-protected files.
 Option force_option(bool& force, const std::string& files);
-/// These and --reproducible.
+/// --denoise. `brief`: for the help.
+Option denoise_option(bool& denoise, const std::string& brief);
+/// These, --denoise and --reproducible.
 OptionTable output_options(OutputSettings& settings);
 /// -o, which may be given several times. `what`, `otherwise`: for the help.
 Option outputs_option(std::vector<std::string>& outputs, const std::string& what, const std::string& otherwise);
@@ -79,6 +81,10 @@ class StatePicture {
   std::optional<Image> all_layers_, shown_;
   std::optional<ErrorEstimate> error_, denoised_error_;
 };
+
+/// What a file of this name shows of a picture: all layers in an .exr, else light, without its noise if it was
+/// denoised.
+Image picture_for(const std::filesystem::path& file, const Image& image);
 
 /// Writes the picture of a running render. Throws Error.
 void write_preview(const std::filesystem::path& path, StatePicture& picture, const OutputSettings& settings);

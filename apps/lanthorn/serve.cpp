@@ -41,7 +41,7 @@ struct ServeCommand : RenderArguments, RenderFiles {
 };
 
 // The command line that renders the same picture.
-std::string command_of(const ServeCommand& a, const ViewerScene& scene, std::uint64_t passes) {
+std::string command_of(const ServeCommand& a, const ViewerScene& scene, std::uint64_t passes, bool denoises) {
   RenderCommand render;
   static_cast<RenderArguments&>(render) = a;
   render.threads = 0;
@@ -53,6 +53,7 @@ std::string command_of(const ServeCommand& a, const ViewerScene& scene, std::uin
   render.reading.environment = scene.environment;
   render.changes = scene.changes;
   std::erase_if(render.changes.lights, [](const auto& light) { return light.second == 1; });
+  render.output.denoise = denoises;
   render.outputs = {"picture.exr"};
   return render_command_line(render);
 }
@@ -100,7 +101,9 @@ void save(const ServeCommand& a, const std::vector<fs::path>& outputs, const Vie
     say("lanthorn: no whole pass was rendered of this view: nothing to save\n");
     end_by_signal();
   }
-  save_render(a, a.options, outputs, viewer.scene(), *state, {});
+  RenderFiles files = a;
+  files.output.denoise = viewer.denoises();
+  save_render(files, a.options, outputs, viewer.scene(), *state, {});
 }
 
 void run_serve(const ServeCommand& a) {
@@ -110,9 +113,11 @@ void run_serve(const ServeCommand& a) {
   check_view(description.view, a.options);
   const std::vector<fs::path> outputs(a.outputs.begin(), a.outputs.end());
   if (!outputs.empty()) check_files(a, a.scene, description, outputs);
-  const auto command = [&a](const ViewerScene& shown, std::uint64_t passes) { return command_of(a, shown, passes); };
+  const auto command = [&a](const ViewerScene& shown, std::uint64_t passes, bool denoises) {
+    return command_of(a, shown, passes, denoises);
+  };
   Viewer viewer(build_scene(std::move(description)),
-                {command, {a.changes, a.options, a.reading.environment}, !outputs.empty()});
+                {command, {a.changes, a.options, a.reading.environment}, a.output.denoise, !outputs.empty()});
   SaidLines said;
   if (!a.quiet) announce_method(viewer.scene(), a.options, said);
   report_warnings(viewer.warnings(), said);
@@ -162,9 +167,8 @@ void add_serve(CLI::App& app) {
   constexpr const char* footer =
       "The page shows the picture as it refines, moves the camera (drag: around what is in the middle; shift or right\n"
       "button: sideways; wheel: nearer and farther), sets lens and environment, dims lights, chooses method, size,\n"
-      "layer, exposure and tone curve, saves the picture and gives the command line that renders it. Its address holds "
-      "a random token: without it, nothing can be "
-      "read.\n"
+      "layer, exposure and tone curve, denoises the picture, saves it and gives the command line that renders it.\n"
+      "Its address holds a random token: without it, nothing can be read.\n"
       "From another machine: ssh -L 8080:localhost:8080 MACHINE, then open the address there. Nothing is rendered "
       "while\n"
       "nobody looks, unless -o is given.\n\nExamples:\n"

@@ -113,6 +113,7 @@ std::string command_of(const ViewCommand& a, const ShownRender& shown, bool film
   render.changes = moved(a.changes, shown.look || is_saved ? shown.look : a.changes.look, shown.light_factors);
   if (is_saved) render.changes.lens.orbit.reset();
   render.output = shown_as(shown.display, shown.measures_exposure, film_measures);
+  render.output.denoise = shown.denoises;
   render.outputs = {shown.picture};
   return render_command_line(render);
 }
@@ -130,7 +131,7 @@ void show(const ViewCommand& a, const SharedScene& original, const ViewerOptions
   // No times in the file: equal pictures are equal files.
   const nlohmann::json metadata{
       {"version", version}, {"method", frames.report.method}, {"frames", frames.report.frames}};
-  write_picture(a.output, frames.image, a.picture, view.film.measures_exposure, metadata.dump());
+  write_picture(a.output, picture_for(a.output, frames.image), a.picture, view.film.measures_exposure, metadata.dump());
   if (!a.json.empty()) write_json(a.json, frames.report);
   announce("{}: {} frames by {}{}\n", a.output, frames.report.frames, frames.report.method,
            frames.report.software ? " (OpenGL in software)" : "");
@@ -146,6 +147,7 @@ void run_view(const ViewCommand& a) {
   options.scene_file = a.scene;
   options.frames = a.frames;
   options.light_factors = a.changes.lights;
+  options.denoises = a.picture.denoise;
   SceneDescription description = read_scene(a.scene, a.reading);
   const bool film_measures = description.view.film.measures_exposure;
   options.measures_exposure = a.picture.measures_exposure.value_or(film_measures);
@@ -186,6 +188,7 @@ OptionTable view_options(ViewCommand& a) {
                    .brief = "Write the times of the stages of a frame and the photons of each bounce as JSON"}};
   OptionTable render = without(render_options(a), "--integrator");
   OptionTable table = joined(joined(std::move(render), scene_change_options(a.changes)), std::move(own));
+  table.push_back(denoise_option(a.picture.denoise, "Remove the noise of pictures of offline methods, layer by layer"));
   return joined(std::move(table), display_options(a.picture, exposure_of_scene));
 }
 

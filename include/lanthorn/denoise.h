@@ -30,6 +30,11 @@ bool can_denoise(const Image& picture);
 /// larger ones are done in tiles of this size. Throws Error if `can_denoise` is false.
 DenoisedPicture denoise(const Image& picture);
 
+/// R, G, B of the picture without its noise, for a look while a render goes on: in a tenth of the time of `denoise`,
+/// with more of the noise left. `color` is denoised as one layer, so there are no layers that add up to it, and a
+/// caustic is less sharp. Same bytes for any number of threads; throws as `denoise` does.
+Image preview_without_noise(const Image& picture);
+
 /// The picture as it is shown and saved without its noise: the layers of light and `color` are the denoised ones, and
 /// neither `noise` nor `denoised` layers are left. `picture` has those of `denoise`.
 Image with_denoised_light(const Image& picture);

@@ -41,6 +41,7 @@ struct InteractiveSettings {
   /// Passes that are given up leave no trace in the sums, so that `state` can be saved. Costs a copy of the film before
   /// each pass.
   bool keeps_sums = false;
+  bool denoises = false;  ///< see `InteractiveRender::denoise`
 };
 
 enum class InteractivePhase : std::uint8_t {
@@ -60,7 +61,7 @@ struct InteractiveStatus {
 
 /// A picture with what belongs to it.
 struct InteractivePicture {
-  Image image{};                   ///< all layers
+  Image image{};                   ///< all layers; unless it is coarse, with those of `with_noise`
   std::uint64_t revision = 0;      ///< of the edit that it shows
   bool is_coarse = false;          ///< one pass at a low resolution
   std::array<int, 2> full_size{};  ///< width, height of the picture that is not coarse
@@ -74,12 +75,22 @@ struct InteractivePicture {
   std::string remark{};
 };
 
+/// A picture without its noise.
+struct InteractiveDenoised {
+  /// R, G, B, by `preview_without_noise`; or all layers, as `with_denoised_light` makes them of `denoise`.
+  Image image{};
+  bool is_preview = true;
+  std::uint64_t passes = 0;  ///< of the picture that was denoised
+};
+
 /// What there is to see at a moment.
 struct InteractiveSnapshot {
   std::uint64_t number = 0;  ///< grows with each new picture and each new phase
   InteractiveStatus status{};
   /// The last picture; null before the first. After a failed edit, it is that of an edit before.
   std::shared_ptr<const InteractivePicture> picture{};
+  /// Of the edit that the picture shows, and of as many passes or fewer. Null if it is not wanted, or not there yet.
+  std::shared_ptr<const InteractiveDenoised> denoised{};
 };
 
 /// A render in a thread of its own, for a window or a server. Any thread may call any function at any time. Only `wait`
@@ -114,6 +125,10 @@ class InteractiveRender {
   std::uint64_t edit(RenderEdit edit);
   /// Rests after the running pass, or goes on. Coarse pictures of later edits are rendered all the same.
   void pause(bool is_paused);
+  /// Whether pictures at rest are denoised, besides. While passes are rendered, that takes a quarter of the time at
+  /// most, and is done again when there are half as many passes more: a preview. The picture of the end gets full
+  /// quality. An edit gives up what is being denoised.
+  void denoise(bool is_wanted);
 
   InteractiveSnapshot snapshot() const;
   /// The first snapshot with another number than `number`, or what there is when `patience` is over or after `stop`.

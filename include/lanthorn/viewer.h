@@ -35,7 +35,8 @@ struct ShownRender {
   std::map<std::string, float> light_factors;  ///< by the names of lights, that are not 1
   DisplaySettings display;
   bool measures_exposure = false;  ///< instead of the display's
-  std::string picture;             ///< a name for its file, with .png
+  bool denoises = false;
+  std::string picture;  ///< a name for its file, with .png
 };
 
 /// What a viewer starts with.
@@ -47,6 +48,8 @@ struct ViewerOptions {
   DisplaySettings display;
   /// Of `run_viewer`: the exposure at first is measured from the picture, instead of the display's.
   bool measures_exposure = false;
+  /// Pictures of offline methods are denoised: by `run_viewer` at first, until the user changes that.
+  bool denoises = false;
   /// Of `run_viewer`: factors of brightness at first, by the names of lights (`name_of_light`, `name_of_area_light`).
   std::map<std::string, float> light_factors;
   /// Of `run_viewer`: the text of a command that makes this render, which the panel shows and copies.
@@ -78,7 +81,9 @@ struct ViewerReport {
 std::vector<MethodInfo> realtime_methods();
 
 struct ViewerFrames {
-  Image image;  ///< mean of the frames: R, G, B and the layers emission, direct, indirect, caustic
+  /// Mean of the frames: R, G, B and the layers emission, direct, indirect, caustic. Of an offline method: all layers,
+  /// with those of `with_noise`, and those of `denoise` if the options ask for it.
+  Image image;
   ViewerReport report;
 };
 

@@ -12,7 +12,10 @@
 #include <thread>
 #include <utility>
 
+#include "base/parallel.h"
 #include "camera/view.h"
+#include "film/film.h"
+#include "lanthorn/denoise.h"
 #include "lanthorn/error.h"
 #include "render/method_of_file.h"
 #include "render/plan.h"
@@ -35,6 +38,9 @@ constexpr double fewest_coarse_photons = 8000;
 constexpr Clock::duration moving_time = 300ms;      // that full passes wait for the next edit
 constexpr Clock::duration picture_interval = 40ms;  // between pictures of full passes
 constexpr int picture_share = 8;                    // making pictures takes this part of the time at most
+constexpr double denoising_growth = 1.5;            // of the passes, from one denoised picture to the next
+constexpr double denoising_rest = 3;                // rendering takes so many times as long before each
+constexpr double guessed_denoising_seconds = 1e-6;  // of a pixel, before one was denoised
 
 double seconds(Clock::duration time) { return std::chrono::duration<double>(time).count(); }
 
@@ -50,6 +56,21 @@ RenderOptions coarse_options(RenderOptions options, const description::Film& fil
       std::min(std::max(fewest_coarse_photons, photons * share * share), std::max(1.0, photons)));
   options.pass_range.reset();
   return options;
+}
+
+// The noise is the difference of the halves of the passes.
+bool has_both_halves(const InteractivePicture& picture) {
+  std::array<bool, 2> has{};
+  for (const PassRange& range : picture.state.passes)
+    for (std::uint64_t pass = range.begin; pass < range.end && !(has[0] && has[1]); ++pass)
+      has[static_cast<std::size_t>(half_of_pass(pass))] = true;
+  return has[0] && has[1] && !picture.is_coarse;
+}
+
+InteractiveDenoised denoised_picture(const InteractivePicture& picture, bool is_preview) {
+  return {
+      is_preview ? preview_without_noise(picture.image) : with_denoised_light(lanthorn::denoise(picture.image).picture),
+      is_preview, picture.state.pass_count};
 }
 
 // The pilot of `auto` would take longer than a coarse pass. Parameters of the scene's file are for another method.
@@ -74,6 +95,7 @@ class InteractiveRender::Worker {
 
   std::uint64_t edit(RenderEdit edit);
   void pause(bool is_paused);
+  void denoise(bool is_wanted);
   InteractiveSnapshot snapshot() const;
   InteractiveSnapshot wait(std::uint64_t number, std::chrono::milliseconds patience) const;
   const std::vector<description::Warning>& warnings() const { return warnings_; }
@@ -88,15 +110,18 @@ class InteractiveRender::Worker {
     ViewDescription view;
     RenderOptions options;
   };
-  enum class Step : std::uint8_t { coarse, refine, rest, end };
+  enum class Step : std::uint8_t { coarse, refine, preview, denoise, rest, end };
 
   void run();
   Step next_step() const;
+  Step next_step_at_rest() const;
   void rest(Lock& lock);
   void render(Step step, Wanted& wanted);
   void render_coarse(const Wanted& wanted);
   double render_coarse(const Wanted& wanted, double pixels, bool is_first);
   void refine(const Wanted& wanted);
+  void denoise_if_due(const RenderStatistics& statistics);
+  void denoise_shown(bool is_preview);
   InteractivePicture make_picture(const Wanted& wanted, const RenderPlan& plan,
                                   const RenderStatistics& statistics) const;
   std::shared_ptr<const InteractivePicture> coarse_picture(const Wanted& wanted, const RenderPlan& plan,
@@ -112,6 +137,7 @@ class InteractiveRender::Worker {
   InteractiveSnapshot seen() const;
   void tell_phase();
   // With the lock.
+  bool can_denoise_shown() const;
   void show(std::shared_ptr<const InteractivePicture> picture);
   void note_end(const Wanted& wanted, const RenderStatistics& statistics, const StopRule& stop);
 
@@ -124,24 +150,27 @@ class InteractiveRender::Worker {
   std::vector<description::Warning> warnings_;
   double photons_per_pixel_ = 0;
   double coarse_pixels_ = first_coarse_pixels;  // that a coarse pass in time has
-  Clock::time_point next_picture_{};
+  Clock::time_point next_picture_{}, next_preview_{};
+  double preview_seconds_ = guessed_denoising_seconds;  // of a pixel
 
   mutable std::mutex mutex_;  // of all below
   std::condition_variable edited_;
   mutable std::condition_variable changed_;
   Wanted wanted_;
-  bool is_paused_ = false;
+  bool is_paused_ = false, denoises_ = false;
   bool has_ended_ = false, is_over_ = false;  // `stop` was called; there is no thread any more
   std::uint64_t coarse_revision_ = 0, failed_revision_ = 0, over_revision_ = 0;
   InteractivePhase over_ = InteractivePhase::finished;  // of over_revision_
   std::string problem_;
   Clock::time_point moving_until_{};
   std::shared_ptr<const InteractivePicture> picture_;
+  std::shared_ptr<const InteractiveDenoised> denoised_;  // of the revision of picture_
   std::uint64_t number_ = 1;
   InteractivePhase told_ = InteractivePhase::preparing;  // the last phase that `number_` counts
   std::atomic<bool> drop_{false};                        // the running pass
   std::atomic<bool> end_{false};                         // every pass, the first coarse ones of an edit, too
   std::atomic<bool> rest_{false};                        // after the running pass
+  std::atomic<bool> drop_denoising_{false};              // what is being denoised
 
   std::once_flag joined_;
   std::thread thread_;
@@ -149,7 +178,7 @@ class InteractiveRender::Worker {
 
 InteractiveRender::Worker::Worker(SharedScene scene, const ViewDescription& view, const RenderOptions& options,
                                   const InteractiveSettings& settings)
-    : settings_(settings), scene_(std::move(scene)), wanted_{{}, 0, 1, 1, view, options} {
+    : settings_(settings), scene_(std::move(scene)), wanted_{{}, 0, 1, 1, view, options}, denoises_(settings.denoises) {
   make_plan(wanted_);
   warnings_ = warnings_of(*scene_, view);
   if (std::string limitation = plan_->integrator->limitation(*scene_); !limitation.empty())
@@ -182,8 +211,18 @@ InteractiveRender::Worker::Step InteractiveRender::Worker::next_step() const {
   if (has_ended_) return Step::end;
   if (failed_revision_ == wanted_.revision) return Step::rest;
   if (coarse_revision_ != wanted_.revision) return Step::coarse;
-  const bool rests = is_paused_ || over_revision_ == wanted_.revision || Clock::now() < moving_until_;
-  return rests ? Step::rest : Step::refine;
+  if (Clock::now() < moving_until_) return Step::rest;
+  const bool rests = is_paused_ || over_revision_ == wanted_.revision;
+  return rests ? next_step_at_rest() : Step::refine;
+}
+
+// A picture of the end, and one that is paused, are denoised as they are: at first by a preview.
+InteractiveRender::Worker::Step InteractiveRender::Worker::next_step_at_rest() const {
+  if (!can_denoise_shown()) return Step::rest;
+  const bool is_over = over_revision_ == wanted_.revision;
+  const bool is_of_shown = denoised_ && denoised_->passes == picture_->state.pass_count;
+  if (!denoised_ || (!is_of_shown && !is_over)) return Step::preview;
+  return is_over && (!is_of_shown || denoised_->is_preview) ? Step::denoise : Step::rest;
 }
 
 // Until something changes, or hands have come to rest.
@@ -199,7 +238,12 @@ void InteractiveRender::Worker::render(Step step, Wanted& wanted) {
     if (scene_revision_ != wanted.scene_revision) make_scene(wanted);
     // Options that do not fit are refused before a coarse picture by them is shown.
     if (options_revision_ != wanted.options_revision) make_plan(wanted);
-    step == Step::coarse ? render_coarse(wanted) : refine(wanted);
+    if (step == Step::coarse)
+      render_coarse(wanted);
+    else if (step == Step::refine)
+      refine(wanted);
+    else
+      denoise_shown(step == Step::preview);
   } catch (const std::bad_alloc&) {
     fail(wanted, "not enough memory for this picture");
   } catch (const std::exception& problem) {
@@ -295,6 +339,7 @@ void InteractiveRender::Worker::refine(const Wanted& wanted) {
     }
     shown_passes = plan_->state.pass_count();
     next_picture_ = Clock::now() + std::max(picture_interval, picture_share * (Clock::now() - now));
+    denoise_if_due(statistics);
   };
   const RenderStatistics statistics = lanthorn::render(*scene_, *plan_, stop, observer);
   if (statistics.out_of_memory) throw std::bad_alloc();
@@ -305,6 +350,50 @@ void InteractiveRender::Worker::refine(const Wanted& wanted) {
   const std::lock_guard lock(mutex_);
   if (!rest_) note_end(wanted, statistics, stop);
   if (last) show(std::move(last));
+}
+
+void InteractiveRender::Worker::denoise_if_due(const RenderStatistics& statistics) {
+  const Clock::time_point now = Clock::now();
+  {
+    const std::lock_guard lock(mutex_);
+    if (!can_denoise_shown() || now < next_preview_) return;
+    const double pixels = static_cast<double>(picture_->image.width) * picture_->image.height;
+    if (!denoised_ && statistics.seconds < denoising_rest * preview_seconds_ * pixels) return;
+    const auto passes = static_cast<double>(picture_->state.pass_count);
+    if (denoised_ && passes < denoising_growth * static_cast<double>(denoised_->passes)) return;
+  }
+  denoise_shown(/*is_preview=*/true);
+  next_preview_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(denoising_rest * (Clock::now() - now));
+}
+
+bool InteractiveRender::Worker::can_denoise_shown() const {
+  return denoises_ && picture_ && picture_->revision == wanted_.revision && has_both_halves(*picture_);
+}
+
+// Without the lock, for which edits would have to wait.
+void InteractiveRender::Worker::denoise_shown(bool is_preview) {
+  std::shared_ptr<const InteractivePicture> picture;
+  {
+    const std::lock_guard lock(mutex_);
+    if (!can_denoise_shown()) return;
+    picture = picture_;
+    drop_denoising_ = has_ended_;
+  }
+  const Clock::time_point start = Clock::now();
+  std::shared_ptr<const InteractiveDenoised> made;
+  try {
+    const StopScope scope(&drop_denoising_);
+    made = std::make_shared<const InteractiveDenoised>(denoised_picture(*picture, is_preview));
+  } catch (const Stopped&) {
+    return;
+  }
+  const double pixels = static_cast<double>(picture->image.width) * picture->image.height;
+  if (is_preview) preview_seconds_ = seconds(Clock::now() - start) / pixels;
+  const std::lock_guard lock(mutex_);
+  if (!can_denoise_shown()) return;
+  denoised_ = std::move(made);
+  ++number_;
+  changed_.notify_all();
 }
 
 void InteractiveRender::Worker::note_end(const Wanted& wanted, const RenderStatistics& statistics,
@@ -339,12 +428,14 @@ std::shared_ptr<const InteractivePicture> InteractiveRender::Worker::coarse_pict
 std::shared_ptr<const InteractivePicture> InteractiveRender::Worker::full_picture(
     const Wanted& wanted, const StopRule& stop, const RenderStatistics& statistics) const {
   InteractivePicture picture = make_picture(wanted, *plan_, statistics);
+  picture.image = with_noise(plan_->state, picture.image);
   picture.seconds_left = progress_of(stop, plan_->state, statistics).seconds_left;
   picture.remark = plan_->integrator->remark();
   return std::make_shared<const InteractivePicture>(std::move(picture));
 }
 
 void InteractiveRender::Worker::show(std::shared_ptr<const InteractivePicture> picture) {
+  if (picture_ && picture_->revision != picture->revision) denoised_.reset();
   picture_ = std::move(picture);
   told_ = phase();
   ++number_;
@@ -375,7 +466,10 @@ void InteractiveRender::Worker::tell_phase() {
 
 InteractiveSnapshot InteractiveRender::Worker::seen() const {
   const InteractivePhase now = phase();
-  return {number_, {wanted_.revision, now, now == InteractivePhase::failed ? problem_ : std::string()}, picture_};
+  return {number_,
+          {wanted_.revision, now, now == InteractivePhase::failed ? problem_ : std::string()},
+          picture_,
+          denoised_};
 }
 
 std::uint64_t InteractiveRender::Worker::edit(RenderEdit edit) {
@@ -392,7 +486,7 @@ std::uint64_t InteractiveRender::Worker::edit(RenderEdit edit) {
       wanted_.options_revision = wanted_.revision;
     }
     if (!settings_.coarse_first) coarse_revision_ = wanted_.revision;
-    drop_ = true;
+    drop_ = drop_denoising_ = true;
   }
   moving_until_ = edit.is_moving ? Clock::now() + moving_time : Clock::time_point();
   edited_.notify_all();
@@ -406,6 +500,17 @@ void InteractiveRender::Worker::pause(bool is_paused) {
   rest_ = is_paused_ = is_paused;
   edited_.notify_all();
   tell_phase();
+}
+
+void InteractiveRender::Worker::denoise(bool is_wanted) {
+  const std::lock_guard lock(mutex_);
+  if (is_wanted == denoises_) return;
+  denoises_ = is_wanted;
+  drop_denoising_ = !is_wanted;
+  denoised_.reset();
+  ++number_;
+  edited_.notify_all();
+  changed_.notify_all();
 }
 
 InteractiveSnapshot InteractiveRender::Worker::snapshot() const {
@@ -423,7 +528,7 @@ void InteractiveRender::Worker::stop() {
   {
     const std::lock_guard lock(mutex_);
     has_ended_ = true;
-    drop_ = end_ = true;
+    drop_ = end_ = drop_denoising_ = true;
     edited_.notify_all();
     changed_.notify_all();
   }
@@ -447,6 +552,7 @@ InteractiveRender::InteractiveRender(SharedScene scene, const ViewDescription& v
 InteractiveRender::~InteractiveRender() = default;
 std::uint64_t InteractiveRender::edit(RenderEdit edit) { return worker_->edit(std::move(edit)); }
 void InteractiveRender::pause(bool is_paused) { worker_->pause(is_paused); }
+void InteractiveRender::denoise(bool is_wanted) { worker_->denoise(is_wanted); }
 InteractiveSnapshot InteractiveRender::snapshot() const { return worker_->snapshot(); }
 InteractiveSnapshot InteractiveRender::wait(std::uint64_t number, std::chrono::milliseconds patience) const {
   return worker_->wait(number, patience);

@@ -135,6 +135,28 @@ Halves choose(const Halves& light, const std::vector<Halves>& candidates, const 
   return result;
 }
 
+std::vector<Halves> pyramid_of(const Halves& light, std::size_t levels) {
+  std::vector<Halves> pyramid{light};
+  while (pyramid.size() < levels) pyramid.push_back(halved(pyramid.back()));
+  return pyramid;
+}
+
+// The best of the first regressions.
+Halves regress_once(const Halves& light, const Shares& shares, const std::vector<Surroundings>& levels,
+                    const RegressionSettings& settings) {
+  constexpr int variance_radius = 3;
+  const std::vector<Halves> of_level = pyramid_of(light, levels.size());
+  std::vector<Halves> candidates{light};
+  add_pyramid(
+      levels.size(),
+      [&](std::size_t k) {
+        return regress_crosswise(of_level[k], demodulated(of_level[k], levels[k].demodulation), levels[k].features,
+                                 shares, variance_radius, settings);
+      },
+      candidates);
+  return choose(light, candidates, shares, levels[0].scale);
+}
+
 }  // namespace
 
 Plane mean_of(const Halves& light, std::size_t channel, const Shares& shares) {
@@ -165,40 +187,39 @@ Surroundings halved(const Surroundings& surroundings) {
   return out;
 }
 
-void add_features(const Halves& halves, const Shares& shares, std::array<FeaturePlanes, 2>& features) {
-  constexpr RegressionSettings settings{.window = 5, .patch = 1, .stride = 4, .strength = 0.7f};
+void add_noisy_features(const Halves& halves, const Shares& shares, std::array<FeaturePlanes, 2>& features) {
   constexpr int variance_radius = 1;
-  Halves smooth = halves;
-  if (is_noisy(halves))
-    smooth = choose(halves, {halves, regress_crosswise(halves, halves, {}, shares, variance_radius, settings)}, shares,
-                    Plane(halves[0][0].width(), halves[0][0].height(), 1));
   for (std::size_t h = 0; h < 2; ++h)
     for (std::size_t c = 0; c < color_channels; ++c) {
-      features[h].values.push_back(smooth[h][c]);
-      Plane variance = box_filtered(variance_of_mean(smooth, c, shares), variance_radius);
+      features[h].values.push_back(halves[h][c]);
+      Plane variance = box_filtered(variance_of_mean(halves, c, shares), variance_radius);
       variance.fill([&](std::size_t i) { return variance[i] / shares[h]; });
       features[h].variances.push_back(std::move(variance));
     }
 }
 
+void add_features(const Halves& halves, const Shares& shares, std::array<FeaturePlanes, 2>& features) {
+  constexpr RegressionSettings settings{.window = 5, .patch = 1, .stride = 4, .strength = 0.7f};
+  constexpr int variance_radius = 1;
+  if (!is_noisy(halves)) return add_noisy_features(halves, shares, features);
+  const Halves smooth =
+      choose(halves, {halves, regress_crosswise(halves, halves, {}, shares, variance_radius, settings)}, shares,
+             Plane(halves[0][0].width(), halves[0][0].height(), 1));
+  add_noisy_features(smooth, shares, features);
+}
+
+Halves preview_layer(const Halves& light, const Shares& shares, const std::vector<Surroundings>& levels) {
+  constexpr RegressionSettings settings{.window = 3, .patch = 1, .stride = 2, .strength = 0.7f};
+  return is_noisy(light) ? regress_once(light, shares, levels, settings) : light;
+}
+
 Halves denoise_layer(const Halves& light, const Shares& shares, const std::vector<Surroundings>& levels) {
   constexpr RegressionSettings crosswise{.window = 7, .patch = 3, .stride = 4, .strength = 0.5f},
       again{.window = 7, .patch = 1, .stride = 2, .strength = 1};
-  constexpr int variance_radius = 3;
   if (!is_noisy(light)) return light;
-  std::vector<Halves> of_level{light};
-  while (of_level.size() < levels.size()) of_level.push_back(halved(of_level.back()));
-  std::vector<Halves> candidates{light};
-  add_pyramid(
-      levels.size(),
-      [&](std::size_t k) {
-        return regress_crosswise(of_level[k], demodulated(of_level[k], levels[k].demodulation), levels[k].features,
-                                 shares, variance_radius, crosswise);
-      },
-      candidates);
-  std::vector<Halves> before{choose(light, candidates, shares, levels[0].scale)};
-  while (before.size() < levels.size()) before.push_back(halved(before.back()));
-  candidates = {light, before[0]};
+  const std::vector<Halves> of_level = pyramid_of(light, levels.size()),
+                            before = pyramid_of(regress_once(light, shares, levels, crosswise), levels.size());
+  std::vector<Halves> candidates{light, before[0]};
   add_pyramid(
       levels.size(), [&](std::size_t k) { return regress_again(of_level[k], before[k], shares, levels[k], again); },
       candidates);

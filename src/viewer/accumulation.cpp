@@ -53,8 +53,9 @@ void Accumulation::add(const Renderer& renderer, float factor) {
 void Accumulation::load(const Image& image) {
   frames_ = 0;
   std::vector<glm::vec4> texels(static_cast<std::size_t>(width()) * static_cast<std::size_t>(height()));
+  const bool has_layers = select_layer(image, layer_names_of_light[1]).has_value();
   for (std::size_t l = 0; l < layers_.size(); ++l) {
-    const auto layer = select_layer(image, layer_names_of_light[l]);
+    const auto layer = select_layer(image, l == 0 && !has_layers ? "color" : layer_names_of_light[l]);
     std::fill(texels.begin(), texels.end(), glm::vec4(0));
     if (layer && layer->pixels.size() == 3 * texels.size())
       for (std::size_t i = 0; i < texels.size(); ++i)

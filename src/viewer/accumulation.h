@@ -38,7 +38,7 @@ class Accumulation {
   void reset() { frames_ = 0; }
   /// Adds the renderer's last frame. `factor`: pixel value over radiance.
   void add(const Renderer& renderer, float factor);
-  /// Replaces the mean by the layers of a picture of this size.
+  /// Replaces the mean by the layers of a picture of this size. Light without layers counts as emission.
   void load(const Image& image);
 
   std::uint64_t frames() const { return frames_; }

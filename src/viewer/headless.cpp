@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "gl/context.h"
+#include "lanthorn/denoise.h"
 #include "lanthorn/methods.h"
 #include "lanthorn/session.h"
 #include "lanthorn/viewer.h"
@@ -22,11 +23,17 @@ ViewerFrames offline_frames(const SharedScene& scene, const ViewDescription& vie
   render.passes = options.frames;
   Session session(scene, view, render);
   const RenderStatistics statistics = session.render();
-  ViewerFrames result{session.picture(), {}};
+  ViewerFrames result{with_noise(session.state(), session.picture()), {}};
   result.report.method = options.method;
   result.report.frames = statistics.passes;
   result.report.seconds = statistics.seconds;
   for (const description::Warning& warning : session.warnings()) result.report.limitations.push_back(warning.message);
+  if (!options.denoises) return result;
+  if (options.frames > 1)
+    result.image = denoise(result.image).picture;
+  else
+    result.report.limitations.emplace_back(
+        "a picture of a single pass is not denoised: the noise is the difference of passes");
   return result;
 }
 
@@ -36,6 +43,8 @@ ViewerFrames realtime_frames(const SharedScene& scene, const ViewDescription& de
     throw Error(description.camera.location,
                 "a rasteriser draws for perspective and orthographic cameras only; offline methods draw for this one");
   const View view = view_in(*scene, description, options.render);
+  if (options.denoises)
+    throw Error(options.method + " draws by OpenGL: only pictures of offline methods can be denoised");
   const RealtimeSettings settings = realtime_settings(*scene, view, options);
   const gl::Context context = gl::Context::headless();
   Renderer renderer(*scene);

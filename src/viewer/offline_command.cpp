@@ -80,6 +80,7 @@ ShownRender offline_render(const ShownPicture& shown, const ViewerOptions& optio
                      shown.strengths,
                      shown.display,
                      shown.measures_exposure,
+                     shown.denoises,
                      stem_of(shown.scene) + ".png"};
   if (shown.camera) render.look = look_of(*shown.camera, shown.origin);
   render.options.resolution = {shown.width, shown.height};

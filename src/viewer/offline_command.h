@@ -23,7 +23,7 @@ struct ShownPicture {
   std::string method;
   RealtimeSettings settings;
   DisplaySettings display;
-  bool measures_exposure = false;
+  bool measures_exposure = false, denoises = false;
   std::optional<CameraPose> camera;        ///< nothing: that of the file
   std::map<std::string, float> strengths;  ///< of lights, by LightRow::id, that differ from those of the file
   int width = 0, height = 0;

@@ -51,6 +51,7 @@ struct Panel {
   RealtimeSettings settings;
   float exposure = 0;  ///< stops
   bool measures_exposure = false;
+  bool denoises = false;  ///< pictures of offline methods
   ToneCurve curve = ToneCurve::none;
   int layer = 0;  ///< 0: all of them; else 1 + index of emission, direct, indirect, caustic
   std::vector<LightRow> lights;
@@ -61,10 +62,11 @@ struct Panel {
   // Shown.
   std::vector<TechniqueDescription> techniques;  ///< with all their parameters, those of lights included
   std::string scene, driver, object_name, message, command;
-  std::string error;   ///< of the picture, of an offline method; empty: not known yet
-  std::string left;    ///< time until an offline method has reached its bounds; empty: not known yet, or reached
-  std::string remark;  ///< what an offline method has found and chosen; empty: nothing
-  std::string notice;  ///< over the picture: why it is not what was asked for
+  std::string error;     ///< of the picture, of an offline method; empty: not known yet
+  std::string left;      ///< time until an offline method has reached its bounds; empty: not known yet, or reached
+  std::string denoised;  ///< how far the picture is denoised; empty: it is not
+  std::string remark;    ///< what an offline method has found and chosen; empty: nothing
+  std::string notice;    ///< over the picture: why it is not what was asked for
   std::vector<std::string> notes;
   std::vector<LightMark> marks;
   std::vector<FrameStage> stages;

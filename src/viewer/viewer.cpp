@@ -5,8 +5,11 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
+#include <exception>
 #include <fstream>
+#include <future>
 #include <iterator>
 #include <optional>
 #include <span>
@@ -14,6 +17,7 @@
 #include <utility>
 
 #include "gl/context.h"
+#include "lanthorn/denoise.h"
 #include "lanthorn/file.h"
 #include "lanthorn/interactive_render.h"
 #include "lanthorn/methods.h"
@@ -89,6 +93,12 @@ ToneSettings::Curve window_curve(ToneCurve curve) {
   return curve == ToneCurve::agx ? ToneSettings::Curve::agx : ToneSettings::Curve::clipped;
 }
 
+// For the panel; nothing if the picture is not denoised.
+std::string describe_denoised(const std::shared_ptr<const InteractiveDenoised>& denoised) {
+  if (!denoised) return {};
+  return fmt::format("{} passes{}", denoised->passes, denoised->is_preview ? ", preview" : "");
+}
+
 // The first name of the form STEM-N.EXTENSION that no file has.
 fs::path free_name(const fs::path& folder, const std::string& stem, const std::string& extension) {
   for (int n = 1;; ++n) {
@@ -117,9 +127,13 @@ class Viewer {
   std::string notice() const;
   void refine();
   void start_render();
+  std::shared_ptr<const Image> offline_image() const;
+  void load_offline_image();
   void update_information();
   void present();
   void save_picture(const std::string& extension);
+  void save_exr();
+  void report_saved();
   fs::path save_scene();
   std::string command() const;
   void copy_command();
@@ -153,6 +167,9 @@ class Viewer {
   std::optional<std::pair<ViewerClock::time_point, double>> moving_frame_;
   bool shown_is_exact_ = true;  // the last frame
   std::shared_ptr<const InteractivePicture> offline_;
+  std::shared_ptr<const InteractiveDenoised> denoised_;  // of the same edit
+  std::shared_ptr<const Image> loaded_;                  // of these, the one that is shown
+  std::future<std::string> saving_;                      // its message
   // A file with a camera and with the lights and objects of a moment.
   fs::path saved_file_;
   Transform saved_camera_;
@@ -203,6 +220,7 @@ void Viewer::make_panel() {
   panel_.scene_radius = original_->bounding_sphere().radius;
   panel_.exposure = options_.display.exposure;
   panel_.measures_exposure = options_.measures_exposure;
+  panel_.denoises = options_.denoises;
   panel_.curve = options_.display.curve;
   panel_.lights = scene_.lights();
   panel_.scene = options_.scene_file.filename().string();
@@ -216,6 +234,8 @@ void Viewer::note_change() {
   last_change_ = ViewerClock::now();
   render_is_stale_ = true;
   offline_.reset();
+  denoised_.reset();
+  loaded_.reset();
   panel_.is_offline = false;
   forget_frames();
 }
@@ -246,6 +266,8 @@ void Viewer::apply_panel() {
     render_.reset();
     note_change();
   }
+  if (panel_.denoises != before_.denoises && render_) render_->denoise(panel_.denoises);
+  before_.denoises = panel_.denoises;
   before_.method = panel_.method;
   before_.settings = panel_.settings;
 }
@@ -266,9 +288,11 @@ void Viewer::apply_wishes() {
     panel_.wishes.save_png = std::exchange(wishes.save_png, false);
     panel_.wishes.save_exr = std::exchange(wishes.save_exr, false);
   }
+  report_saved();
+  if (saving_.valid()) panel_.wishes.save_exr |= std::exchange(wishes.save_exr, false);  // one after the other
   try {
     if (wishes.save_png) save_picture(".png");
-    if (wishes.save_exr) save_picture(".exr");
+    if (wishes.save_exr) save_exr();
     if (wishes.save_scene) save_scene();
     if (wishes.copy_command) copy_command();
   } catch (const Error& e) {
@@ -351,7 +375,8 @@ void Viewer::start_render() {
   render.integrator = panel_.methods[panel_.method];
   if (render.integrator != options_.method) render.set.clear();  // parameters of another method
   try {
-    render_.emplace(scene_.scene(), description_, render, InteractiveSettings{.coarse_first = false});
+    render_.emplace(scene_.scene(), description_, render,
+                    InteractiveSettings{.coarse_first = false, .denoises = panel_.denoises});
     render_is_stale_ = false;
   } catch (const Error& e) {
     panel_.message = e.message;
@@ -367,9 +392,13 @@ void Viewer::refine() {
     render_->edit({.scene = [scene = scene_.scene()] { return scene; }, .view = description_, .is_moving = true});
   InteractiveSnapshot now = render_->snapshot();
   if (!now.status.problem.empty()) panel_.message = std::move(now.status.problem);
-  if (!now.picture || now.picture == offline_ || now.picture->revision != now.status.revision) return;
+  if (!now.picture || now.picture->revision != now.status.revision) return;
+  denoised_ = std::move(now.denoised);
+  panel_.denoised = describe_denoised(denoised_);
+  const bool is_new = now.picture != offline_;
   offline_ = std::move(now.picture);
-  picture_.load(offline_->image);
+  load_offline_image();
+  if (!is_new) return;
   is_small_ = false;
   measure();
   panel_.is_offline = true;
@@ -379,6 +408,19 @@ void Viewer::refine() {
   const double left = offline_->seconds_left.value_or(0);
   panel_.left = left > 0 ? format_duration(left) : "";
   panel_.remark = offline_->remark;
+}
+
+// As it is shown. Previews have no layers: one that is chosen is shown as it is.
+std::shared_ptr<const Image> Viewer::offline_image() const {
+  if (denoised_ && (!denoised_->is_preview || panel_.layer == 0)) return {denoised_, &denoised_->image};
+  return {offline_, &offline_->image};
+}
+
+void Viewer::load_offline_image() {
+  const std::shared_ptr<const Image> image = offline_image();
+  if (image == loaded_) return;
+  picture_.load(*image);
+  loaded_ = image;
 }
 
 void Viewer::draw() {
@@ -421,7 +463,7 @@ void Viewer::update_information() {
 }
 
 void Viewer::save_picture(const std::string& extension) {
-  Image image = offline_ ? offline_->image : picture_.read();
+  Image image = offline_ ? *offline_image() : picture_.read();
   if (panel_.layer > 0 && extension == ".png") {
     constexpr std::array names{"emission", "direct", "indirect", "caustic"};
     Image layer = *select_layer(image, names[static_cast<std::size_t>(panel_.layer - 1)]);
@@ -432,6 +474,28 @@ void Viewer::save_picture(const std::string& extension) {
   const fs::path path = free_name(".", stem_of(options_.scene_file), extension);
   write_image(path, image, display);
   panel_.message = "Saved " + path.lexically_normal().string();
+}
+
+// Denoising in full quality takes seconds: the window goes on meanwhile.
+void Viewer::save_exr() {
+  const bool denoises = offline_ && panel_.denoises && offline_->state.pass_count > 1;
+  if (!denoises) return save_picture(".exr");
+  const fs::path path = free_name(".", stem_of(options_.scene_file), ".exr");
+  panel_.message = "Denoising, to be saved as " + path.lexically_normal().string();
+  saving_ = std::async(std::launch::async, [path, picture = offline_] {
+    write_image(path, denoise(picture->image).picture, {});
+    return "Saved " + path.lexically_normal().string();
+  });
+}
+
+void Viewer::report_saved() {
+  using namespace std::chrono_literals;
+  if (!saving_.valid() || saving_.wait_for(0s) != std::future_status::ready) return;
+  try {
+    panel_.message = saving_.get();
+  } catch (const std::exception& e) {
+    panel_.message = e.what();
+  }
 }
 
 fs::path Viewer::save_scene() {
@@ -460,6 +524,7 @@ std::string Viewer::command() const {
   shown.display.exposure = panel_.exposure;
   shown.display.curve = panel_.curve;
   shown.measures_exposure = panel_.measures_exposure;
+  shown.denoises = panel_.denoises && panel_.wants_offline();
   if (!stands_there) shown.camera = interaction_.pose();
   if (needs_strengths) shown.strengths = strengths_of(panel_.lights);
   shown.width = view_.camera.width();

@@ -233,6 +233,26 @@ async function changeEnvironment() {
   expect(true, 'the file’s own environment comes back');
 }
 
+/// Noise of the canvas: the mean difference of pixels beside each other.
+const roughness = () => page.evaluate(() => {
+  const canvas = document.getElementById('picture'), {data} = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
+  let sum = 0;
+  for (let i = 4; i < data.length; i++) sum += Math.abs(data[i] - data[i - 4]);
+  return sum / data.length;
+});
+async function denoisePicture() {
+  await page.locator('#denoise').check();
+  await page.waitForFunction(() => /^[0-9]+ passes, preview$/.test(document.getElementById('denoised').textContent), null, {timeout: 60000});
+  await page.waitForFunction(() => document.getElementById('command').value.includes('--denoise'));
+  const clean = await roughness();
+  await shot('denoised');
+  await page.locator('#denoise').uncheck();
+  await page.waitForFunction(() => document.getElementById('denoised').hidden && !document.getElementById('command').value.includes('--denoise'));
+  const noisy = await roughness();
+  await shot('noisy');
+  expect(clean < noisy, `Denoise makes the picture smoother: ${clean.toFixed(2)} instead of ${noisy.toFixed(2)}`);
+}
+
 async function lookAtNumbers() {
   await page.waitForFunction(() => !document.getElementById('left').hidden);
   expect(/^1:59:[0-5][0-9] h$/.test(await text('left')), `the time left is told: ${await text('left')}`);
@@ -281,6 +301,7 @@ try {
   await shot('first');
   expect(sum(await mean()) > 30, 'there is a picture');
   await lookAtNumbers();
+  await denoisePicture();
   await drag();
   await steerByKeys();
   await useControls();

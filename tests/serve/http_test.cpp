@@ -117,7 +117,7 @@ TEST(Access, ChangesComeFromTheOwnPage) {
 TEST(Frame, LayersAreEncodedWithWhatThePageNeeds) {
   auto image = std::make_shared<Image>(2, 1, std::vector<std::string>{"R", "G", "B", "depth.Z"});
   for (std::size_t i = 0; i < image->pixels.size(); ++i) image->pixels[i] = static_cast<float>(i);
-  const PageFrame frame(7, image, {{"passes", 3}}, "{}");
+  const PageFrame frame(7, image, nullptr, {{"passes", 3}}, "{}");
   const SharedBytes bytes = frame.encoded("depth", false);
   EXPECT_EQ(bytes, frame.encoded("depth", false));  // made once
   std::uint32_t size = 0;
@@ -134,6 +134,18 @@ TEST(Frame, LayersAreEncodedWithWhatThePageNeeds) {
   EXPECT_EQ(decode_half(halves[0]), 3);
   EXPECT_EQ(decode_half(halves[1]), 7);
   EXPECT_EQ(frame.encoded("no such layer", false), frame.encoded("color", false));
+}
+
+TEST(Frame, DenoisedLayersAreShownWhereThereAreSome) {
+  const auto noisy = std::make_shared<Image>(1, 1, std::vector<std::string>{"R", "G", "B", "depth.Z", "noise.share"});
+  const auto preview = std::make_shared<Image>(1, 1, std::vector<std::string>{"R", "G", "B"});
+  preview->pixels = {4, 5, 6};
+  noisy->pixels[3] = 9;
+  const PageFrame frame(7, noisy, preview, nlohmann::json::object(), "{}");
+  EXPECT_EQ(frame.about()["layers"], (nlohmann::json{"color", "depth"}));
+  EXPECT_EQ(frame.layer("color")->pixels, preview->pixels);
+  EXPECT_EQ(frame.layer("depth")->pixels[0], 9);
+  EXPECT_FALSE(frame.layer("direct"));
 }
 
 HttpResponse echo(const HttpRequest& request, const IsGone&) {

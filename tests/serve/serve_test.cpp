@@ -67,14 +67,11 @@ class Serve : public Cli {
     EXPECT_EQ(command.front(), "lanthorn");
     command.erase(command.begin());
     succeed(command + Words{"-q"});
-    const Image served = read_image(path("served.exr")), rendered = without_noise(read_image(path("picture.exr")));
+    const Image served = read_image(path("served.exr")), rendered = read_image(path("picture.exr"));
     EXPECT_EQ(served.channels, rendered.channels);
     EXPECT_TRUE(served.pixels == rendered.pixels) << text;
     return text;
   }
-
-  // The page's picture has all layers but those for a denoiser.
-  static Image without_noise(const Image& picture) { return with_denoised_light(picture); }
 
   static nlohmann::json about(const Answer& answer) {
     std::uint32_t size = 0;
@@ -109,6 +106,14 @@ class Serve : public Cli {
   std::string root_, host_;
 };
 
+// The color of a frame, as half floats.
+std::string color_of(const Answer& answer) {
+  std::uint32_t size = 0;
+  std::memcpy(&size, answer.body.data(), 4);
+  return answer.body.substr(4 + size);
+}
+
+bool is_denoised(const nlohmann::json& frame) { return frame["denoised"].is_object() && !frame["denoised"]["preview"]; }
 bool is_finished(const nlohmann::json& frame) { return frame["finished"]; }
 
 TEST_F(Serve, NothingIsReadableWithoutTheToken) {
@@ -155,6 +160,43 @@ TEST_F(Serve, OtherSitesAreRefused) {
   EXPECT_EQ(page.body.find("src=\"http"), std::string::npos);
 }
 
+// The switch changes what is shown and saved, and the command line.
+TEST_F(Serve, PicturesAtRestAreDenoised) {
+  start({"-p", "4", "-r", "24x16", "-i", "path"});
+  const nlohmann::json noisy = frame(is_finished);
+  EXPECT_EQ(noisy["denoise"], false);
+  EXPECT_TRUE(noisy["denoised"].is_null());
+  for (const nlohmann::json& layer : noisy["layers"]) EXPECT_FALSE(contains(layer, "noise")) << layer;
+  const std::string noisy_png = get("picture.png").body, noisy_color = color_of(get("frame?after=0&layer=color"));
+  EXPECT_FALSE(contains(expect_same_picture(nlohmann::json::object()), "--denoise"));
+  EXPECT_TRUE(can_denoise(read_image(path("served.exr"))));
+
+  EXPECT_EQ(edit({{"denoise", true}}), 200);
+  EXPECT_EQ(frame(is_denoised)["denoised"]["passes"], 4);
+  EXPECT_NE(get("picture.png").body, noisy_png);
+  EXPECT_NE(color_of(get("frame?after=0&layer=color")), noisy_color);
+  EXPECT_NE(color_of(get("frame?after=0&layer=direct")), noisy_color);
+  EXPECT_TRUE(contains(expect_same_picture(nlohmann::json::object()), "--denoise"));
+  const Image saved = read_image(path("served.exr"));
+  EXPECT_TRUE(saved.find_channel("denoised.direct.R") && saved.find_channel("denoised.error.R"));
+  EXPECT_TRUE(contains(read_image_metadata(path("served.exr")), "denoised_error"));
+
+  EXPECT_EQ(edit({{"denoise", false}}), 200);
+  EXPECT_TRUE(frame([](const nlohmann::json& f) { return f["denoise"] == false; })["denoised"].is_null());
+  EXPECT_EQ(get("picture.png").body, noisy_png);
+}
+
+TEST_F(Serve, PicturesOfTheEndAreDenoisedAsThePageSays) {
+  for (const bool denoises : {true, false}) {
+    start(denoises ? Words{"-p", "2", "-o", "end.exr"} : Words{"-p", "2", "-o", "end.exr", "--denoise"});
+    EXPECT_EQ(frame(is_finished)["denoise"], !denoises);
+    EXPECT_EQ(edit({{"denoise", denoises}}), 200);
+    process_->send(SIGINT);
+    EXPECT_EQ(process_->wait().exit_code, 0);
+    EXPECT_EQ(read_image(path("end.exr")).find_channel("denoised.R").has_value(), denoises);
+  }
+}
+
 // True if this machine has IPv6's address of itself.
 bool has_ipv6() {
   std::ifstream addresses("/proc/net/if_inet6");
@@ -199,6 +241,7 @@ TEST_F(Serve, BadEditsChangeNothing) {
                            R"({"lights":{"moon":1}})",
                            R"({"lights":{"light1":-1}})",
                            R"({"paused":"yes"})",
+                           R"({"denoise":"yes"})",
                            R"({"method":"moonlight"})",
                            R"({"method":1})",
                            R"({"lens":{"fov":0}})",

@@ -2,9 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "frame.h"
 
+#include <algorithm>
 #include <cstddef>
+#include <iterator>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "../json_text.h"
 #include "lanthorn/image_file.h"
@@ -12,19 +15,41 @@
 
 namespace lanthorn::program {
 
-PageFrame::PageFrame(std::uint64_t number, std::shared_ptr<const Image> image, nlohmann::json about,
-                     std::string metadata)
-    : number_(number), image_(std::move(image)), about_(std::move(about)), metadata_(std::move(metadata)) {
+namespace {
+
+// Those that a page may show.
+std::vector<std::string> shown_layers(const Image& image) {
+  Image names;
+  std::copy_if(image.channels.begin(), image.channels.end(), std::back_inserter(names.channels),
+               [](const std::string& channel) { return !is_noise_channel(channel); });
+  return layer_names(names);
+}
+
+}  // namespace
+
+PageFrame::PageFrame(std::uint64_t number, std::shared_ptr<const Image> image, std::shared_ptr<const Image> denoised,
+                     nlohmann::json about, std::string metadata)
+    : number_(number),
+      image_(std::move(image)),
+      denoised_(std::move(denoised)),
+      about_(std::move(about)),
+      metadata_(std::move(metadata)) {
   about_["number"] = number_;
-  about_["layers"] = layer_names(*image_);
+  about_["layers"] = shown_layers(*image_);
+}
+
+std::optional<Image> PageFrame::layer(const std::string& name) const {
+  std::optional<Image> found;
+  if (denoised_) found = select_layer(*denoised_, name);
+  return found ? found : select_layer(*image_, name);
 }
 
 SharedBytes PageFrame::encoded(const std::string& layer, bool measured) const {
   const std::lock_guard lock(mutex_);
-  std::optional<Image> pixels = select_layer(*image_, layer);
+  std::optional<Image> pixels = this->layer(layer);
   const std::string name = pixels ? layer : "color";
   SharedBytes& bytes = encoded_[{name, measured}];
-  if (!bytes) bytes = share(encode(name, pixels ? *pixels : select_layer(*image_, name).value_or(Image()), measured));
+  if (!bytes) bytes = share(encode(name, pixels ? *pixels : this->layer(name).value_or(Image()), measured));
   return bytes;
 }
 

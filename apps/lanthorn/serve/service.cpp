@@ -12,11 +12,13 @@
 #include <optional>
 #include <utility>
 
+#include "../estimate_json.h"
 #include "../json_text.h"
 #include "../quantities.h"
 #include "../render_arguments.h"
 #include "../value_types.h"
 #include "access.h"
+#include "lanthorn/denoise.h"
 #include "lanthorn/error.h"
 #include "lanthorn/image_file.h"
 #include "lanthorn/methods.h"
@@ -85,6 +87,7 @@ ViewerEdit edit_of(const nlohmann::json& json) {
   edit.home = json.value("home", false);
   edit.moving = json.value("moving", false);
   if (json.contains("paused")) edit.paused = json.at("paused").get<bool>();
+  if (json.contains("denoise")) edit.denoise = json.at("denoise").get<bool>();
   if (json.contains("method")) edit.method = json.at("method").get<std::string>();
   if (json.contains("size")) edit.size = json.at("size").get<std::array<int, 2>>();
   if (json.contains("camera")) edit.look = look_of(json.at("camera"));
@@ -107,8 +110,8 @@ struct GreyRange {
 
 // A layer as the colours of a picture: those of one channel are grey, black where nothing was seen (0), and normals
 // from -1 to 1 become 0 to 1.
-std::optional<Image> as_colors(const Image& image, const std::string& layer, const GreyRange& range) {
-  std::optional<Image> pixels = select_layer(image, layer);
+std::optional<Image> as_colors(const PageFrame& frame, const std::string& layer, const GreyRange& range) {
+  const std::optional<Image> pixels = frame.layer(layer);
   if (!pixels) return {};
   Image colors(pixels->width, pixels->height, {"R", "G", "B"});
   const std::size_t channels = pixels->channel_count();
@@ -201,8 +204,7 @@ HttpResponse ViewService::png(const HttpRequest& request) const {
   const GreyRange range{parse_number(request.parameter("black")).value_or(0),
                         parse_number(request.parameter("white")).value_or(1)};
   if (range.black == range.white) return plain_response(HttpStatus::bad_request);
-  const std::optional<Image> colors =
-      frame ? as_colors(*frame->image(), layer.empty() ? "color" : layer, range) : std::nullopt;
+  const std::optional<Image> colors = frame ? as_colors(*frame, layer.empty() ? "color" : layer, range) : std::nullopt;
   if (!colors || std::abs(exposure) > DisplaySettings::largest_exposure)
     return plain_response(frame ? HttpStatus::bad_request : HttpStatus::unavailable);
   const DisplaySettings display{static_cast<float>(exposure),
@@ -215,7 +217,18 @@ HttpResponse ViewService::exr() const {
   const std::shared_ptr<const PageFrame> frame = viewer_.last_frame();
   if (!frame) return plain_response(HttpStatus::unavailable);
   const std::lock_guard lock(encoding_);
-  return attachment("image/x-exr", encode_exr(*frame->image(), frame->metadata()), title_ + ".exr");
+  return attachment("image/x-exr", exr_of(*frame), title_ + ".exr");
+}
+
+// Whatever is shown by now, files are denoised in full quality.
+std::vector<unsigned char> ViewService::exr_of(const PageFrame& frame) const {
+  const Image& image = *frame.image();
+  const nlohmann::json& about = frame.about();
+  if (!about.at("denoise") || about.at("coarse") || about.at("passes") < 2) return encode_exr(image, frame.metadata());
+  const DenoisedPicture denoised = denoise(image);
+  nlohmann::json metadata = nlohmann::json::parse(frame.metadata());
+  metadata["denoised_error"] = estimate_json(denoised.error);
+  return encode_exr(denoised.picture, metadata.dump());
 }
 
 HttpResponse ViewService::edit(const HttpRequest& request) const {

@@ -5,6 +5,7 @@
 
 #include <mutex>
 #include <string>
+#include <vector>
 
 #include "../output.h"
 #include "http_message.h"
@@ -25,7 +26,7 @@ class ViewService {
   /// frame (see `PageFrame::encoded`), or 204 if there is none for ten seconds; /TOKEN/picture.png?exposure=STOPS&
   /// curve=none|filmic|agx&layer=NAME and /TOKEN/picture.exr the last picture. POST /TOKEN/edit an edit as JSON: any of
   /// camera (eye, target, up), lens (fov, aperture, focus: as the options; focus_at: a pixel), environment (source,
-  /// rotation, scale), lights (factors by name), method, size, paused, moving, home. All else is not found.
+  /// rotation, scale), lights (factors by name), method, size, paused, denoise, moving, home. All else is not found.
   HttpResponse answer(const HttpRequest& request, const IsGone& is_gone) const;
 
  private:
@@ -35,6 +36,7 @@ class ViewService {
   HttpResponse frame(const HttpRequest& request, const IsGone& is_gone) const;
   HttpResponse png(const HttpRequest& request) const;
   HttpResponse exr() const;
+  std::vector<unsigned char> exr_of(const PageFrame& frame) const;
   HttpResponse edit(const HttpRequest& request) const;
 
   Viewer& viewer_;

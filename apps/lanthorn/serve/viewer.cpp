@@ -56,6 +56,11 @@ nlohmann::json to_json(const LensChanges& changes, const ViewDescription& view) 
           {"frames_subject", view.camera.subject.has_value()}};
 }
 
+nlohmann::json to_json(const std::shared_ptr<const InteractiveDenoised>& denoised) {
+  if (!denoised) return nullptr;
+  return {{"passes", denoised->passes}, {"preview", denoised->is_preview}};
+}
+
 // Without passes and time, a view refines until it changes.
 RenderOptions endless(RenderOptions options) {
   if (!options.passes && !options.seconds && !options.noise) options.passes = most_passes;
@@ -70,11 +75,12 @@ Viewer::Viewer(const SharedScene& scene, ViewerSettings settings)
       is_mirrored_(description_of(*scene).view.camera.camera_to_world.start.swaps_handedness()),
       render_(scale_lights(scene_, settings_.start.changes.lights),
               view_of(*scene_, settings_.start.changes, settings_.start.options), endless(settings_.start.options),
-              {.keeps_sums = settings_.keeps_sums}),
+              {.keeps_sums = settings_.keeps_sums, .denoises = settings_.denoises}),
       surroundings_{{settings_.start.environment.source, scene_}},
       lights_(lights_of(*scene_)),
       wanted_{settings_.start, first_view()},
       scenes_{{render_.snapshot().status.revision, wanted_}},
+      denoises_(settings_.denoises),
       watched_until_(Clock::now() + watched_time) {}
 
 void Viewer::tend() {
@@ -95,6 +101,11 @@ void Viewer::end() {
     has_ended_ = true;
   }
   render_.stop();
+}
+
+bool Viewer::denoises() const {
+  const std::lock_guard lock(mutex_);
+  return denoises_;
 }
 
 void Viewer::look() {
@@ -180,6 +191,10 @@ std::uint64_t Viewer::apply(const ViewerEdit& edit) {
   const std::uint64_t revision = submit(std::move(next), edit.moving);
   problem_.clear();
   if (edit.paused) is_paused_ = *edit.paused;
+  if (edit.denoise) {
+    denoises_ = *edit.denoise;
+    render_.denoise(denoises_);
+  }
   look();
   return revision;
 }
@@ -231,9 +246,10 @@ std::shared_ptr<const PageFrame> Viewer::frame_of(const InteractiveSnapshot& sna
   if (first_method_.empty()) first_method_ = snapshot.picture->state.integrator;
   nlohmann::json metadata = nlohmann::json::parse(snapshot.picture->state.settings)["identity"];
   metadata["passes"] = snapshot.picture->state.pass_count;
-  frame_ = std::make_shared<const PageFrame>(snapshot.number,
-                                             std::shared_ptr<const Image>(snapshot.picture, &snapshot.picture->image),
-                                             about(snapshot), metadata.dump());
+  const std::shared_ptr<const Image> image(snapshot.picture, &snapshot.picture->image);
+  std::shared_ptr<const Image> denoised;
+  if (snapshot.denoised) denoised = {snapshot.denoised, &snapshot.denoised->image};
+  frame_ = std::make_shared<const PageFrame>(snapshot.number, image, denoised, about(snapshot), metadata.dump());
   scenes_.erase(scenes_.begin(), scenes_.lower_bound(snapshot.picture->revision));
   return frame_;
 }
@@ -273,7 +289,9 @@ nlohmann::json Viewer::about(const InteractiveSnapshot& snapshot) {
           {"radius", picture.statistics.radius},
           {"volume_radius", picture.statistics.volume_radius},
           {"integrator", state.integrator},
-          {"command", settings_.command(scene, state.pass_count)},
+          {"denoise", denoises_},
+          {"denoised", to_json(snapshot.denoised)},
+          {"command", settings_.command(scene, state.pass_count, denoises_)},
           {"full_size", picture.full_size},
           {"limitation", picture.limitation},
           {"remark", picture.remark},

@@ -40,14 +40,15 @@ struct ViewerEdit {
   std::optional<Vec2> focus_at{};  ///< makes sharp what this pixel of the picture at full size sees
   std::optional<EnvironmentChoice> environment{};
   std::optional<LightFactors> lights{};
-  std::optional<bool> paused{};
+  std::optional<bool> paused{}, denoise{};
   bool moving = false;  ///< more edits will follow at once: coarse pictures will do
 };
 
 struct ViewerSettings {
-  /// The command line that renders this picture after so many passes.
-  std::function<std::string(const ViewerScene&, std::uint64_t)> command;
+  /// The command line that renders this picture after so many passes, and denoises it or not.
+  std::function<std::string(const ViewerScene&, std::uint64_t, bool)> command;
   ViewerScene start{};
+  bool denoises = false;    ///< at the start
   bool keeps_sums = false;  ///< a pass that is given up leaves no trace, so that the sums can be saved
 };
 
@@ -64,6 +65,8 @@ class Viewer {
   void end();
   /// After `end`: the sums of what was seen last; null if there is no whole pass of it.
   const RenderState* state() const { return render_.state(); }
+  /// Pictures at rest are denoised.
+  bool denoises() const;
 
   /// Returns the revision of the pictures that will show the edit. Throws Error for cameras, lenses, environments,
   /// lights, methods and sizes that cannot be.
@@ -115,7 +118,7 @@ class Viewer {
   std::string problem_;                    // with what was taken back
   std::string first_method_;
   std::optional<LookAt> home_;
-  bool is_paused_ = false, has_ended_ = false;
+  bool is_paused_ = false, denoises_, has_ended_ = false;
   Clock::time_point watched_until_{};
   std::shared_ptr<const PageFrame> frame_;
 };

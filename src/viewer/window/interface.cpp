@@ -142,6 +142,13 @@ void draw_tone(Panel& panel) {
   tip("Right click: 0");
   ImGui::Checkbox("Measure the exposure", &panel.measures_exposure);
   tip("A white surface in the light of the picture becomes white");
+  ImGui::BeginDisabled(!panel.wants_offline());
+  ImGui::Checkbox("Denoise", &panel.denoises);
+  ImGui::EndDisabled();
+  if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled))
+    ImGui::SetTooltip("%s", panel.wants_offline()
+                                ? "Pictures at rest (N): a preview while passes are rendered, full quality at the end"
+                                : "Only pictures of offline methods can be denoised");
   int curve = static_cast<int>(panel.curve);
   if (ImGui::Combo("View", &curve, "Clipped\0Filmic\0AgX\0")) panel.curve = static_cast<ToneCurve>(curve);
   ImGui::Combo("Layer", &panel.layer, "All light\0Emission\0Direct\0Indirect\0Caustic\0");
@@ -241,6 +248,7 @@ void draw_times(const Panel& panel) {
     row("Passes", std::to_string(panel.frames));
     if (!panel.left.empty()) row("Time left", panel.left);
     if (!panel.error.empty()) row("Error", panel.error);
+    if (!panel.denoised.empty()) row("Denoised", panel.denoised);
   } else {
     row("Frames in the mean", std::to_string(panel.frames));
     if (panel.frame_milliseconds > 0) row("Whole frame", milliseconds(panel.frame_milliseconds));

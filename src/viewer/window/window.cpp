@@ -88,7 +88,7 @@ void* open(const char* title, int width, int height, std::string& failure) {
   glfwGetMonitorContentScale(glfwGetPrimaryMonitor(), &window->scale, &scale_y);
   int left = 0, top = 0, widest = width, highest = height;
   glfwGetMonitorWorkarea(glfwGetPrimaryMonitor(), &left, &top, &widest, &highest);
-  constexpr float least_width = 640, least_height = 860;  // of the picture's place; of the whole panel
+  constexpr float least_width = 640, least_height = 890;  // of the picture's place; of the whole panel
   const auto scaled = [&](float pixels) { return static_cast<int>(pixels * window->scale); };
   const int window_width = std::min(std::max(width, scaled(least_width)) + scaled(panel_width), widest);
   const int window_height = std::min(std::max(height, scaled(least_height)), highest);
@@ -137,6 +137,7 @@ void read_shortcut(int key, Panel& panel, Input& input) {
   panel.wishes.save_png |= key == GLFW_KEY_P;
   panel.wishes.save_scene |= panel.can_save_scene && key == GLFW_KEY_O;
   panel.wishes.reset_camera |= key == GLFW_KEY_R;
+  if (key == GLFW_KEY_N && panel.wants_offline()) panel.denoises = !panel.denoises;
   input.forget |= key == GLFW_KEY_ESCAPE;
 }
 

@@ -12,8 +12,10 @@
 #include <utility>
 #include <variant>
 
+#include "lanthorn/denoise.h"
 #include "lanthorn/error.h"
 #include "lanthorn/session.h"
+#include "lanthorn/state.h"
 #include "support/open_box.h"
 
 namespace lanthorn::interactive_render_test {
@@ -51,10 +53,13 @@ SharedScene darker(float factor) {
   return edit_scene(*box(), edits);
 }
 
-std::vector<float> pixels_of(const SharedScene& scene, const ViewDescription& view, const RenderOptions& options) {
+Image picture_of(const SharedScene& scene, const ViewDescription& view, const RenderOptions& options) {
   Session session(scene, view, options);
   session.render();
-  return session.picture().pixels;
+  return with_noise(session.state(), session.picture());
+}
+std::vector<float> pixels_of(const SharedScene& scene, const ViewDescription& view, const RenderOptions& options) {
+  return picture_of(scene, view, options).pixels;
 }
 
 // The first snapshot of which `is_right` holds. Throws Error if there is none within a minute.
@@ -349,9 +354,86 @@ TEST(InteractiveRender, SumsCanBeSavedAfterStop) {
   ASSERT_NE(render.state(), nullptr);
   const StateSummary sums = summarize(*render.state());
   EXPECT_GT(sums.pass_count, 3u);
-  EXPECT_EQ(picture_of(*render.state()).pixels, pixels_of(box(), view_of_angle(40), small(sums.pass_count)));
+  EXPECT_EQ(with_noise(*render.state(), lanthorn::picture_of(*render.state())).pixels,
+            pixels_of(box(), view_of_angle(40), small(sums.pass_count)));
   render.edit({.view = view_of_angle(30)});
   EXPECT_EQ(render.state(), nullptr) << "not of the last edit";
+}
+
+TEST(InteractiveRender, DenoisesThePictureOfTheEnd) {
+  InteractiveRender render(box(), view_of_angle(40), small(), {.denoises = true});
+  const auto is_denoised = [](const InteractiveSnapshot& now) { return now.denoised && !now.denoised->is_preview; };
+  const InteractiveSnapshot end = await(render, is_denoised);
+  EXPECT_EQ(end.status.phase, finished);
+  EXPECT_EQ(end.denoised->passes, 3u);
+  const Image clean = with_denoised_light(denoise(picture_of(box(), view_of_angle(40), small())).picture);
+  EXPECT_EQ(end.denoised->image.channels, clean.channels);
+  EXPECT_EQ(end.denoised->image.pixels, clean.pixels);
+  EXPECT_EQ(end.picture->image.pixels, pixels_of(box(), view_of_angle(40), small())) << "the noisy picture stays";
+}
+
+TEST(InteractiveRender, PreviewsOfPicturesWithoutNoiseKeepUpWithThePasses) {
+  InteractiveRender render(box(), view_of_angle(40), small(4'000'000'000), {.denoises = true});
+  const InteractiveSnapshot first =
+      await(render, [](const InteractiveSnapshot& now) { return now.denoised != nullptr; });
+  EXPECT_TRUE(first.denoised->is_preview);
+  EXPECT_LE(first.denoised->passes, first.picture->state.pass_count);
+  EXPECT_EQ(first.denoised->image.pixels,
+            preview_without_noise(picture_of(box(), view_of_angle(40), small(first.denoised->passes))).pixels);
+}
+
+// Of passes that take longer than the interval between pictures.
+TEST(InteractiveRender, EachPreviewHasHalfAsManyPassesMore) {
+  RenderOptions options = small(4'000'000'000);
+  options.resolution = {150, 100};
+  InteractiveRender render(box(), view_of_angle(40), options, {.coarse_first = false, .denoises = true});
+  std::shared_ptr<const InteractiveDenoised> last;
+  for (int i = 0; i < 4; ++i) {
+    const auto next =
+        await(render, [&](const InteractiveSnapshot& now) { return now.denoised && now.denoised != last; }).denoised;
+    if (last) EXPECT_GE(2 * next->passes, 3 * last->passes);
+    last = next;
+  }
+}
+
+TEST(InteractiveRender, DenoisingCanBeTurnedOnAndOffAtTheEnd) {
+  InteractiveRender render(box(), view_of_angle(40), small());
+  EXPECT_FALSE(await(render, finished).denoised);
+  const auto is_denoised = [](const InteractiveSnapshot& now) { return now.denoised && !now.denoised->is_preview; };
+  render.denoise(true);
+  const InteractiveSnapshot on = await(render, is_denoised);
+  render.denoise(false);
+  const InteractiveSnapshot off = render.snapshot();
+  EXPECT_FALSE(off.denoised);
+  EXPECT_GT(off.number, on.number);
+  EXPECT_EQ(off.picture, on.picture);
+}
+
+TEST(InteractiveRender, APictureOfASinglePassStaysAsItIs) {
+  InteractiveRender render(box(), view_of_angle(40), small(1), {.denoises = true});
+  EXPECT_EQ(await(render, finished).status.problem, "");
+  std::this_thread::sleep_for(50ms);
+  EXPECT_FALSE(render.snapshot().denoised);
+  EXPECT_EQ(render.snapshot().status.phase, finished);
+}
+
+// Full quality takes ten times as long as a preview.
+TEST(InteractiveRender, AnEditGivesUpWhatIsBeingDenoised) {
+  RenderOptions options = small(2);
+  options.resolution = {800, 600};
+  InteractiveRender render(box(), view_of_angle(40), options, {.coarse_first = false, .denoises = true});
+  const InteractiveSnapshot end =
+      await(render, [](const InteractiveSnapshot& now) { return now.status.phase == finished && now.denoised; });
+  ASSERT_TRUE(end.denoised->is_preview);
+  const Clock::time_point start = Clock::now();
+  EXPECT_EQ(preview_without_noise(end.picture->image).pixels, end.denoised->image.pixels);
+  const Clock::duration preview_time = Clock::now() - start;
+  ASSERT_TRUE(render.snapshot().denoised->is_preview) << "full quality came too soon for this test";
+  const Clock::time_point edited = Clock::now();
+  render.edit({.options = small(1)});
+  const InteractiveSnapshot next = await(render, finished);
+  EXPECT_LT(Clock::now() - edited, 2 * preview_time);
+  EXPECT_FALSE(next.denoised) << "of another picture";
 }
 
 }  // namespace

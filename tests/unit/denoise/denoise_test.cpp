@@ -216,13 +216,28 @@ TEST(Denoise, KnowsItsError) {
 
 TEST(Denoise, IsTheSameForAnyNumberOfThreads) {
   const Image noisy = picture_of({150, 70, {{"direct", smooth, fifth}, {"caustic", step, fifth}}});
-  std::vector<std::vector<float>> results;
+  std::vector<std::vector<float>> results, previews;
   for (const unsigned threads : {1u, 2u, 3u}) {
     const ThreadLimit limit(threads);
     results.push_back(denoise(noisy).picture.pixels);
+    previews.push_back(preview_without_noise(noisy).pixels);
   }
   EXPECT_EQ(results[0], results[1]);
   EXPECT_EQ(results[0], results[2]);
+  EXPECT_EQ(previews[0], previews[1]);
+  EXPECT_EQ(previews[0], previews[2]);
+}
+
+// Light of media is in other layers: it is not counted twice.
+TEST(Denoise, APreviewIsTheWholePictureWithLessNoise) {
+  const auto light = [](int x, int y) { return smooth(x, y) + step(x, y); };
+  const Image noisy =
+      picture_of({96, 64, {{"direct", smooth, fifth}, {"caustic", step, fifth}, {"media", smooth, fifth}}});
+  const Image preview = preview_without_noise(noisy);
+  EXPECT_EQ(preview.channels, (std::vector<std::string>{"R", "G", "B"}));
+  const double before = mean_square(noisy, "", light), after = mean_square(preview, "", light);
+  EXPECT_GT(before / after, 6);
+  EXPECT_LT(mean_square(denoise(noisy).picture, "denoised.", light), after);
 }
 
 // What is right of a tile's border does not depend on what is far left of it.
@@ -248,6 +263,10 @@ TEST(Denoise, TakesAnySizeAndWindow) {
     EXPECT_EQ(out.width, width);
     EXPECT_EQ(out.window, noisy.window);
     for (const float v : out.pixels) EXPECT_TRUE(std::isfinite(v));
+    const Image preview = preview_without_noise(noisy);
+    EXPECT_EQ(preview.width, width);
+    EXPECT_EQ(preview.window, noisy.window);
+    for (const float v : preview.pixels) EXPECT_TRUE(std::isfinite(v));
   }
 }
 
@@ -276,10 +295,12 @@ TEST(Denoise, ReplacesWhatWasDenoisedBefore) {
 
 TEST(Denoise, RefusesPicturesWithoutHalves) {
   EXPECT_THROW(denoise(Image(4, 4, {"R", "G", "B"})), Error);
+  EXPECT_THROW(preview_without_noise(Image(4, 4, {"R", "G", "B"})), Error);
   Image single = picture_of({8, 8, {{"direct", smooth, fifth}}});
   for (int y = 0; y < 8; ++y)
     for (int x = 0; x < 8; ++x) single.at(x, y, *single.find_channel("noise.share")) = 1;
   EXPECT_THROW(denoise(single), Error);
+  EXPECT_THROW(preview_without_noise(single), Error);
 }
 
 // Files from which another program has left out channels.

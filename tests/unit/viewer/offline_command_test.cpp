@@ -50,6 +50,13 @@ TEST(OfflineRender, IsByTheMethodThatShowsTheSame) {
   EXPECT_TRUE(offline_render(shown("splitsum"), options).options.set.empty());
 }
 
+TEST(OfflineRender, IsDenoisedAsThePictureIs) {
+  ShownPicture picture = shown("vcm");
+  EXPECT_FALSE(offline_render(picture, {}).denoises);
+  picture.denoises = true;
+  EXPECT_TRUE(offline_render(picture, {}).denoises);
+}
+
 // What the viewer was started with decides the picture, too.
 TEST(OfflineRender, HasWhatTheViewerWasStartedWith) {
   ViewerOptions options;

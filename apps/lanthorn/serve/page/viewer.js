@@ -287,6 +287,9 @@ function showProgress(about) {
   byId('left').hidden = byId('left-term').hidden = !(about.seconds_left > 0);
   byId('left').textContent = time(about.seconds_left ?? 0);
   byId('error').textContent = about.error || '–';
+  if (!isSending) byId('denoise').checked = about.denoise;
+  byId('denoised').hidden = byId('denoised-term').hidden = !about.denoised;
+  if (about.denoised) byId('denoised').textContent = `${about.denoised.passes} passes${about.denoised.preview ? ', preview' : ''}`;
   byId('samples').textContent = grouped(about.samples);
   for (const id of ['photons', 'photons-term']) byId(id).hidden = !about.traces_photons;
   byId('photons').textContent = grouped(about.photons);
@@ -482,6 +485,7 @@ byId('curve').addEventListener('change', (event) => {
   display.curve = event.target.value;
   draw();
 });
+byId('denoise').addEventListener('change', (event) => edit({denoise: event.target.checked}));
 byId('layer').addEventListener('change', (event) => chooseLayer(event.target.value));
 byId('nearer').addEventListener('click', () => steer(approach(0.8)));
 byId('farther').addEventListener('click', () => steer(approach(1.25)));

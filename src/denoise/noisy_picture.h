@@ -1,0 +1,74 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// A rendered picture as the denoiser reads it: tile by tile, as halves of the passes.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "denoise/layer.h"
+#include "lanthorn/image.h"
+
+namespace lanthorn::denoising {
+
+inline constexpr std::array<const char*, 3> components{"R", "G", "B"};
+
+/// Three channels that light is regressed over.
+struct FeatureLayer {
+  const char* name;
+  std::array<const char*, 3> components;
+};
+/// The albedo is the first.
+inline constexpr std::array<FeatureLayer, 3> feature_layers{FeatureLayer{"albedo", {"R", "G", "B"}},
+                                                            FeatureLayer{"normal", {"X", "Y", "Z"}},
+                                                            FeatureLayer{"position", {"X", "Y", "Z"}}};
+
+bool has_layer(const Image& picture, const std::string& layer, const std::array<const char*, 3>& names);
+/// The layers of light whose halves are known.
+std::vector<std::string> light_layers(const Image& picture);
+/// True if all layers are there that `NoisyPicture` reads.
+bool has_halves(const Image& picture);
+/// True if the light of this layer is in others, too.
+bool is_repeated(const std::string& layer);
+
+/// Pixels that are written, and those around them that they are denoised with.
+struct Tile {
+  int x, y, width, height;
+  int outer_x, outer_y, outer_width, outer_height;
+};
+/// They cover a picture of this size.
+std::vector<Tile> tiles_of(int width, int height);
+
+/// Reads pixels that are not finite as black.
+class NoisyPicture {
+ public:
+  /// `picture` has halves and lives longer. Throws Error if a half has no passes, or if layers are missing.
+  explicit NoisyPicture(const Image& picture);
+
+  const Image& image() const { return picture_; }
+  std::size_t pixel_count() const { return picture_.pixels.size() / picture_.channel_count(); }
+  const Shares& shares() const { return shares_; }
+  double fewest_passes() const { return fewest_passes_; }  ///< of a half
+
+  /// A channel of the tile with its margin.
+  Plane read(const Tile& tile, const std::string& name) const;
+  Halves read_halves(const Tile& tile, const std::string& layer, const std::array<const char*, 3>& names) const;
+  /// The square of the light around each pixel, as errors are relative to it (`ErrorEstimate`).
+  Plane scale_of(const Tile& tile) const;
+  /// Factors that divide light by the albedo of these features.
+  ColorPlanes demodulation_of(const std::array<FeaturePlanes, 2>& features) const;
+
+ private:
+  std::size_t channel_of(const std::string& name) const { return *picture_.find_channel(name); }
+  // Layers may be missing from files that other programs have written. `light`: of color, all pixels.
+  void check_sum(double light) const;
+
+  const Image& picture_;
+  Shares shares_{};
+  double fewest_passes_ = 0;
+  float mean_ = 0;
+};
+
+}  // namespace lanthorn::denoising
