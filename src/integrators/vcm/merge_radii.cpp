@@ -34,7 +34,7 @@ MergeShrinks::MergeShrinks(const UniformityTests& tests, double alpha, std::uint
   const auto wide = [&](std::uint32_t in_pass) { return area_by(0.9, in_pass); };
   const std::uint32_t last = std::min(pass, UniformityTests::counted_passes);
   for (unsigned history = 0; history < UniformityTests::histories; ++history) {
-    float area = wide(std::min(last, UniformityTests::pass_of_test(0) - 1));
+    float area = pass == 0 ? narrow(0) : wide(0);
     for (unsigned t = 0; t < UniformityTests::tests && UniformityTests::pass_of_test(t) <= last; ++t) {
       const std::uint32_t until = std::min(last, UniformityTests::pass_of_test(t + 1) - 1);
       area = (history >> t & 1) != 0 ? std::min(area, wide(until)) : std::max(area / 2, narrow(until));

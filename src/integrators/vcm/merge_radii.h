@@ -43,9 +43,9 @@ float merge_radius_shrink(double alpha, std::uint32_t pass, double light_paths);
 /// The radii of a pass on surfaces over those of the first pass: one number for all pixels, or one for each.
 ///
 /// A wide disc has little noise, and no bias where the density of photons is uniform. There radii hardly need to
-/// shrink: after each test that a pixel passes, they follow the schedule with α = .9, so that bias that no test sees
-/// vanishes, too. After each test that it fails, the area is halved, until it is that of the schedule with `alpha`, α <
-/// .9. After the last test all radii shrink by this schedule.
+/// shrink: after each test that a pixel passes, they follow the schedule with α = .9. After each test that it fails,
+/// the area is halved, until it is that of the schedule with `alpha`, α < .9. Before the first test and after the last
+/// one all radii shrink by this schedule, so that all bias vanishes.
 class MergeShrinks {
  public:
   /// For all pixels.

@@ -27,10 +27,10 @@ class UniformityTests {
  public:
   static constexpr std::size_t bytes_per_pixel = sizeof(Counts) + sizeof(std::uint8_t);
   static constexpr std::uint32_t counted_passes = 16;  ///< whose photons are counted
-  static constexpr unsigned tests = 4;
+  static constexpr unsigned tests = 5;
   static constexpr unsigned histories = 1u << tests;  ///< of a pixel: each test passed or failed
   /// The first pass whose radii depend on test `t`: those before it are counted for the test.
-  static constexpr std::uint32_t pass_of_test(unsigned t) { return 2u << t; }
+  static constexpr std::uint32_t pass_of_test(unsigned t) { return 1u << t; }
 
   explicit UniformityTests(const PixelWindow& window);
 
