@@ -38,7 +38,6 @@ MergeShrinks::MergeShrinks(const UniformityTests& tests, double alpha, std::uint
     for (unsigned t = 0; t < UniformityTests::tests && UniformityTests::pass_of_test(t) <= last; ++t) {
       const std::uint32_t until = std::min(last, UniformityTests::pass_of_test(t + 1) - 1);
       area = (history >> t & 1) != 0 ? std::min(area, wide(until)) : std::max(area / 2, narrow(until));
-      done_ |= 1u << t;
     }
     by_history_[history] = std::sqrt(area * narrow(pass) / narrow(last));
   }

@@ -49,18 +49,18 @@ float merge_radius_shrink(double alpha, std::uint32_t pass, double light_paths);
 class MergeShrinks {
  public:
   /// For all pixels.
-  explicit MergeShrinks(float shrink) { by_history_[0] = shrink; }
+  explicit MergeShrinks(float shrink) { by_history_.fill(shrink); }
   /// For each pixel by its tests before the pass, which this object keeps a reference to. `light_paths`: as of
   /// merge_radius_shrink.
   MergeShrinks(const UniformityTests& tests, double alpha, std::uint32_t pass, double light_paths);
 
-  float at(std::uint32_t pixel) const { return tests_ ? by_history_[tests_->passed(pixel) & done_] : by_history_[0]; }
-  float largest() const { return by_history_[done_]; }
+  float at(std::uint32_t pixel) const { return by_history_[tests_ ? tests_->passed(pixel) : 0]; }
+  float largest() const { return by_history_.back(); }
   float mean() const;
 
  private:
   const UniformityTests* tests_ = nullptr;
-  unsigned done_ = 0;  // bits, by test
+  // By the results of all tests; those of later passes change nothing.
   std::array<float, UniformityTests::histories> by_history_{};
 };
 

@@ -103,7 +103,7 @@ class VertexConnectionAndMerging final : public Integrator {
     if (settings_.chooses_effort && effort.light_paths() > 0 && effort.merges())
       tests_.emplace(prepared_->radii.window());
   }
-  // They spare a resumed render the passes that it would have to trace for them.
+  // The results of the tests spare a resumed render the passes that it would have to trace for them.
   std::vector<std::byte> save() const override {
     return tests_ && tests_->are_done() ? tests_->save() : std::vector<std::byte>();
   }
