@@ -107,7 +107,8 @@ class Integrator {
   virtual bool passes_are_independent() const { return true; }
   /// Peak memory with these settings. Zero for methods that do not store light paths.
   virtual MemoryUse memory_use(const RenderSettings& /*settings*/) const { return {}; }
-  /// State that later passes depend on, beyond the film.
+  /// State that later passes depend on, beyond the film. If passes are independent, it only spares them work, and may
+  /// be missing.
   virtual std::vector<std::byte> save() const { return {}; }
   /// Takes what `save` returned, after `prepare`. The bytes may come from a file: throws Error unless they are
   /// possible.

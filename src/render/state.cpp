@@ -529,7 +529,6 @@ RenderState merge_states(const RenderState& a, const RenderState& b) {
   if (const auto difference = identity_difference(a.settings, b.settings))
     throw Error(fmt::format("cannot merge: the renders differ in {}", *difference));
   if (!a.film.compatible(b.film)) throw Error("cannot merge: the films differ in size, scale or contents");
-  if (a.integrator_state != b.integrator_state) throw Error("cannot merge: the integrators' states differ");
   std::vector<PassRange> ranges = a.passes;
   ranges.insert(ranges.end(), b.passes.begin(), b.passes.end());
   auto passes = joined(std::move(ranges));
@@ -537,6 +536,7 @@ RenderState merge_states(const RenderState& a, const RenderState& b) {
 
   RenderState merged = a;
   merged.film.merge(b.film);
+  merged.integrator_state = std::max(a.integrator_state, b.integrator_state);  // any that is not empty serves
   merged.passes = std::move(*passes);
   merged.seconds = coarse(a.seconds) + coarse(b.seconds);
   merged.eye += b.eye;

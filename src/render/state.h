@@ -21,7 +21,7 @@ struct RenderState {
   Film film;
   std::vector<PassRange> passes;            ///< done; sorted, disjoint, not touching, none empty
   std::string integrator;                   ///< its name in `lanthorn list`
-  std::vector<std::byte> integrator_state;  ///< what the integrator saves; empty if its passes are independent
+  std::vector<std::byte> integrator_state;  ///< what the integrator saves
   /// The text of a JSON object. Its member `identity` is an object with everything that decides the picture: hashes of
   /// the scene and its files, seed, integrator and its parameters, colour mode, resolution, crop and so on. States can
   /// be resumed or merged only if their identities are equal. The other members are information.

@@ -117,6 +117,32 @@ TEST_P(EveryMethod, BytesDoNotDependOnThreadsResumingOrShards) {
   EXPECT_EQ(expected, encode_state(merge_states(merge_states(third, first), second)));
 }
 
+// Radii of `auto` depend on the photons of the first 16 passes: of those that are rendered, traced once more by a shard
+// that begins later, or known from a saved state.
+TEST(Determinism, RadiiOfAutoAreThoseOfItsFirstPasses) {
+  const auto render = [](PassRange passes, const RenderState& resumed = {}) {
+    RenderOptions options = test::options_for("auto", 0, 7);
+    options.passes.reset();
+    options.pass_range = passes;
+    options.photons = 2000;
+    options.max_depth = 6;
+    return test::render_state(test_scene(), options, resumed);
+  };
+  const RenderState whole = render({0, 18}), first = render({0, 16}), last = render({16, 18});
+  const std::vector<std::byte> expected = encode_state(whole);
+  EXPECT_EQ(whole.integrator_state.size(), first.film.pixel_count()) << "the filter does not reach beyond a pixel";
+  EXPECT_EQ(expected, encode_state(render({0, 18}, first)));
+  EXPECT_EQ(expected, encode_state(merge_states(first, last)));
+  EXPECT_EQ(expected, encode_state(render({0, 18}, last)));
+  EXPECT_EQ(expected, encode_state(merge_states(merge_states(render({0, 5}), last), render({5, 16}))));
+
+  RenderState forgotten = first, other = first;
+  forgotten.integrator_state.clear();
+  EXPECT_EQ(expected, encode_state(render({0, 18}, forgotten)));
+  for (std::byte& b : other.integrator_state) b ^= std::byte{31};
+  EXPECT_NE(expected, encode_state(render({0, 18}, other))) << "the saved results are used";
+}
+
 TEST(Determinism, SeedsDiffer) {
   for (const IntegratorInfo& info : integrator_registry()) {
     RenderOptions options = test::options_for(info.name, 1, 7);

@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Progressive photon mapping: photons gathered at hit points and hit points found by photons give the same sums, and
 // drawing hit points anew in each pass beats keeping them.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -435,6 +437,35 @@ Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-1 0 -1 1 0 -1 
       EXPECT_TRUE(test::within(*measured.bias_slope, expected.bias, 0.2));
     }
   }
+}
+
+// Seen from above: fins stand on the left half of a floor that few photons reach.
+TEST(AutoRadii, ShrinkBesideObstaclesWherePhotonsAreFew) {
+  std::string text =
+      "LookAt 0 4 0  0 0 0  0 0 -1\nCamera \"perspective\" \"float fov\" [28]\n"
+      "Film \"rgb\" \"integer xresolution\" [32] \"integer yresolution\" [32]\nPixelFilter \"box\"\nWorldBegin\n"
+      "LightSource \"point\" \"rgb I\" [4 4 4] \"point3 from\" [0 1.5 0]\n"
+      "Material \"diffuse\" \"rgb reflectance\" [0.7 0.7 0.7]\n" +
+      test::quad("-1 0 1  1 0 1  1 0 -1  -1 0 -1");
+  for (int i = 1; i < 10; ++i) text += test::quad(fmt::format("{0} 0 1  {0} 0 -1  {0} 0.05 -1  {0} 0.05 1", i / 10.0));
+  // Glass, so that `auto` merges everywhere.
+  text +=
+      "AttributeBegin\nMaterial \"dielectric\"\nTranslate 1.5 1 0\nShape \"sphere\" \"float radius\" "
+      "[0.1]\nAttributeEnd\n";
+  const Scene scene = test::scene_from_text(text);
+  RenderOptions options = test::options_for("auto", 16);
+  options.photons = 1000;
+  const std::vector<std::byte> passed = test::render_state(scene, options).integrator_state;
+  ASSERT_EQ(passed.size(), 32u * 32u);
+  const auto share_that_keeps = [&](std::size_t first_column, std::size_t columns) {
+    double kept = 0;
+    for (std::size_t y = 4; y < 28; ++y)
+      for (std::size_t x = first_column; x < first_column + columns; ++x)
+        kept += passed[32 * y + x] == std::byte{31} ? 1 : 0;
+    return kept / (24.0 * static_cast<double>(columns));
+  };
+  EXPECT_LT(share_that_keeps(4, 10), 0.05);
+  EXPECT_GT(share_that_keeps(18, 10), 0.9);
 }
 
 }  // namespace

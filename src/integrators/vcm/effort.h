@@ -60,6 +60,11 @@ class Effort {
   bool sees() const {
     return blocks_.empty() || std::any_of(blocks_.begin(), blocks_.end(), [](const PlaceEffort& p) { return p.sees; });
   }
+  /// Whether photons are merged on surfaces anywhere.
+  bool merges() const {
+    return blocks_.empty() ||
+           std::any_of(blocks_.begin(), blocks_.end(), [](const PlaceEffort& p) { return p.merges; });
+  }
   /// One line: what was found, and what was chosen.
   std::string describe() const;
   /// The numbers of the report, as the text of a JSON object.

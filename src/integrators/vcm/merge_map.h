@@ -93,6 +93,13 @@ class MergeMap {
   std::vector<MergePhoton> photons_;
 };
 
+/// Where a photon lies in the disc of a merge.
+struct PlaceInDisc {
+  Vec3 offset;    ///< from the centre, m
+  float u;        ///< squared distance over that of the edge
+  float density;  ///< of the kernel, 1/m²
+};
+
 /// The photons that a pass merges on surfaces: one map for each class of flux, since discs grow with the flux.
 class SurfaceMerges {
  public:
@@ -101,9 +108,8 @@ class SurfaceMerges {
       maps_.emplace_back(vertices, least_depth, merge_kernel.support(radii.largest(c)), c);
   }
 
-  /// Calls `visit(photon, hit, density, bias_share)` for each photon that meets the vertex of an eye path through
-  /// `raster`, in a path of at most `max_depth` scatterings. `density`: of the kernel, 1/m²; `bias_share`: see
-  /// Kernel.
+  /// Calls `visit(photon, hit, place)` for each photon that meets the vertex of an eye path through `raster`, in a path
+  /// of at most `max_depth` scatterings. `place`: see PlaceInDisc.
   template <class Visit>
   void for_each_at(const GatherVertex& gather, const Vec2& raster, int max_depth, Visit&& visit) const {
     const Point& at = gather.vertex().at.position;
@@ -111,7 +117,7 @@ class SurfaceMerges {
       const float support = merge_kernel.support(radii_.at(raster, static_cast<int>(c))), support2 = support * support;
       maps_[c].for_each_near(at, support, [&](const MergePhoton& photon, const Point& p, float dist2) {
         const auto hit = gather.meet<true>(PlacedMergePhoton{photon, p, max_depth}, support);
-        if (hit) visit(photon, *hit, merge_kernel.weight(dist2, support2), merge_kernel.bias_share(dist2 / support2));
+        if (hit) visit(photon, *hit, PlaceInDisc{p - at, dist2 / support2, merge_kernel.weight(dist2, support2)});
       });
     }
   }

@@ -25,6 +25,31 @@ float merge_radius_shrink(double alpha, std::uint32_t pass, double light_paths) 
   return static_cast<float>(std::sqrt(RadiusSchedule{1, alpha}.shrink2_after(passes)));
 }
 
+MergeShrinks::MergeShrinks(const UniformityTests& tests, double alpha, std::uint32_t pass, double light_paths)
+    : tests_(&tests) {
+  const auto area_by = [&](double schedule, std::uint32_t in_pass) {
+    return sqr(merge_radius_shrink(schedule, in_pass, light_paths));
+  };
+  const auto narrow = [&](std::uint32_t in_pass) { return area_by(alpha, in_pass); };
+  const auto wide = [&](std::uint32_t in_pass) { return area_by(0.9, in_pass); };
+  const std::uint32_t last = std::min(pass, UniformityTests::counted_passes);
+  for (unsigned history = 0; history < UniformityTests::histories; ++history) {
+    float area = pass == 0 ? narrow(0) : wide(0);
+    for (unsigned t = 0; t < UniformityTests::tests && UniformityTests::pass_of_test(t) <= last; ++t) {
+      const std::uint32_t until = std::min(last, UniformityTests::pass_of_test(t + 1) - 1);
+      area = (history >> t & 1) != 0 ? std::min(area, wide(until)) : std::max(area / 2, narrow(until));
+    }
+    by_history_[history] = std::sqrt(area * narrow(pass) / narrow(last));
+  }
+}
+
+float MergeShrinks::mean() const {
+  if (!tests_) return by_history_[0];
+  double sum = 0;
+  for (std::uint32_t pixel = 0; pixel < tests_->pixel_count(); ++pixel) sum += static_cast<double>(at(pixel));
+  return static_cast<float>(sum / static_cast<double>(tests_->pixel_count()));
+}
+
 float VolumeKernels::widest_radius() const {
   float widest = 0;
   for (const std::optional<KernelIn>* kernel : {&point, &beam, &photon_beam, &beams})

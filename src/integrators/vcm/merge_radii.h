@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "integrators/vcm/uniformity_tests.h"
 #include "integrators/vcm/vcm_settings.h"
 #include "path/mis.h"
 #include "path/render_job.h"
@@ -26,31 +27,62 @@ class FirstMergeRadii {
   FirstMergeRadii() = default;
   FirstMergeRadii(const RenderJob& job, const VcmSettings& settings, const LightGuide* guide);
 
+  /// Of the pixels that have radii of their own: eye paths may go through places beside the picture.
+  const PixelWindow& window() const { return window_; }
+
  private:
   friend class MergeRadii;
   FirstRadius radius_;
-  PixelWindow window_;  // of `radius_`: paths may go through places beside that of the picture
+  PixelWindow window_;
 };
 
 /// By how much the radii of merging on surfaces have shrunk in a pass whose light paths are `light_paths` times as many
 /// as those that the first radii are measured for: radii depend on the photons of all passes so far.
 float merge_radius_shrink(double alpha, std::uint32_t pass, double light_paths);
 
+/// The radii of a pass on surfaces over those of the first pass: one number for all pixels, or one for each.
+///
+/// A wide disc has little noise, and no bias where the density of photons is uniform. There radii hardly need to
+/// shrink: after each test that a pixel passes, they follow the schedule with α = .9. After each test that it fails,
+/// the area is halved, until it is that of the schedule with `alpha`, α < .9. Before the first test and after the last
+/// one all radii shrink by this schedule, so that all bias vanishes.
+class MergeShrinks {
+ public:
+  /// For all pixels.
+  explicit MergeShrinks(float shrink) { by_history_.fill(shrink); }
+  /// For each pixel by its tests before the pass, which this object keeps a reference to. `light_paths`: as of
+  /// merge_radius_shrink.
+  MergeShrinks(const UniformityTests& tests, double alpha, std::uint32_t pass, double light_paths);
+
+  float at(std::uint32_t pixel) const { return by_history_[tests_ ? tests_->passed(pixel) : 0]; }
+  float largest() const { return by_history_.back(); }
+  float mean() const;
+
+ private:
+  const UniformityTests* tests_ = nullptr;
+  // By the results of all tests; those of later passes change nothing.
+  std::array<float, UniformityTests::histories> by_history_{};
+};
+
 /// The radii of a pass on surfaces, m. Keeps a reference to those of the first.
 class MergeRadii {
  public:
-  /// `shrink`: of all radii since the first pass.
-  MergeRadii(const FirstMergeRadii& first, float shrink) : radii_(first.radius_, shrink), window_(first.window_) {}
+  MergeRadii(const FirstMergeRadii& first, const MergeShrinks& shrinks) : first_(&first), shrinks_(shrinks) {}
 
-  const FluxClasses& classes() const { return radii_.classes(); }
+  const FluxClasses& classes() const { return first_->radius_.classes(); }
+  /// The pixel whose radius eye paths through this place on the film have.
+  std::uint32_t pixel_at(const Vec2& raster) const { return first_->window_.pixel_at(raster); }
   /// Of all merges of eye paths through this place on the film with photons of a class.
-  float at(const Vec2& raster, int flux_class = 0) const { return radii_.at(window_.pixel_at(raster), flux_class); }
-  float largest(int flux_class) const { return radii_.largest(flux_class); }
-  float typical() const { return radii_.typical(); }
+  float at(const Vec2& raster, int flux_class = 0) const {
+    const std::uint32_t pixel = pixel_at(raster);
+    return PassRadii(first_->radius_, shrinks_.at(pixel)).at(pixel, flux_class);
+  }
+  float largest(int flux_class) const { return PassRadii(first_->radius_, shrinks_.largest()).largest(flux_class); }
+  float typical() const { return PassRadii(first_->radius_, shrinks_.mean()).typical(); }
 
  private:
-  PassRadii radii_;
-  PixelWindow window_;
+  const FirstMergeRadii* first_;
+  MergeShrinks shrinks_;
 };
 
 /// The estimators that a method merges by in media, with their radii of a pass. Empty: not used.

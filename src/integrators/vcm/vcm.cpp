@@ -13,9 +13,13 @@
 //
 // Each has the weight of the balance heuristic, w = 1 / (w_light + 1 + w_eye) (TR eq. 37). path/mis.h derives both
 // terms from sums that both kinds of walk carry from vertex to vertex, d_VCM, d_VC and d_VM (TR eqs. 31-36): `Subpath`.
+#include <concepts>
+#include <cstddef>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "integrators/integrator.h"
 #include "integrators/vcm/vcm_pass.h"
@@ -46,6 +50,37 @@ RayCounts trace_eye_paths(const VcmPass& pass, Film& film) {
       });
 }
 
+// Ends an eye path at its first merge.
+struct UntilFirstMerge {
+  EyeVisitor visitor;
+
+  Continuation operator()(const SurfaceVertex& v) {
+    const Continuation continuation = visitor(v);
+    return visitor.has_merged() ? Continuation::stop() : continuation;
+  }
+  template <class Event>
+  requires std::invocable<EyeVisitor&, const Event&>
+  auto operator()(const Event& event) { return visitor(event); }
+};
+
+// Traces as much of a pass as its counts of photons depend on.
+void count_photons(VcmPass& pass) {
+  const RenderJob& job = pass.job;
+  pass.sees = false;
+  trace_light_paths(pass, nullptr, [](const auto&...) {});
+  PassReport unused;
+  pass.build_merges(unused);
+  for_each_pixel(job.view.window, [&](const PixelPlace& place, RayCounts& counts) {
+    Sampler sampler = eye_sampler(job, place, pass.number);
+    const PathDraw draw = pass.draw_of_eye_path(sampler);
+    const EyeStart start = start_eye_path(job.view, place, draw.time, sampler);
+    LightLayers layers(draw.w);
+    const PathContext path{job.scene, draw.w, sampler, counts, {pass.max_depth(), pass.settings.roulette_depth}};
+    walk_from_camera(path, start.camera, job.view.medium,
+                     UntilFirstMerge{EyeVisitor(path, pass, start.raster, layers)});
+  });
+}
+
 class VertexConnectionAndMerging final : public Integrator {
  public:
   explicit VertexConnectionAndMerging(const VcmSettings& settings) : settings_(settings) {}
@@ -61,7 +96,20 @@ class VertexConnectionAndMerging final : public Integrator {
     return settings_.chooses_effort && prepared_ ? prepared_->effort.findings() : std::string();
   }
   bool passes_share_wavelengths() const override { return true; }
-  void prepare(const RenderJob& job) override { prepared_.emplace(job, settings_); }
+  void prepare(const RenderJob& job) override {
+    prepared_.emplace(job, settings_);
+    tests_.reset();
+    const Effort& effort = prepared_->effort;
+    if (settings_.chooses_effort && effort.light_paths() > 0 && effort.merges())
+      tests_.emplace(prepared_->radii.window());
+  }
+  // The results of the tests spare a resumed render the passes that it would have to trace for them.
+  std::vector<std::byte> save() const override {
+    return tests_ && tests_->are_done() ? tests_->save() : std::vector<std::byte>();
+  }
+  void load(std::span<const std::byte> results) override {
+    if (tests_) tests_->load(results);
+  }
 
   PassReport render_pass(const RenderJob& job, std::uint32_t number, Film& film, const PhaseObserver& begin) override {
     if (prepared_->effort.light_paths() == 0) {  // path tracing
@@ -71,7 +119,8 @@ class VertexConnectionAndMerging final : public Integrator {
       return report;
     }
     begin(Phase::photons);
-    VcmPass pass(job, number, settings_, *prepared_, vertices_);
+    if (tests_) count_photons_before(job, number);
+    VcmPass pass(job, number, settings_, *prepared_, vertices_, tests_ ? &*tests_ : nullptr);
     PassReport report;
     report.light_paths = pass.light_paths.total();
     report.rays = trace_light_paths(pass, film);
@@ -81,13 +130,24 @@ class VertexConnectionAndMerging final : public Integrator {
     }
     begin(Phase::eye);
     report.rays += trace_eye_paths(pass, film);
+    if (pass.uniformity) pass.uniformity->end_pass();
     return report;
   }
 
  private:
+  // The radii of a pass depend on the first passes. Those before a shard are not rendered here.
+  void count_photons_before(const RenderJob& job, std::uint32_t number) {
+    while (!tests_->are_done() && tests_->passes_counted() < number) {
+      VcmPass pass(job, tests_->passes_counted(), settings_, *prepared_, vertices_, &*tests_);
+      count_photons(pass);
+      tests_->end_pass();
+    }
+  }
+
   VcmSettings settings_;
   std::optional<VcmPreparation> prepared_;
-  LightVertices vertices_;  // their memory serves all passes
+  std::optional<UniformityTests> tests_;  // if radii shrink pixel by pixel
+  LightVertices vertices_;                // their memory serves all passes
 };
 
 }  // namespace

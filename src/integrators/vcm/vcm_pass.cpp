@@ -11,6 +11,17 @@
 
 namespace lanthorn {
 
+namespace {
+
+MergeShrinks shrinks_of_pass(const RenderJob& job, std::uint32_t number, double alpha, const Effort& effort,
+                             const UniformityTests* tests) {
+  const double light_paths = static_cast<double>(effort.light_paths()) / static_cast<double>(job.settings.photons);
+  return tests ? MergeShrinks(*tests, alpha, number, light_paths)
+               : MergeShrinks(merge_radius_shrink(alpha, number, light_paths));
+}
+
+}  // namespace
+
 VcmPreparation::VcmPreparation(const RenderJob& job, const VcmSettings& settings)
     : emission(settings.switches.merging ? choose_emission(settings.emission, PhotonUse::merging, job) : Emission()),
       densities(job.scene, emission.starts()),
@@ -24,7 +35,7 @@ VcmPreparation::VcmPreparation(const RenderJob& job, const VcmSettings& settings
 }
 
 VcmPass::VcmPass(const RenderJob& job_, std::uint32_t number_, const VcmSettings& settings_,
-                 const VcmPreparation& prepared, LightVertices& vertices_)
+                 const VcmPreparation& prepared, LightVertices& vertices_, UniformityTests* tests)
     : job(job_),
       settings(settings_),
       effort(prepared.effort),
@@ -36,9 +47,8 @@ VcmPass::VcmPass(const RenderJob& job_, std::uint32_t number_, const VcmSettings
       sees(connects() && effort.sees()),
       beam_share(volume_kernels.uses_beams() ? share_of_beams(light_paths.total()) : 0.0f),
       bidirectional{job.view, {}, prepared.densities},
-      radii(prepared.radii,
-            merge_radius_shrink(settings.alpha, number,
-                                static_cast<double>(effort.light_paths()) / static_cast<double>(job.settings.photons))),
+      uniformity(tests && !tests->are_done() && number == tests->passes_counted() ? tests : nullptr),
+      radii(prepared.radii, shrinks_of_pass(job, number, settings.alpha, effort, tests)),
       vertices(vertices_) {
   const auto paths = static_cast<float>(light_paths.total());
   bidirectional.techniques = {.light_paths = paths,

@@ -33,7 +33,7 @@ struct VcmPreparation {
   VcmPreparation& operator=(const VcmPreparation&) = delete;
 };
 
-/// One pass. Keeps references to all that it is made from.
+/// One pass. Keeps references to all that it is made from. `tests`: see MergeShrinks; null if all radii shrink alike.
 struct VcmPass {
   const RenderJob& job;
   const VcmSettings& settings;
@@ -45,6 +45,7 @@ struct VcmPass {
   bool sees;                    ///< light paths are connected to the lens somewhere
   float beam_share;             ///< of light paths whose flights are kept
   Bidirectional bidirectional;  ///< but η, which is each pixel's own
+  UniformityTests* uniformity;  ///< to be told of the photons of this pass; null: they are not counted
   MergeRadii radii;
   LightVertices& vertices;
   // Of the light paths, once these are traced:
@@ -52,7 +53,7 @@ struct VcmPass {
   std::optional<VolumeMerges> volume_merges;  ///< none if there are none in media
 
   VcmPass(const RenderJob& job, std::uint32_t number, const VcmSettings& settings, const VcmPreparation& prepared,
-          LightVertices& vertices);
+          LightVertices& vertices, UniformityTests* tests = nullptr);
   /// Sorts the vertices of the light paths for merging.
   void build_merges(PassReport& report);
 

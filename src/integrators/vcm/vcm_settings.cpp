@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/parameters.h"
+#include "integrators/vcm/uniformity_tests.h"
 #include "lanthorn/error.h"
 #include "path/light_vertices.h"
 #include "photon/media/volume_radius.h"
@@ -102,7 +103,7 @@ MemoryUse VcmSettings::memory_use() const {
   const double most_light_paths = chooses_effort ? 4 : 1;  // over those of `RenderSettings::photons`
   return {.per_photon = most_light_paths * (of_vertex + merged),
           .per_light_path = most_light_paths * bytes_per_light_path,
-          .per_pixel = sizeof(float),
+          .per_pixel = static_cast<double>(sizeof(float) + (chooses_effort ? UniformityTests::bytes_per_pixel : 0)),
           .first_depth = 1,
           .media = MediumRecords::points,
           .per_medium_photon =

@@ -13,6 +13,7 @@
 #include "path/light_layers.h"
 #include "path/splat.h"
 #include "photon/flux_classes.h"
+#include "photon/gather/flat_disc.h"
 #include "photon/photon_pass.h"
 
 namespace lanthorn {
@@ -159,6 +160,9 @@ class EyeVisitor {
     add_hit(v, hit_environment(path_, bidirectional_, v, subpath_), v.state.depth > 0);
   }
 
+  /// Whether it has looked for photons on a surface.
+  bool has_merged() const { return has_merged_; }
+
  private:
   // Merging alone leaves to the walk what no photon can bring: light seen directly or through delta scatterings.
   bool hits_count(const WalkState& state) const { return pass_.connects() || state.non_delta == 0; }
@@ -203,17 +207,23 @@ class EyeVisitor {
   void merge(const SurfaceVertex& v) {
     const GatherVertex gather(v);
     const Techniques& t = bidirectional_.techniques;
-    const auto add = [&](const MergePhoton& photon, const PhotonHit& hit, float density, float bias_share) {
+    UniformityTests* const tests = has_merged_ ? nullptr : pass_.uniformity;
+    const std::uint32_t pixel = pass_.radii.pixel_at(raster_);
+    const auto add = [&](const MergePhoton& photon, const PhotonHit& hit, const PlaceInDisc& place) {
       const SubpathEnd at_eye = end_of_eye_path(subpath_.densities(), hit.pdf_reverse);
       const SubpathEnd at_light = end_of_light_path(photon.densities, hit.pdf, subpath_.coherence_beyond());
       const float weight = bidirectional_.weigh(sum_of_merge(at_eye, at_light, t));
-      const Spectrum light = v.state.beta * hit.f * photon.power * (weight * density * hit.ratio);
+      const Spectrum light = v.state.beta * hit.f * photon.power * (weight * place.density * hit.ratio);
       const bool is_dispersed = gather.is_dispersed(photon.dispersed);
       layers_.add(class_of_merge(v.state, photon.depth, photon.caustic), technique::vm, light, is_dispersed);
-      layers_.add_bias(bias_share * light, is_dispersed);
+      layers_.add_bias(merge_kernel.bias_share(place.u) * light, is_dispersed);
       note(light, is_dispersed, &TechniqueSum::merging);
       if (moments_) ++moments_->work.merges;
+      if (tests) tests->count(pixel, v.at.shading.to_local(place.offset), place.u);
     };
+    if (tests && tests->seeks_obstacles() && !is_flat_and_clear(path_, v, pass_.radii.at(raster_)))
+      tests->note_obstacle(pixel);
+    has_merged_ = true;
     if (moments_) ++moments_->work.lookups;
     pass_.surface_merges->for_each_at(gather, raster_, pass_.max_depth(), add);
   }
@@ -227,6 +237,7 @@ class EyeVisitor {
   PathMoments* moments_;
   const Vec2 raster_;
   std::size_t partner_ = 0;
+  bool has_merged_ = false;
   LightLayers& layers_;
   Subpath subpath_;
 };

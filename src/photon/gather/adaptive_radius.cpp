@@ -32,21 +32,16 @@ void LeastErrorRadius::update(const Tally& tally, const AdaptiveRadiusSettings& 
 }
 
 void ChiSquaredRadius::update(const Tally& tally, const AdaptiveRadiusSettings&) {
-  constexpr float critical = 14.067f;       // chi-squared of 7 degrees of freedom, 5 %
-  constexpr float fewest = 5 * sectors;     // photons that the test needs: 5 per sector
-  constexpr float shrink = 0.86602540378f;  // factor of the radius; the area shrinks to three quarters
+  constexpr float fewest = 5 * disc_sectors;  // photons that the test needs: 5 per sector
+  constexpr float shrink = 0.86602540378f;    // factor of the radius; the area shrinks to three quarters
   ++gathers_;
   float total = 0;
-  for (std::size_t i = 0; i < sectors; ++i) {
+  for (std::size_t i = 0; i < disc_sectors; ++i) {
     counts_[i] += tally.counts[i];
     total += static_cast<float>(counts_[i]);
   }
   radius_ = std::min(radius_, first_ * RadiusSchedule{1, slowest}.radius(gathers_));
-  if (total < fewest) return;
-  const float expected = total / sectors;
-  float chi2 = 0;
-  for (const std::uint32_t count : counts_) chi2 += sqr(static_cast<float>(count) - expected) / expected;
-  if (chi2 < critical) return;
+  if (total < fewest || !rejects_uniformity(counts_, total)) return;
   radius_ = std::max(shrink * radius_, first_ * RadiusSchedule{1, fastest}.radius(gathers_));
   counts_ = {};
 }

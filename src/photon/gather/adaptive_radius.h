@@ -18,6 +18,7 @@
 #include "math/vec.h"
 #include "photon/gather/kernels.h"
 #include "photon/gather/photon_gather.h"
+#include "photon/gather/sectors.h"
 
 namespace lanthorn {
 
@@ -119,22 +120,18 @@ class LeastErrorRadius {
   float squares_ = 0, laplacian_ = 0, laplacian_variance_ = 0;  // sums over gathers, the first per area
 };
 
-/// A radius that shrinks where the photons within it are not uniformly distributed, by the chi-squared test of Lin et
-/// al. 2020 ("CPPM: chi-squared progressive photon mapping"). Photons are counted in sectors of equal area. If the
-/// counts reject a uniform density, the radius shrinks and the counts start again at zero.
+/// A radius that shrinks where the photons within it are not uniformly distributed (Lin et al. 2020, see sectors.h). If
+/// the counts of photons reject a uniform density, the radius shrinks and the counts start again at zero.
 class ChiSquaredRadius {
  public:
   explicit ChiSquaredRadius(float first) : first_(first), radius_(first) {}
 
-  static constexpr std::size_t sectors = 8;  ///< four quadrants, inside and outside of half the area
-  using Counts = std::array<std::uint32_t, sectors>;
   struct Tally {
     float half2;
-    Counts counts{};
+    SectorCounts counts{};
     Tally(const ChiSquaredRadius& r, const AdaptiveRadiusSettings& s) : half2(sqr(r.reach(s)) / 2) {}
     void see(const MetPhoton& photon, const Frame& frame) {
-      const Vec3 p = frame.to_local(photon.offset);
-      ++counts[(p.x > 0 ? 1u : 0u) + (p.y > 0 ? 2u : 0u) + (photon.dist2 > half2 ? 4u : 0u)];
+      ++counts[sector_of(frame.to_local(photon.offset), photon.dist2 > half2)];
     }
   };
   float radius() const { return radius_; }
@@ -145,7 +142,7 @@ class ChiSquaredRadius {
  private:
   float first_, radius_;
   std::uint32_t gathers_ = 0;
-  Counts counts_{};
+  SectorCounts counts_{};
 };
 
 }  // namespace lanthorn

@@ -12,6 +12,7 @@
 
 #include "index/bucket_kdtree.h"
 #include "lanthorn/error.h"
+#include "photon/gather/flat_disc.h"
 #include "photon/gather/photon_gather.h"
 #include "photon/photon_map.h"
 #include "photon/photon_pass.h"
@@ -40,26 +41,6 @@ struct GatherPoint {
   float footprint2 = 0;  // m², squared radius of the disc that a pixel sees, across the ray; 0 if there is no surface
   float widest = infinity;  // m, largest radius that fits the place
 };
-
-// True if the disc of this radius around a point of a surface lies on surfaces of its plane, and if nothing stands on
-// it, as far as rays to eight points of its edge can tell.
-bool is_flat_and_clear(const PathContext& path, const SurfacePoint& at, const Normal& normal, float radius) {
-  constexpr int edge_points = 8;
-  const float height = search_flatness * radius;
-  const Frame frame(normal);
-  for (int i = 0; i < edge_points; ++i) {
-    const float angle = 2 * pi * static_cast<float>(i) / edge_points;
-    const Point above = at.position + frame.to_world({radius * std::cos(angle), radius * std::sin(angle), height});
-    const Vec3 way = above - at.position;
-    const float length = std::sqrt(length_squared(way));
-    path.counts.shadow += 1;
-    if (!path.scene.visible(spawn_ray_to(at, way / length, {above}))) return false;
-    path.counts.walk += 1;
-    const std::optional<SurfacePoint> below = path.scene.intersect({above, -normal, 2 * height, at.time}, path.w);
-    if (!below || std::fabs(dot(below->normal, normal)) < 0.9f) return false;
-  }
-  return true;
-}
 
 // The photons of the pilot pass in a tree.
 class PilotPhotons {
@@ -140,8 +121,7 @@ struct GatherPointVisitor {
     float radius =
         largest * std::fmin(widest_of_scene * path.scene.bounding_sphere().radius, std::sqrt(scale2 * point.distance2));
     if (!(radius > few_pixels)) return infinity;
-    const Normal normal = dot(vertex.at.normal, vertex.wi) < 0 ? -vertex.at.normal : vertex.at.normal;
-    while (radius > few_pixels && !is_flat_and_clear(path, vertex.at, normal, radius)) radius /= 2;
+    while (radius > few_pixels && !is_flat_and_clear(path, vertex, radius)) radius /= 2;
     return std::fmax(radius, few_pixels);
   }
   Continuation operator()(const MediumVertex& vertex) {

@@ -184,7 +184,7 @@ void update(ChiSquaredRadius& radius, int in_each, std::size_t full_sector, int 
   const AdaptiveRadiusSettings settings = epanechnikov();
   const Frame frame({0, 1, 0}, {0, 0, 1}, {1, 0, 0});
   ChiSquaredRadius::Tally tally(radius, settings);
-  for (std::size_t sector = 0; sector < ChiSquaredRadius::sectors; ++sector) {
+  for (std::size_t sector = 0; sector < disc_sectors; ++sector) {
     const float dist2 = (sector & 4u ? 0.51f : 0.49f) * sqr(radius.reach(settings));
     const float side = std::sqrt(dist2 / 2);
     const Vec3 offset = frame.to_world({sector & 1u ? side : -side, sector & 2u ? side : -side, 0});
@@ -199,7 +199,7 @@ void update(ChiSquaredRadius& radius, int in_each, std::size_t full_sector, int 
 TEST(ChiSquaredRadius, ShrinksBeyondTheCriticalValue) {
   constexpr float first = 0.3f;
   const RadiusSchedule slowest{static_cast<double>(first), 0.9};
-  for (std::size_t sector = 0; sector < ChiSquaredRadius::sectors; ++sector) {
+  for (std::size_t sector = 0; sector < disc_sectors; ++sector) {
     ChiSquaredRadius uniform(first), other(first);
     update(uniform, 50, sector, 20);
     update(uniform, 50, sector, 21);

@@ -320,9 +320,14 @@ TEST(MergeStates, RefusesWhatDoesNotBelongTogether) {
   b.integrator = "path";
   EXPECT_EQ(test::error_text([&] { merge_states(a, b); }), "cannot merge: integrators differ (path and probppm)");
   EXPECT_THROW(merge_states(a, shard(3, 5, false)), Error);
-  b = shard(3, 5);
-  b.integrator_state.resize(1);
-  EXPECT_THROW(merge_states(a, b), Error);
+}
+
+// Shards of the first passes have none.
+TEST(MergeStates, KeepsTheIntegratorsStateOfAnyShard) {
+  RenderState a = shard(0, 3), b = shard(3, 5);
+  b.integrator_state = {std::byte{1}, std::byte{2}};
+  EXPECT_EQ(merge_states(a, b).integrator_state, b.integrator_state);
+  EXPECT_EQ(merge_states(b, a).integrator_state, b.integrator_state);
 }
 
 TEST(Film, ProblemsAreSaidWithTheirFirstPlace) {
