@@ -134,9 +134,10 @@ class Denoiser {
         }
   }
 
-  void write_error(const Tile& tile, const Halves& light, const Halves& result, const Plane& scale) {
+  void write_error(const Tile& tile, const Halves& light, const Halves& result, const ErrorScale& of_errors) {
     constexpr int radius = 4;
-    Plane error = squared_error(light, result, noisy_.shares(), scale);
+    const Plane& scale = of_errors.light2;
+    Plane error = squared_error(light, result, noisy_.shares(), of_errors);
     error.fill([&](std::size_t i) { return sqr(optimism) * error[i]; });
     Plane bias(scale.width(), scale.height());
     if (has_layer(noisy_.image(), "bias", components))
@@ -144,7 +145,7 @@ class Denoiser {
         const Plane own = noisy_.read(tile, std::string("bias.") + c);
         bias.fill([&](std::size_t i) { return bias[i] + sqr(own[i]) / (color_channels * scale[i]); });
       }
-    add_to_estimate(tile, error, bias, result, scale);
+    add_to_estimate(tile, error, bias, result, of_errors);
     error.fill([&](std::size_t i) { return error[i] + bias[i]; });
     const Plane smooth = box_filtered(box_filtered(error, radius), radius);
     const Plane standard_error = Plane::of(
@@ -155,8 +156,10 @@ class Denoiser {
 
   // Means over blocks of pixels, as independent values.
   void add_to_estimate(const Tile& tile, const Plane& error, const Plane& bias, const Halves& result,
-                       const Plane& scale) {
+                       const ErrorScale& of_errors) {
     constexpr int block = 16;
+    const Plane& scale = of_errors.light2;
+    const auto seen = [&](float light) { return std::min(light, of_errors.white); };
     for (int by = tile.y; by < tile.y + tile.height; by += block)
       for (int bx = tile.x; bx < tile.x + tile.width; bx += block) {
         Block sum;
@@ -166,8 +169,9 @@ class Denoiser {
                            static_cast<std::size_t>(x - tile.outer_x);
             sum.error += static_cast<double>(error[i] + bias[i]);
             for (std::size_t c = 0; c < color_channels; ++c)
-              sum.noise += static_cast<double>(noisy_.shares()[0] * noisy_.shares()[1] *
-                                               sqr(result[0][c][i] - result[1][c][i]) / (color_channels * scale[i]));
+              sum.noise +=
+                  static_cast<double>(noisy_.shares()[0] * noisy_.shares()[1] *
+                                      sqr(seen(result[0][c][i]) - seen(result[1][c][i])) / (color_channels * scale[i]));
           }
         blocks_.push_back(sum);
       }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "denoise/layer.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -90,7 +91,7 @@ Halves regress_again(const Halves& light, const Halves& before, const Shares& sh
   constexpr float unseen = 3e-5f;  // of the square of the light
   Guide guide{{}, variance_of_mean(before, shares, variance_radius)};
   for (std::size_t c = 0; c < color_channels; ++c) guide.color[c] = mean_of(before, c, shares);
-  guide.variance.fill([&](std::size_t i) { return guide.variance[i] + unseen * around.scale[i]; });
+  guide.variance.fill([&](std::size_t i) { return guide.variance[i] + unseen * around.scale.light2[i]; });
   Halves result = light;
   for (std::size_t h = 0; h < 2; ++h) result[h] = regress(light[h], guide, around.features[h], settings);
   return result;
@@ -110,14 +111,15 @@ void add_pyramid(std::size_t levels, Filter&& filter, std::vector<Halves>& candi
 }
 
 // For each pixel the candidate of least error around it.
-Halves choose(const Halves& light, const std::vector<Halves>& candidates, const Shares& shares, const Plane& scale) {
+Halves choose(const Halves& light, const std::vector<Halves>& candidates, const Shares& shares,
+              const ErrorScale& scale) {
   constexpr int error_radius = 4, border_radius = 2;  // pixels
-  std::vector<Plane> errors, parts(candidates.size(), Plane(scale.width(), scale.height()));
+  std::vector<Plane> errors, parts(candidates.size(), Plane(scale.light2.width(), scale.light2.height()));
   errors.reserve(candidates.size());
   for (const Halves& candidate : candidates)
     errors.push_back(
         box_filtered(box_filtered(squared_error(light, candidate, shares, scale), error_radius), error_radius));
-  for (std::size_t i = 0; i < scale.size(); ++i) {
+  for (std::size_t i = 0; i < scale.light2.size(); ++i) {
     std::size_t best = 0;
     for (std::size_t k = 1; k < candidates.size(); ++k)
       if (errors[k][i] < errors[best][i]) best = k;
@@ -164,21 +166,24 @@ Plane mean_of(const Halves& light, std::size_t channel, const Shares& shares) {
   return Plane::of(a.width(), a.height(), [&](std::size_t i) { return shares[0] * a[i] + shares[1] * b[i]; });
 }
 
-Plane squared_error(const Halves& light, const Halves& result, const Shares& shares, const Plane& scale) {
+Plane squared_error(const Halves& light, const Halves& result, const Shares& shares, const ErrorScale& scale) {
   const float wa = shares[0], wb = shares[1];
-  return Plane::of(scale.width(), scale.height(), [&](std::size_t i) {
+  const auto seen = [&](const Plane& plane, std::size_t i) { return std::min(plane[i], scale.white); };
+  return Plane::of(scale.light2.width(), scale.light2.height(), [&](std::size_t i) {
     float sum = 0;
     for (std::size_t c = 0; c < color_channels; ++c) {
-      const float a = light[0][c][i], b = light[1][c][i], da = result[0][c][i], db = result[1][c][i];
+      const float a = seen(light[0][c], i), b = seen(light[1][c], i), da = seen(result[0][c], i),
+                  db = seen(result[1][c], i);
       const float noise = sqr(a - b);  // wa of it is the variance of b, wb of it that of a
       sum += wa * (sqr(da - b) - wa * noise) + wb * (sqr(db - a) - wb * noise) - wa * wb * sqr(da - db);
     }
-    return sum / (static_cast<float>(color_channels) * scale[i]);
+    return sum / (static_cast<float>(color_channels) * scale.light2[i]);
   });
 }
 
 Surroundings halved(const Surroundings& surroundings) {
-  Surroundings out{.features = {}, .demodulation = {}, .scale = halved(surroundings.scale)};
+  Surroundings out{
+      .features = {}, .demodulation = {}, .scale = {halved(surroundings.scale.light2), surroundings.scale.white}};
   for (std::size_t c = 0; c < color_channels; ++c) out.demodulation[c] = halved(surroundings.demodulation[c]);
   for (std::size_t h = 0; h < 2; ++h) {
     for (const Plane& plane : surroundings.features[h].values) out.features[h].values.push_back(halved(plane));
@@ -204,7 +209,7 @@ void add_features(const Halves& halves, const Shares& shares, std::array<Feature
   if (!is_noisy(halves)) return add_noisy_features(halves, shares, features);
   const Halves smooth =
       choose(halves, {halves, regress_crosswise(halves, halves, {}, shares, variance_radius, settings)}, shares,
-             Plane(halves[0][0].width(), halves[0][0].height(), 1));
+             {.light2 = Plane(halves[0][0].width(), halves[0][0].height(), 1)});
   add_noisy_features(smooth, shares, features);
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -16,16 +17,22 @@ using Shares = std::array<float, 2>;  ///< of the passes in each half; their sum
 /// The mean over all passes.
 Plane mean_of(const Halves& light, std::size_t channel, const Shares& shares);
 
+/// What errors are relative to.
+struct ErrorScale {
+  Plane light2;                                          ///< square of the light around a pixel
+  float white = std::numeric_limits<float>::infinity();  ///< light that is brighter counts as this bright
+};
+
 /// The squared error of the mean of `result`, over `scale`, per pixel: a mean over channels that is right on average,
 /// but has much noise and may be negative. Half a of the result has the noise of half a of `light`, and half b of the
 /// light differs from it by the error of a and by its own noise, whose variance is known from the halves' difference.
-Plane squared_error(const Halves& light, const Halves& result, const Shares& shares, const Plane& scale);
+Plane squared_error(const Halves& light, const Halves& result, const Shares& shares, const ErrorScale& scale);
 
 /// What all layers of a picture share, at one resolution.
 struct Surroundings {
   std::array<FeaturePlanes, 2> features;  ///< of each half
   ColorPlanes demodulation;               ///< factors that take most of the texture from light
-  Plane scale;                            ///< square of the light that errors are relative to
+  ErrorScale scale;
 };
 
 /// Half the resolution.

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "lanthorn/error.h"
 
@@ -138,17 +139,18 @@ Halves NoisyPicture::read_halves(const Tile& tile, const std::string& layer,
   return halves;
 }
 
-Plane NoisyPicture::scale_of(const Tile& tile) const {
+ErrorScale NoisyPicture::scale_of(const Tile& tile) const {
   constexpr int radius = 2;
-  constexpr float dark = 0.01f, tiny = 1e-30f;
+  constexpr float dark = 0.01f, tiny = 1e-30f, bright = 10;
+  const float white = bright * mean_;
   Plane light(tile.outer_width, tile.outer_height);
   for (const char* const c : components) {
     const Plane color = read(tile, c);
-    light.fill([&](std::size_t i) { return light[i] + color[i] / 3; });
+    light.fill([&](std::size_t i) { return light[i] + std::min(color[i], white) / 3; });
   }
   light = box_filtered(light, radius);
   light.fill([&](std::size_t i) { return sqr(light[i]) + dark * sqr(mean_) + tiny; });
-  return light;
+  return {std::move(light), white};
 }
 
 ColorPlanes NoisyPicture::demodulation_of(const std::array<FeaturePlanes, 2>& features) const {

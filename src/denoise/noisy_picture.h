@@ -55,8 +55,8 @@ class NoisyPicture {
   /// A channel of the tile with its margin.
   Plane read(const Tile& tile, const std::string& name) const;
   Halves read_halves(const Tile& tile, const std::string& layer, const std::array<const char*, 3>& names) const;
-  /// The square of the light around each pixel, as errors are relative to it (`ErrorEstimate`).
-  Plane scale_of(const Tile& tile) const;
+  /// As `ErrorEstimate` counts errors: what is ten times as bright as the picture's mean is white.
+  ErrorScale scale_of(const Tile& tile) const;
   /// Factors that divide light by the albedo of these features.
   ColorPlanes demodulation_of(const std::array<FeaturePlanes, 2>& features) const;
 

@@ -190,6 +190,24 @@ TEST(Denoise, RemovesASpikeOfOneHalf) {
   EXPECT_LT(around, 1.1 * static_cast<double>(spike) / 2);
 }
 
+// The sun on water: pixels a thousand times as bright as the picture, some of which each half has. Smoothed, each would
+// be a white spot.
+TEST(Denoise, LeavesGlintsWhereTheyAre) {
+  Image noisy = picture_of({64, 64, {{"emission", smooth, fifth}}});
+  const std::size_t first = *noisy.find_channel("emission.R"), noise = *noisy.find_channel("noise.emission.R");
+  for (const auto& [x, y, half] : {std::array{30, 30, 1}, {31, 33, -1}, {33, 31, 1}, {30, 34, -1}})
+    for (std::size_t c = 0; c < 3; ++c) {
+      noisy.at(x, y, c) += 1000;
+      noisy.at(x, y, first + c) += 1000;
+      noisy.at(x, y, noise + c) += static_cast<float>(1000 * half);
+    }
+  const Image clean = denoise(noisy).picture;
+  const std::size_t red = *clean.find_channel("denoised.R");
+  for (int y = 20; y < 45; ++y)
+    for (int x = 20; x < 45; ++x)
+      if (x < 28 || x > 35 || y < 28 || y > 36) EXPECT_NEAR(clean.at(x, y, red), smooth(x, y), 1) << x << ' ' << y;
+}
+
 TEST(Denoise, KnowsItsError) {
   const auto light = [](int x, int y) { return smooth(x, y) + step(x, y); };
   const Scene scene{96, 96, {{"direct", light, fifth}}};
