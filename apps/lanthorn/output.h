@@ -82,8 +82,8 @@ class StatePicture {
   std::optional<ErrorEstimate> error_, denoised_error_;
 };
 
-/// What a file of this name shows of a picture: all layers in an .exr, else light, without its noise if it was
-/// denoised.
+/// The layers of a picture that are written to this file: all of them to an .exr; to others light, without its noise if
+/// it was denoised.
 Image picture_for(const std::filesystem::path& file, const Image& image);
 
 /// Writes the picture of a running render. Throws Error.

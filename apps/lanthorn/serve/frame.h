@@ -20,8 +20,8 @@ namespace lanthorn::program {
 /// A picture of a running render, and what the page says about it. Threads may share it.
 class PageFrame {
  public:
-  /// `denoised`: layers that are shown in place of those of `image`; may be null. `about`: goes to the page as it is,
-  /// with the frame's number, size and layers. `metadata`: as for `encode_exr`.
+  /// The page shows the layers of `denoised`, which may be null, instead of those of `image`. `about`: goes to the page
+  /// as it is, with the frame's number, size and layers. `metadata`: as for `encode_exr`.
   PageFrame(std::uint64_t number, std::shared_ptr<const Image> image, std::shared_ptr<const Image> denoised,
             nlohmann::json about, std::string metadata);
 
