@@ -391,7 +391,9 @@ TEST(InteractiveRender, EachPreviewHasHalfAsManyPassesMore) {
   for (int i = 0; i < 4; ++i) {
     const auto next =
         await(render, [&](const InteractiveSnapshot& now) { return now.denoised && now.denoised != last; }).denoised;
-    if (last) EXPECT_GE(2 * next->passes, 3 * last->passes);
+    if (last) {
+      EXPECT_GE(2 * next->passes, 3 * last->passes);
+    }
     last = next;
   }
 }

@@ -205,7 +205,9 @@ TEST(Denoise, LeavesGlintsWhereTheyAre) {
   const std::size_t red = *clean.find_channel("denoised.R");
   for (int y = 20; y < 45; ++y)
     for (int x = 20; x < 45; ++x)
-      if (x < 28 || x > 35 || y < 28 || y > 36) EXPECT_NEAR(clean.at(x, y, red), smooth(x, y), 1) << x << ' ' << y;
+      if (x < 28 || x > 35 || y < 28 || y > 36) {
+        EXPECT_NEAR(clean.at(x, y, red), smooth(x, y), 1) << x << ' ' << y;
+      }
 }
 
 TEST(Denoise, KnowsItsError) {
