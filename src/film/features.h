@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <optional>
 #include <string_view>
+#include <type_traits>
 
 #include "lanthorn/color.h"
 #include "math/vec.h"
@@ -37,6 +38,10 @@ struct Features {
     visit("depth", depth);
   }
 };
+
+/// Of the types of the layers: those of numbers, which are averaged over hits.
+template <class Value>
+inline constexpr bool is_number = std::is_same_v<Value, std::optional<float>>;
 
 /// Names of a layer's channels, one letter each.
 constexpr std::string_view channels_of(const Rgb&) { return "RGB"; }

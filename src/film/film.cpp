@@ -12,41 +12,19 @@
 #include <type_traits>
 
 #include "base/parallel.h"
-#include "math/hash.h"
+#include "film/fixed_point.h"
 
 namespace lanthorn {
 namespace {
 
 constexpr int largest_radiance_bits = 40;
-constexpr double unit_steps = 0x1p40;    // colours and vectors of features, weights
 constexpr double number_steps = 0x1p28;  // and positions: less precise but larger range, for kilometres and millimetres
-constexpr double contribution_limit = 0x1p56;
-// Far enough below 2^63 that concurrent additions cannot overflow a sum between two checks.
-constexpr std::int64_t sum_limit = std::int64_t{1} << 62;
-// Contributions of fewer steps are rounded stochastically, so that systematic rounding errors do not accumulate.
-constexpr double dither_below = 0x1p12;
 
 // Slot of the hits among a pixel's sample sums, after those of its light.
 constexpr std::size_t hit_slot = feature_channels;
 template <class Value>
-constexpr bool is_number = std::is_same_v<Value, std::optional<float>>;
-template <class Value>
 constexpr double steps_of = is_number<Value> || std::is_same_v<Value, Position> ? number_steps : unit_steps;
-// Slot numbers are hashed for stochastic rounding: slots of samples, then of splats, of spectral values, and of parts.
-constexpr unsigned parts_slot = 64;
 constexpr std::size_t chunk_pixels = 4096;
-
-void saturating_add(std::int64_t& sum, std::int64_t steps) {
-  if (std::abs(sum) >= sum_limit) return;
-  sum = std::clamp(sum + steps, -sum_limit, sum_limit);
-}
-
-void saturating_add_shared(std::int64_t& shared, std::int64_t steps) {
-  const std::atomic_ref<std::int64_t> sum(shared);
-  if (std::abs(sum.load(std::memory_order_relaxed)) >= sum_limit) return;
-  const std::int64_t now = sum.fetch_add(steps, std::memory_order_relaxed) + steps;
-  if (std::abs(now) >= sum_limit) sum.store(now > 0 ? sum_limit : -sum_limit, std::memory_order_relaxed);
-}
 
 std::uint64_t count_saturated(std::span<const std::int64_t> sums) {
   return static_cast<std::uint64_t>(
@@ -143,162 +121,6 @@ std::uint32_t Film::pixel_of_full_film(std::uint32_t pixel) const {
   const auto x = static_cast<std::uint32_t>(window_.x0) + pixel % width;
   const auto y = static_cast<std::uint32_t>(window_.y0) + pixel / width;
   return y * static_cast<std::uint32_t>(full_width_) + x;
-}
-
-std::int64_t Film::to_steps(double value, double steps_per_unit, std::uint32_t pixel, unsigned slot) {
-  const double steps = value * steps_per_unit;
-  const double magnitude = std::fabs(steps);
-  if (magnitude >= dither_below && magnitude <= contribution_limit) return std::llrint(steps);
-  if (magnitude < dither_below) {
-    if (steps == 0) return 0;
-    const std::uint64_t bits = hash_words(
-        {pass_, (std::uint64_t{pixel_of_full_film(pixel)} << 32) | slot, std::bit_cast<std::uint64_t>(value)});
-    const double rounded = std::floor(magnitude + static_cast<double>(bits >> 11) * 0x1p-53);
-    return static_cast<std::int64_t>(steps < 0 ? -rounded : rounded);
-  }
-  if (!std::isfinite(steps)) {
-    note(non_finite_, pixel);
-    return 0;
-  }
-  note(too_large_, pixel);
-  return static_cast<std::int64_t>(std::copysign(contribution_limit, steps));
-}
-
-void Film::note(Problem& problem, std::uint32_t pixel) const {
-  std::atomic_ref(problem.count).fetch_add(1, std::memory_order_relaxed);
-  const std::uint64_t place = std::min<std::uint64_t>(pass_, 0xffffffffu) << 32 | pixel;
-  const std::atomic_ref first(problem.first);
-  std::uint64_t old = first.load(std::memory_order_relaxed);
-  while (place < old && !first.compare_exchange_weak(old, place, std::memory_order_relaxed)) {
-  }
-}
-
-// Branches once per sample instead of once per value, so that the loops vectorise.
-template <class Stride>
-bool Film::add_ordinary(std::int64_t* sums, const SampleValues& values, Stride stride) const {
-  constexpr double large = 0x1p50;
-  constexpr std::int64_t safe_sum = sum_limit - (std::int64_t{1} << 50);
-  SampleValues steps;
-  int odd = 0;
-  for (std::size_t i = 0; i < stride; ++i) {
-    steps[i] = values[i] * sample_steps_[i];
-    const double magnitude = std::fabs(steps[i]);
-    odd |= static_cast<int>(!((magnitude >= dither_below) & (magnitude <= large)) & !(magnitude == 0));
-    odd |= static_cast<int>((sums[i] > safe_sum) | (sums[i] < -safe_sum));
-  }
-  if (odd) return false;
-  // Adding 1.5 * 2^52 rounds to the nearest integer and leaves it in the low bits: the result of llrint, but
-  // vectorised. The products above are exact (floats times powers of two), so fusing one with this sum changes nothing.
-  constexpr double shift = 0x1.8p52;
-  for (std::size_t i = 0; i < stride; ++i)
-    sums[i] += std::bit_cast<std::int64_t>(steps[i] + shift) - std::bit_cast<std::int64_t>(shift);
-  return true;
-}
-
-void Film::add(std::uint32_t pixel, const PixelSample& sample) {
-  assert(pixel < pixel_count());
-  const double weight = static_cast<double>(sample.weight);
-  // The absolute value, because weights of both signs could cancel in a mean over hits only.
-  const double hit = sample.features.is_hit() ? std::fabs(weight) : 0.0;
-  SampleValues values{};
-  std::size_t slot = 0;
-  const auto put = [&](float value) { values[slot++] = static_cast<double>(value) * weight; };
-  const std::span<const Rgb> layers = std::span(sample.light).first(contents_.layer_count());
-  const std::span<const Rgb> light = layers.first(contents_.light.size());
-  const float factor = sensor_.clamp_factor(std::accumulate(light.begin() + 1, light.end(), light.front()));
-  const auto put_color = [&](const Rgb& color) {
-    put(color.r);
-    put(color.g);
-    put(color.b);
-  };
-  const auto put_vector = [&](const Vec3& value) { put_color({value.x, value.y, value.z}); };
-  const auto put_light = [&](const Rgb& value) { put_color(sensor_.balanced(factor == 1 ? value : factor * value)); };
-  for (const Rgb& layer : layers) put_light(layer);
-  if (contents_.bias) put_light(sample.bias);
-  sample.features.for_each([&]<class Value>(const char*, const Value& value) {
-    if constexpr (is_number<Value>)
-      values[slot++] = static_cast<double>(value.value_or(0.0f)) * hit;
-    else if constexpr (std::is_same_v<Value, Position>)
-      put_vector(value.at);
-    else if constexpr (std::is_same_v<Value, Vec3>)
-      put_vector(value);
-    else
-      put_color(value);
-  });
-  values[slot++] = hit;
-  values[slot] = weight;
-
-  if (!parts_.empty()) add_parts(pixel, sample, static_cast<double>(factor) * weight);
-  if (buckets() && sample.spectrum) add_spectrum(pixel, *sample.spectrum, weight, static_cast<double>(factor));
-  const std::size_t stride = samples_stride();
-  std::int64_t* sums = &halves_[half_].samples[std::size_t{pixel} * stride];
-  // Most methods have four light layers, photon methods also a bias; strides known at compile time let the loops
-  // vectorise.
-  constexpr std::integral_constant<std::size_t, 3 * 4 + surface_slots> usual;
-  constexpr std::integral_constant<std::size_t, 3 * 5 + surface_slots> with_bias;
-  if (stride == usual       ? add_ordinary(sums, values, usual)
-      : stride == with_bias ? add_ordinary(sums, values, with_bias)
-                            : add_ordinary(sums, values, stride))
-    return;
-  for (unsigned i = 0; i < stride; ++i) saturating_add(sums[i], to_steps(values[i], sample_steps_[i], pixel, i));
-}
-
-void Film::add_parts(std::uint32_t pixel, const PixelSample& sample, double factor) {
-  std::int64_t* sums = &parts_[std::size_t{pixel} * parts_stride()];
-  unsigned slot = parts_slot;
-  for (const Rgb& light : std::span(sample.parts).first(contents_.decomposition.parts.size())) {
-    const Rgb counted = sensor_.balanced(light);
-    for (const float component : {counted.r, counted.g, counted.b})
-      saturating_add(*sums++, to_steps(static_cast<double>(component) * factor, radiance_steps_, pixel, slot++));
-  }
-}
-
-void Film::splat(std::uint32_t pixel, std::size_t layer, const Rgb& value) {
-  assert(contents_.splats && pixel < pixel_count() && layer < contents_.layer_count());
-  std::int64_t* sums = &halves_[half_].splats[std::size_t{pixel} * splats_stride() + 3 * layer];
-  auto slot = static_cast<unsigned>(samples_stride() + 3 * layer);  // distinct from the samples' slots in the hash
-  const Rgb counted = splat_share_ * sensor_.balanced(value);
-  for (const float component : {counted.r, counted.g, counted.b}) {
-    const std::int64_t steps = to_steps(static_cast<double>(component), radiance_steps_, pixel, slot++);
-    if (steps != 0) saturating_add_shared(*sums, steps);
-    ++sums;
-  }
-}
-
-namespace {
-
-/// Share of the value at wavelength i in its bucket: 1 / (4 pdf width).
-double bucket_share(const SpectralRadiance& value, std::size_t i, const SpectralBuckets& buckets) {
-  return 0.25 / (static_cast<double>(value.pdf[i]) * static_cast<double>(buckets.width()));
-}
-
-}  // namespace
-
-void Film::add_spectrum(std::uint32_t pixel, const SpectralRadiance& value, double weight, double factor) {
-  std::int64_t* sums = &spectra_[std::size_t{pixel} * 2 * contents_.buckets->count];
-  const auto slot = static_cast<unsigned>(samples_stride() + splats_stride());
-  for (unsigned i = 0; i < value.lambda.size(); ++i) {
-    const std::optional<std::size_t> bucket = contents_.buckets->find(value.lambda[i]);
-    if (!bucket) continue;
-    const double counted = weight * bucket_share(value, i, *contents_.buckets);
-    const double light = static_cast<double>(value.radiance[i]) * factor * counted;
-    saturating_add(sums[*bucket], to_steps(light, radiance_steps_, pixel, slot + i));
-    saturating_add(sums[contents_.buckets->count + *bucket], to_steps(counted, unit_steps, pixel, slot + 4 + i));
-  }
-}
-
-void Film::splat_spectrum(std::uint32_t pixel, const SpectralRadiance& value, float weight) {
-  assert(contents_.splats && contents_.buckets && pixel < pixel_count());
-  std::int64_t* sums = &spectral_splats_[std::size_t{pixel} * contents_.buckets->count];
-  const auto slot = static_cast<unsigned>(samples_stride() + splats_stride() + 8);
-  for (unsigned i = 0; i < value.lambda.size(); ++i) {
-    const std::optional<std::size_t> bucket = contents_.buckets->find(value.lambda[i]);
-    if (!bucket) continue;
-    const double light =
-        static_cast<double>(splat_share_ * weight * value.radiance[i]) * bucket_share(value, i, *contents_.buckets);
-    const std::int64_t steps = to_steps(light, radiance_steps_, pixel, slot + i);
-    if (steps != 0) saturating_add_shared(sums[*bucket], steps);
-  }
 }
 
 void Film::write_spectrum(std::uint32_t pixel, std::uint64_t passes, float* out) const {

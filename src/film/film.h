@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "base/prefetch.h"
+#include "base/spin_locks.h"
 #include "film/features.h"
 #include "film/pixel_window.h"
 #include "film/sensor.h"
@@ -119,14 +119,6 @@ class Film {
     return integers * sizeof(std::int64_t);
   }
 
-  /// Sets the pass of the contributions that follow, and the share of the pass's light that splats bring in full until
-  /// the next call: 1 / parts if the pass is rendered in parts. Must not run concurrently with additions.
-  void begin_pass(std::uint64_t pass, float splat_share = 1) {
-    pass_ = pass;
-    half_ = static_cast<std::size_t>(half_of_pass(pass));
-    splat_share_ = splat_share;
-  }
-
   /// Sets the processing of later samples and splats. Not saved: it belongs to the view.
   void set_sensor(const Sensor& sensor) { sensor_ = sensor; }
 
@@ -135,28 +127,6 @@ class Film {
     window_ = window;
     full_width_ = full_width;
   }
-
-  /// Adds a sample to a pixel (row-major index in the crop window). Only one thread at a time may add to a pixel.
-  void add(std::uint32_t pixel, const PixelSample& sample);
-
-  /// Tells the processor that a sample of this pixel will be added soon: with more pixels than its caches hold, waiting
-  /// for their sums takes longer than adding to them.
-  [[gnu::always_inline]] void prefetch(std::uint32_t pixel) const {
-    prefetch(halves_[half_].samples, samples_stride(), pixel);
-    if (!parts_.empty()) prefetch(parts_, parts_stride(), pixel);
-  }
-  /// The same for what will be splatted.
-  [[gnu::always_inline]] void prefetch_splats(std::uint32_t pixel) const {
-    prefetch(halves_[half_].splats, splats_stride(), pixel);
-  }
-
-  /// Adds to the light layer of this index (those that repeat light come last), from any thread at any time. `value`:
-  /// radiance, already divided by the number of light paths of the pass, or of its part, and multiplied by the filter's
-  /// weight; `resolve` divides by the number of passes. The film must have splats.
-  void splat(std::uint32_t pixel, std::size_t layer, const Rgb& value);
-  /// Adds the same light to the spectral buckets, which the film must have. `weight`: the filter's weight, multiplied
-  /// in here.
-  void splat_spectrum(std::uint32_t pixel, const SpectralRadiance& value, float weight);
 
   /// The image after `passes` passes (divides splats by `passes`, samples by the sum of their weights). Channels, in
   /// this order: R, G, B (color); the light layers by their names (emission.R ... caustic.B, media.R ...); albedo.R ..
@@ -196,6 +166,8 @@ class Film {
   static std::size_t stride(const FilmContents& contents);
 
  private:
+  friend class FilmPass;  // adds to the sums
+
   struct Problem {
     std::uint64_t count = 0;
     /// Low 32 bits of the pass << 32 | pixel: one word, so that threads can agree on the minimum.
@@ -216,16 +188,7 @@ class Film {
   std::size_t parts_stride() const { return 3 * contents_.decomposition.parts.size(); }
   std::size_t weight_slot() const { return samples_stride() - 1; }
 
-  [[gnu::always_inline]] static void prefetch(const std::vector<std::int64_t>& sums, std::size_t stride,
-                                              std::uint32_t pixel) {
-    prefetch_to_write(sums.data() + std::size_t{pixel} * stride, stride * sizeof(std::int64_t));
-  }
-  std::int64_t to_steps(double value, double steps_per_unit, std::uint32_t pixel, unsigned slot);
   std::uint32_t pixel_of_full_film(std::uint32_t pixel) const;
-  template <class Stride>
-  bool add_ordinary(std::int64_t* sums, const SampleValues& values, Stride stride) const;
-  void add_parts(std::uint32_t pixel, const PixelSample& sample, double factor);
-  void add_spectrum(std::uint32_t pixel, const SpectralRadiance& value, double weight, double factor);
   void write_spectrum(std::uint32_t pixel, std::uint64_t passes, float* out) const;
   /// The array of sums that holds a plane, and the plane's place in it.
   template <class Sums>
@@ -237,7 +200,6 @@ class Film {
   static PlanePlace<Sums> find_plane(Self& film, std::size_t index);
   template <class Body>
   void for_each_pixel(Body&& body) const;
-  void note(Problem& problem, std::uint32_t pixel) const;
   /// Of one pixel. None for splats: the film has none.
   struct PixelSums {
     SampleSums samples;
@@ -263,8 +225,6 @@ class Film {
   int full_width_ = 0;              ///< 0: this is the full film
   double radiance_steps_ = 0x1p40;  ///< steps per unit of radiance
   SampleValues sample_steps_{};     ///< steps per unit of each quantity of a sample
-  std::uint64_t pass_ = 0;
-  float splat_share_ = 1;
   Problem non_finite_;
   Problem too_large_;
   struct Half {
@@ -272,10 +232,10 @@ class Film {
     std::vector<std::int64_t> splats;   ///< splats_stride() per pixel, or empty
   };
   std::array<Half, 2> halves_;                 ///< by half_of_pass
-  std::size_t half_ = 0;                       ///< of the pass
   std::vector<std::int64_t> parts_;            ///< parts_stride() per pixel, or empty
   std::vector<std::int64_t> spectra_;          ///< per pixel the buckets and then their weights, or empty
   std::vector<std::int64_t> spectral_splats_;  ///< the buckets of each pixel, or empty
+  SpinLocks pixel_locks_;                      ///< of all sums but those of splats
 };
 
 }  // namespace lanthorn

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "base/parameters.h"
-#include "film/film.h"
+#include "film/film_pass.h"
 #include "lanthorn/methods.h"
 #include "lanthorn/statistics.h"
 #include "path/path_class.h"
@@ -90,7 +90,8 @@ class Integrator {
   virtual void prepare(const RenderJob& /*job*/) {}
   /// Adds one pass to the film, or one part of a pass (`RenderSettings::parts`). `pass`: its number, which counts the
   /// parts of all passes before it.
-  virtual PassReport render_pass(const RenderJob& job, std::uint32_t pass, Film& film, const PhaseObserver& begin) = 0;
+  virtual PassReport render_pass(const RenderJob& job, std::uint32_t pass, const FilmPass& film,
+                                 const PhaseObserver& begin) = 0;
   /// Message for the user about light of this scene that the method does not find. Empty if it finds all light.
   virtual std::string limitation(const Scene& /*scene*/) const { return {}; }
   /// Message about what the preparation has found in this job, for the user. Empty if there is nothing to say.
@@ -103,6 +104,8 @@ class Integrator {
   virtual bool knows_bias() const { return true; }
   /// True if all light of a pass, or of its part, has the wavelengths of `draw_for_pass`.
   virtual bool passes_share_wavelengths() const { return false; }
+  /// True if `render_pass` may run for several passes at once, each called by a thread of its own.
+  virtual bool passes_may_overlap() const { return false; }
   /// False if a pass depends on earlier ones. Such a render can be resumed but not sharded.
   virtual bool passes_are_independent() const { return true; }
   /// Peak memory with these settings. Zero for methods that do not store light paths.

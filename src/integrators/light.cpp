@@ -17,7 +17,7 @@ namespace {
 struct SplatVisitor {
   const PathContext& path;
   const View& view;
-  Film& film;
+  const FilmPass& film;
 
   Continuation operator()(const SurfaceVertex& vertex) {
     if (vertex.may_scatter && has_non_delta(vertex.at.bsdf)) connect(vertex);
@@ -51,7 +51,9 @@ class LightTracer final : public Integrator {
     return contents;
   }
 
-  PassReport render_pass(const RenderJob& job, std::uint32_t pass, Film& film, const PhaseObserver& begin) override {
+  bool passes_may_overlap() const override { return true; }
+  PassReport render_pass(const RenderJob& job, std::uint32_t pass, const FilmPass& film,
+                         const PhaseObserver& begin) override {
     PassReport report;
     begin(Phase::photons);
     const LightPaths paths(job.scene, {job.settings.seed, Stream::light, pass, job.settings.photons});
@@ -63,7 +65,7 @@ class LightTracer final : public Integrator {
   }
 
  private:
-  RayCounts trace_lights(const RenderJob& job, const LightPaths& paths, Film& film) const {
+  RayCounts trace_lights(const RenderJob& job, const LightPaths& paths, const FilmPass& film) const {
     const WalkLimits limits{job.settings.max_depth, roulette_depth_};
     const OwnPathDraw draw_path(job);
     return paths.for_each([&](const LightPath& start, Sampler& sampler, RayCounts& counts, std::size_t) {

@@ -33,7 +33,9 @@ class PathTracer final : public Integrator {
           100 * rare);
   }
   std::string remark() const override { return remark_; }
-  PassReport render_pass(const RenderJob& job, std::uint32_t pass, Film& film, const PhaseObserver& begin) override {
+  bool passes_may_overlap() const override { return true; }
+  PassReport render_pass(const RenderJob& job, std::uint32_t pass, const FilmPass& film,
+                         const PhaseObserver& begin) override {
     begin(Phase::eye);
     PassReport report;
     if (guides_) report.photon_map_bytes = guides_->memory_bytes();

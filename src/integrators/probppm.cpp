@@ -39,7 +39,9 @@ class ProbabilisticProgressivePhotonMapper final : public Integrator {
             .media = records_for(photon_source_.volume())};
   }
   bool passes_share_wavelengths() const override { return true; }
-  PassReport render_pass(const RenderJob& job, std::uint32_t pass, Film& film, const PhaseObserver& begin) override;
+  bool passes_may_overlap() const override { return true; }
+  PassReport render_pass(const RenderJob& job, std::uint32_t pass, const FilmPass& film,
+                         const PhaseObserver& begin) override;
 
  private:
   double alpha_;
@@ -49,8 +51,8 @@ class ProbabilisticProgressivePhotonMapper final : public Integrator {
   PassPhotonSource photon_source_;
 };
 
-PassReport ProbabilisticProgressivePhotonMapper::render_pass(const RenderJob& job, std::uint32_t pass, Film& film,
-                                                             const PhaseObserver& begin) {
+PassReport ProbabilisticProgressivePhotonMapper::render_pass(const RenderJob& job, std::uint32_t pass,
+                                                             const FilmPass& film, const PhaseObserver& begin) {
   const PassRadii radii(first_radius_, RadiusSchedule{1, alpha_}.radius(pass));
   const PassPhotons photons = photon_source_.trace(job, pass, radii.classes(), kernel_.support(radii.largest()), begin);
   PassReport report = photons.report;

@@ -35,26 +35,27 @@ PassPhotons PassPhotonSource::trace(const RenderJob& job, std::uint32_t pass, co
   const RenderSettings& settings = job.settings;
   PassPhotons photons{draw_for_pass(job, pass), {}, {}, {}};
   begin(Phase::photons);
-  tracer_.trace(job.scene, {settings.seed, Stream::light, pass, settings.photons},
+  const auto tracer = tracers_.borrow();
+  tracer->trace(job.scene, {settings.seed, Stream::light, pass, settings.photons},
                 {.max_depth = settings.max_depth, .classes = classes, .media = records_for(estimator_)}, photons.draw,
                 emission_.get());
   begin(Phase::build);
   for (int c = 0; c < classes.count(); ++c) {
-    photons.maps.push_back(PhotonMap<HashGrid>::build(tracer_.chunks(static_cast<std::size_t>(c)), settings.color,
+    photons.maps.push_back(PhotonMap<HashGrid>::build(tracer->chunks(static_cast<std::size_t>(c)), settings.color,
                                                       support * FluxClasses::radius_factor(c)));
     photons.report.photon_map_bytes += photons.maps.back().memory_bytes();
   }
-  if (!tracer_.medium_chunks().empty()) {
+  if (!tracer->medium_chunks().empty()) {
     const float radius = static_cast<float>(volume_schedule_.first_radius) *
                          volume_schedule_.shrink(pass, kernel_dimensions(estimator_));
-    photons.volume.emplace(estimator_, kernel_, radius, tracer_.medium_chunks(), settings.color);
+    photons.volume.emplace(estimator_, kernel_, radius, tracer->medium_chunks(), settings.color);
     photons.report.photon_map_bytes += photons.volume->memory_bytes();
     photons.report.volume_radius = photons.volume->radius();
   }
   begin(Phase::eye);
-  photons.report.rays = tracer_.rays();
-  photons.report.light_paths = tracer_.emitted();
-  photons.report.photons_stored = tracer_.stored();
+  photons.report.rays = tracer->rays();
+  photons.report.light_paths = tracer->emitted();
+  photons.report.photons_stored = tracer->stored();
   return photons;
 }
 

@@ -4,6 +4,7 @@
 // The methods differ in the radius of a gather and in the random numbers of an eye path.
 #pragma once
 
+#include "base/pool.h"
 #include "index/hash_grid.h"
 #include "integrators/integrator.h"
 #include "path/path_draw.h"
@@ -81,7 +82,7 @@ class PassPhotonSource {
   RadiusSchedule volume_schedule_;            ///< its first radius is found by `prepare`
   Kernel kernel_;
   Emission emission_;
-  PhotonTracer tracer_;
+  Pool<PhotonTracer> tracers_;
 };
 
 /// The eye path. At each vertex, next-event estimation finds direct light. Photons give the indirect light of wide

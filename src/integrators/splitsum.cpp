@@ -94,7 +94,8 @@ class SplitSumShader final : public Integrator {
   std::string remark() const override {
     return missing_.empty() ? "" : fmt::format("splitsum leaves out {}", fmt::join(missing_, ", "));
   }
-  PassReport render_pass(const RenderJob& job, std::uint32_t pass, Film& film, const PhaseObserver& begin) override {
+  PassReport render_pass(const RenderJob& job, std::uint32_t pass, const FilmPass& film,
+                         const PhaseObserver& begin) override {
     begin(Phase::eye);
     PassReport report;
     report.rays = trace_eye_paths(

@@ -97,7 +97,8 @@ class StochasticProgressivePhotonMapper final : public Integrator {
       throw Error("damaged: its radii are not those of this render");
   }
   bool passes_share_wavelengths() const override { return true; }
-  PassReport render_pass(const RenderJob& job, std::uint32_t pass, Film& film, const PhaseObserver& begin) override;
+  PassReport render_pass(const RenderJob& job, std::uint32_t pass, const FilmPass& film,
+                         const PhaseObserver& begin) override;
 
  private:
   HitPoints hits_;
@@ -109,8 +110,8 @@ class StochasticProgressivePhotonMapper final : public Integrator {
 };
 
 template <AdaptiveRadius Radius>
-PassReport StochasticProgressivePhotonMapper<Radius>::render_pass(const RenderJob& job, std::uint32_t pass, Film& film,
-                                                                  const PhaseObserver& begin) {
+PassReport StochasticProgressivePhotonMapper<Radius>::render_pass(const RenderJob& job, std::uint32_t pass,
+                                                                  const FilmPass& film, const PhaseObserver& begin) {
   float reach = 0;
   double radius_sum = 0;
   for (const Radius& r : radii_) {

@@ -43,7 +43,7 @@ struct EmissionVisitor {
 
 }  // namespace
 
-RayCounts see_emission(const RenderJob& job, const EyeShare& share, std::uint32_t pass, Film& film) {
+RayCounts see_emission(const RenderJob& job, const EyeShare& share, std::uint32_t pass, const FilmPass& film) {
   const WalkLimits limits{share.unlit_glow ? job.settings.max_depth : share.scatterings, 3};
   RayCounts rays =
       trace_eye_paths(job, {pass, limits}, film,

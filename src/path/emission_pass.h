@@ -3,7 +3,7 @@
 // The eye paths of methods that find scattered light by splats: they add emission seen by the eye.
 #pragma once
 
-#include "film/film.h"
+#include "film/film_pass.h"
 #include "path/ray_counts.h"
 #include "path/render_job.h"
 
@@ -16,6 +16,6 @@ struct EyeShare {
 };
 
 /// Adds one sample to each pixel: the light that `share` names, and albedo, normal and depth.
-RayCounts see_emission(const RenderJob& job, const EyeShare& share, std::uint32_t pass, Film& film);
+RayCounts see_emission(const RenderJob& job, const EyeShare& share, std::uint32_t pass, const FilmPass& film);
 
 }  // namespace lanthorn

@@ -7,7 +7,7 @@
 #include <cstdint>
 
 #include "base/parallel.h"
-#include "film/film.h"
+#include "film/film_pass.h"
 #include "math/sampler.h"
 #include "path/light_layers.h"
 #include "path/path_context.h"
@@ -80,7 +80,8 @@ struct EyePass {
 /// Adds one sample to each pixel: `draw(sampler)` gives the eye path its time and wavelengths, and
 /// `trace(path, start, place, layers)` follows it and collects its light.
 template <class Draw, class Trace>
-RayCounts trace_eye_paths(const RenderJob& job, const EyePass& pass, Film& film, Draw&& draw_path, Trace&& trace) {
+RayCounts trace_eye_paths(const RenderJob& job, const EyePass& pass, const FilmPass& film, Draw&& draw_path,
+                          Trace&& trace) {
   return for_each_pixel(job.view.window, [&](const PixelPlace& place, RayCounts& counts) {
     film.prefetch(place.index);
     Sampler sampler = eye_sampler(job, place, pass.pass);
@@ -93,7 +94,7 @@ RayCounts trace_eye_paths(const RenderJob& job, const EyePass& pass, Film& film,
 }
 /// The same for eye paths whose times and wavelengths are their own.
 template <class Trace>
-RayCounts trace_eye_paths(const RenderJob& job, const EyePass& pass, Film& film, Trace&& trace) {
+RayCounts trace_eye_paths(const RenderJob& job, const EyePass& pass, const FilmPass& film, Trace&& trace) {
   return trace_eye_paths(job, pass, film, OwnPathDraw(job), trace);
 }
 

@@ -36,7 +36,7 @@ void radiance_along(const PathContext& path, const CameraRay& ray, MediumId medi
 
 /// A pass of path tracing: one sample for each pixel. `guides`: none, or one as above.
 template <class... Guides>
-RayCounts trace_paths(const RenderJob& job, const EyePass& pass, Film& film, const Guides&... guides) {
+RayCounts trace_paths(const RenderJob& job, const EyePass& pass, const FilmPass& film, const Guides&... guides) {
   return trace_eye_paths(job, pass, film,
                          [&](const PathContext& path, const EyeStart& start, const PixelPlace&, LightLayers& layers) {
                            radiance_along(path, start.camera, job.view.medium, layers, guides...);

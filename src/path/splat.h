@@ -3,7 +3,7 @@
 // Adds the light of light paths to the film.
 #pragma once
 
-#include "film/film.h"
+#include "film/film_pass.h"
 #include "path/lens_connection.h"
 #include "path/light_layers.h"
 
@@ -27,8 +27,8 @@ inline PathLayers layers_of_splat(const MediumVertex& v) { return {class_of_spla
 
 /// Adds the light, times the factor of dispersion, to all pixels whose filter covers its film position. Obeys the
 /// sensor's limit of a path.
-inline void splat(Film& film, const View& view, const Wavelengths& w, const Vec2& raster, const Spectrum& light,
-                  const PathLayers& layers) {
+inline void splat(const FilmPass& film, const View& view, const Wavelengths& w, const Vec2& raster,
+                  const Spectrum& light, const PathLayers& layers) {
   Rgb rgb = w.to_rgb(light);
   const float factor = layers.path_class == PathClass::emission ? 1.0f : view.sensor.path_factor(rgb);
   rgb = factor * rgb;
@@ -38,14 +38,14 @@ inline void splat(Film& film, const View& view, const Wavelengths& w, const Vec2
                                const auto pixel = static_cast<std::uint32_t>(y * window.width() + x);
                                film.splat(pixel, static_cast<std::size_t>(layers.path_class), filter * rgb);
                                if (layers.from_medium) film.splat(pixel, media_layer, filter * rgb);
-                               if (film.buckets())
+                               if (film.contents().buckets)
                                  film.splat_spectrum(pixel, SpectralRadiance(light, w), factor * filter);
                              });
 }
 
 /// Adds `weight` times the light of a vertex that is connected to the lens.
-inline void splat(Film& film, const View& view, const Wavelengths& w, const LensLight& seen, const PathLayers& layers,
-                  float weight) {
+inline void splat(const FilmPass& film, const View& view, const Wavelengths& w, const LensLight& seen,
+                  const PathLayers& layers, float weight) {
   Spectrum light = seen.light * weight;
   if (seen.dispersed) light *= w.dispersed;
   splat(film, view, w, seen.raster, light, layers);

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <limits>
 #include <string>
 
@@ -52,8 +53,8 @@ Limit limit_of(std::optional<std::uint64_t> option) {
 
 }  // namespace
 
-void plan_memory(const Scene& scene, const View& view, const Integrator& integrator, const FilmContents& contents,
-                 std::optional<std::uint64_t> option, RenderSettings& settings) {
+std::size_t plan_memory(const Scene& scene, const View& view, const Integrator& integrator,
+                        const FilmContents& contents, std::optional<std::uint64_t> option, RenderSettings& settings) {
   const Limit limit = limit_of(option);
   const MemoryUse use = integrator.memory_use(settings);
   const int width = view.window.width(), height = view.window.height();
@@ -81,6 +82,10 @@ void plan_memory(const Scene& scene, const View& view, const Integrator& integra
     throw Error(fmt::format("--photons {}: a pass has {:.0f} light paths and as many photons at most", settings.photons,
                             most_numbers));
   if (use.fills_the_rest && option) settings.memory = static_cast<std::uint64_t>(limit.bytes - film - photons);
+  // What is free need not stay free, nor be left to others.
+  const double room = option ? limit.bytes : limit.bytes / 2;
+  constexpr double most = 1024;
+  return static_cast<std::size_t>(std::clamp(photons > 0 ? (room - film) / photons : most, 1.0, most));
 }
 
 }  // namespace lanthorn

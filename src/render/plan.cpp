@@ -113,7 +113,7 @@ RenderPlan plan_render(const Scene& scene, const ViewDescription& view, const Re
   FilmContents contents = plan.integrator->film_contents(scene);
   contents.buckets = view.film.buckets;
   plan.settings = choose_settings(scene, view, options, plan);
-  plan_memory(scene, plan.view, *plan.integrator, contents, options.memory, plan.settings);
+  plan.passes_that_fit = plan_memory(scene, plan.view, *plan.integrator, contents, options.memory, plan.settings);
   plan.stop.passes = choose_passes(hints, options);
   if (plan.stop.passes.begin > 0 && !plan.integrator->passes_are_independent())
     throw Error(fmt::format(

@@ -24,6 +24,7 @@ struct RenderPlan {
   std::unique_ptr<Integrator> integrator = info->make(parameters);
   bool is_prepared = false;  ///< the integrator knows scene and view
   RenderSettings settings{};
+  std::size_t passes_that_fit = 1;  ///< into memory, at once
   StopRule stop{};
   RenderState state{};         ///< empty film, no passes, settings filled in
   std::string resumed_from{};  ///< the file of the state, for messages

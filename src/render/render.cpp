@@ -7,14 +7,17 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
+#include <limits>
 #include <new>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "base/parallel.h"
 #include "integrators/integrator.h"
 #include "lanthorn/error.h"
+#include "render/pass_batch.h"
 #include "render/pass_undo.h"
 
 namespace lanthorn {
@@ -25,26 +28,6 @@ using Clock = std::chrono::steady_clock;
 double seconds_between(Clock::time_point a, Clock::time_point b) {
   return std::chrono::duration<double>(b - a).count();
 }
-
-// Charges time to the phase that is running.
-class PhaseTimer {
- public:
-  explicit PhaseTimer(std::array<double, phase_count>& seconds) : seconds_(seconds) {}
-  void begin(Phase phase) {
-    end();
-    phase_ = phase;
-    since_ = Clock::now();
-  }
-  void end() {
-    if (phase_) seconds_[static_cast<std::size_t>(*phase_)] += seconds_between(since_, Clock::now());
-    phase_.reset();
-  }
-
- private:
-  std::array<double, phase_count>& seconds_;
-  std::optional<Phase> phase_;
-  Clock::time_point since_;
-};
 
 void add(RenderStatistics& sum, const PassReport& pass) {
   ++sum.passes;
@@ -60,15 +43,9 @@ void add(RenderStatistics& sum, const PassReport& pass) {
   sum.volume_radius = pass.volume_radius;
 }
 
-PassReport render_parts(const RenderJob& job, std::uint64_t pass, RenderPlan& plan, const PhaseObserver& begin) {
-  const std::uint32_t parts = job.settings.parts;
-  plan.state.film.begin_pass(pass, 1 / static_cast<float>(parts));
-  PassReport report;
-  for (std::uint32_t part = 0; part < parts; ++part) {
-    const auto number = static_cast<std::uint32_t>(pass * parts + part);
-    report += plan.integrator->render_pass(job, number, plan.state.film, begin);
-  }
-  return report;
+void add(RenderStatistics& sum, const BatchReport& batch) {
+  for (const PassReport& pass : batch.passes) add(sum, pass);
+  for (std::size_t p = 0; p < phase_count; ++p) sum.phase_seconds[p] += batch.phase_seconds[p];
 }
 
 bool is_set(const std::atomic<bool>* flag) { return flag && flag->load(); }
@@ -90,9 +67,12 @@ class ErrorLooks {
   ErrorLooks(const StopRule& stop, const Film& film)
       : is_needed_(stop.noise.has_value()), cost_(guessed_per_pixel * film.pixel_count()) {}
 
-  /// After a pass, `seconds` into the render.
+  /// The number of passes, of which `passes` are done, until the next look.
+  static std::uint64_t passes_until_look(std::uint64_t passes) { return first_look_from(passes + 1) - passes; }
+
+  /// After a batch of passes, `seconds` into the render.
   void look_if_due(const RenderState& state, RenderStatistics& statistics, double seconds) {
-    if (!is_look(state.pass_count())) return;
+    if (first_look_from(state.pass_count()) != state.pass_count()) return;
     if (!is_needed_ && seconds - last_ < cost_ / most_of_time) return;
     const Clock::time_point start = Clock::now();
     statistics.error = estimate_error(state);
@@ -103,11 +83,11 @@ class ErrorLooks {
 
  private:
   // Each look comes after an eighth more passes than the one before: more would seldom end a render earlier.
-  static bool is_look(std::uint64_t passes) {
+  static std::uint64_t first_look_from(std::uint64_t passes) {
     constexpr std::uint64_t first = 4, share = 8;
     std::uint64_t look = first;
     while (look < passes) look += std::max<std::uint64_t>(1, look / share);
-    return look == passes;
+    return look;
   }
 
   static constexpr double guessed_per_pixel = 1e-6, most_of_time = 0.01;
@@ -134,6 +114,32 @@ bool run_pass(const std::atomic<bool>* flag, bool can_undo, bool& out_of_memory,
   if (!can_undo) throw;
   out_of_memory = true;
   return false;
+}
+
+// The next `most` passes of the range that the state does not have.
+std::vector<std::uint64_t> next_passes(const RenderState& state, const PassRange& range, std::size_t most) {
+  std::vector<std::uint64_t> passes;
+  for (std::uint64_t pass = range.begin; pass < range.end && passes.size() < most; ++pass)
+    if (!state.has_pass(pass)) passes.push_back(pass);
+  return passes;
+}
+
+// A look at the error must find the passes that it is fixed to, and no others.
+std::uint64_t passes_until_stop(const StopRule& stop, const RenderState& state) {
+  return stop.noise ? ErrorLooks::passes_until_look(state.pass_count()) : std::numeric_limits<std::uint64_t>::max();
+}
+
+std::optional<double> seconds_left(const StopRule& stop, const RenderStatistics& statistics) {
+  if (!stop.seconds) return std::nullopt;
+  return *stop.seconds - statistics.seconds;
+}
+
+void add(RenderState& state, const std::vector<std::uint64_t>& passes, const BatchReport& report) {
+  for (std::size_t i = 0; i < passes.size(); ++i) {
+    state.add_pass(passes[i]);
+    state.eye += report.passes[i].rays.eye;
+    state.light += report.passes[i].rays.light;
+  }
 }
 
 void keep_findings(const Integrator& integrator, RenderState& state) {
@@ -174,30 +180,29 @@ RenderStatistics render(const Scene& scene, RenderPlan& plan, const StopRule& st
   PassUndo undo(stop.undo);
   ErrorLooks looks(stop, state.film);
   if (stop.noise) looks.look_if_due(state, statistics, statistics.seconds);  // of a state that is resumed
-  std::optional<double> pass_seconds;
+  BatchSize batch_size(plan);
+  std::optional<double> batch_seconds;
   Clock::time_point last_checkpoint = Clock::now();
-  for (std::uint64_t pass = stop.passes.begin; pass < stop.passes.end; ++pass) {
-    if (state.has_pass(pass)) continue;
-    if (must_stop(stop, statistics)) break;
-    const bool can_undo = undo.begin(state, pass_seconds), can_drop = stop.drop && can_undo;
+  while (!must_stop(stop, statistics)) {
+    const std::vector<std::uint64_t> batch = next_passes(
+        state, stop.passes, batch_size.next(passes_until_stop(stop, state), seconds_left(stop, statistics)));
+    if (batch.empty()) break;
+    const bool can_undo = undo.begin(state, batch_seconds), can_drop = stop.drop && can_undo;
     observer.can_drop(can_drop);
-    const Clock::time_point pass_start = Clock::now();
-    PhaseTimer timer(statistics.phase_seconds);
-    PassReport report;
+    const Clock::time_point batch_start = Clock::now();
+    BatchReport report;
     if (!run_pass(can_drop ? stop.drop : nullptr, can_undo && stop.undo != Undo::never, statistics.out_of_memory,
-                  [&] { report = render_parts(job, pass, plan, [&](Phase phase) { timer.begin(phase); }); })) {
+                  [&] { report = render_batch(job, plan, batch); })) {
       undo.restore(state);
       plan.renew_integrator();
       break;
     }
     add(statistics, report);
-    timer.end();
+    add(state, batch, report);
     const Clock::time_point now = Clock::now();
-    state.add_pass(pass);
-    state.eye += report.rays.eye;
-    state.light += report.rays.light;
     state.integrator_state = plan.integrator->save();
-    pass_seconds = seconds_between(pass_start, now);
+    batch_seconds = seconds_between(batch_start, now);
+    batch_size.measured(*batch_seconds, batch.size());
     statistics.seconds = seconds_between(start, now);
     if (statistics.passes == 1) statistics.first_pass_seconds = statistics.seconds;
     state.seconds = seconds_before + statistics.seconds;

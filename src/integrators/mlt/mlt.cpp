@@ -56,7 +56,8 @@ class MetropolisLightTransport final : public Integrator {
   MemoryUse memory_use(const RenderSettings&) const override { return settings_.memory_use(); }
   void prepare(const RenderJob& job) override;
   bool passes_share_wavelengths() const override { return true; }
-  PassReport render_pass(const RenderJob& job, std::uint32_t number, Film& film, const PhaseObserver& begin) override;
+  PassReport render_pass(const RenderJob& job, std::uint32_t number, const FilmPass& film,
+                         const PhaseObserver& begin) override;
 
  private:
   // Independent paths: cumulative sums of importance / probability of the path's length.
@@ -82,8 +83,8 @@ class MetropolisLightTransport final : public Integrator {
   template <class Visit>
   Bootstrap draw_independent_paths(const PathPass& pass, std::uint64_t key, Visit&& visit) const;
   RayCounts run_chain(const PathPass& pass, const Bootstrap& bootstrap, std::size_t first, std::uint64_t key,
-                      Film& film) const;
-  void add(const PathPass& pass, const State& state, float weight, Film& film) const;
+                      const FilmPass& film) const;
+  void add(const PathPass& pass, const State& state, float weight, const FilmPass& film) const;
 
   MltSettings settings_;
   // What follows from scene and settings.
@@ -141,7 +142,7 @@ void MetropolisLightTransport::prepare(const RenderJob& job) {
   independent_ = found > 0 ? static_cast<float>(independent_paths_) : 0;
 }
 
-void MetropolisLightTransport::add(const PathPass& pass, const State& state, float weight, Film& film) const {
+void MetropolisLightTransport::add(const PathPass& pass, const State& state, float weight, const FilmPass& film) const {
   // Values that are not finite have importance 0. They are added anyway, so that the film counts them.
   if (state.importance > 0 && !(weight > 0)) return;
   const float density = mutated_ * state.importance + independent_ * length_probability(state.scatterings);
@@ -153,7 +154,7 @@ void MetropolisLightTransport::add(const PathPass& pass, const State& state, flo
 }
 
 RayCounts MetropolisLightTransport::run_chain(const PathPass& pass, const Bootstrap& bootstrap, std::size_t first,
-                                              std::uint64_t key, Film& film) const {
+                                              std::uint64_t key, const FilmPass& film) const {
   RayCounts counts;
   const auto scale = static_cast<float>(bootstrap.mean() / static_cast<double>(expected_));
   const int scatterings = scatterings_of(bootstrap, first);
@@ -184,7 +185,7 @@ RayCounts MetropolisLightTransport::run_chain(const PathPass& pass, const Bootst
   return counts;
 }
 
-PassReport MetropolisLightTransport::render_pass(const RenderJob& job, std::uint32_t number, Film& film,
+PassReport MetropolisLightTransport::render_pass(const RenderJob& job, std::uint32_t number, const FilmPass& film,
                                                  const PhaseObserver& begin) {
   const RenderSettings& settings = job.settings;
   PassReport report;

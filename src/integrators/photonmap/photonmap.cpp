@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "base/pool.h"
 #include "integrators/photonmap/gather_cache.h"
 #include "integrators/photonmap/photonmap_settings.h"
 #include "integrators/photonmap/reverse_gather.h"
@@ -37,7 +38,9 @@ class PhotonMapper final : public Integrator {
     return contents;
   }
   bool passes_share_wavelengths() const override { return true; }
-  PassReport render_pass(const RenderJob& job, std::uint32_t pass, Film& film, const PhaseObserver& begin) override;
+  bool passes_may_overlap() const override { return true; }
+  PassReport render_pass(const RenderJob& job, std::uint32_t pass, const FilmPass& film,
+                         const PhaseObserver& begin) override;
 
  private:
   TwoPassMaps trace(const RenderJob& job, std::uint32_t pass, const PhaseObserver& begin);
@@ -46,7 +49,7 @@ class PhotonMapper final : public Integrator {
   Emission emission_, caustic_emission_;
   float volume_radius_ = 0;  // m, of all passes
   std::optional<TwoPassMaps> kept_;
-  PhotonTracer tracer_, caustic_tracer_;
+  Pool<PhotonTracer> tracers_;
 };
 
 // What is kept, without what it took to make it.
@@ -88,44 +91,49 @@ TwoPassMaps PhotonMapper::trace(const RenderJob& job, std::uint32_t pass, const 
   const RenderSettings& settings = job.settings;
   TwoPassMaps maps;
   maps.draw = draw_for_pass(job, pass);
+  const auto tracer = tracers_.borrow(), caustic_tracer = tracers_.borrow();
   begin(Phase::photons);
-  tracer_.trace(scene, {settings.seed, Stream::light, pass, settings.photons},
+  tracer->trace(scene, {settings.seed, Stream::light, pass, settings.photons},
                 {.first_depth = 1, .max_depth = settings.max_depth, .media = settings_.medium_records()}, maps.draw,
                 emission_.get());
   const std::uint64_t caustic_photons = (settings_.caustic_photons + settings.parts - 1) / settings.parts;
   if (caustic_photons > 0)
-    caustic_tracer_.trace(scene, {settings.seed, Stream::caustic, pass, caustic_photons},
+    caustic_tracer->trace(scene, {settings.seed, Stream::caustic, pass, caustic_photons},
                           {.max_depth = settings.max_depth, .caustics_alone = true}, maps.draw,
                           caustic_emission_.get());
   RayCounts shadow_rays;
   begin(Phase::build);
-  maps.global = TwoPassMaps::Map::build(tracer_.chunks(), settings.color);
+  maps.global = TwoPassMaps::Map::build(tracer->chunks(), settings.color);
   std::vector<Photon> caustics;
-  for (const std::vector<Photon>& chunk : (settings_.caustic_photons > 0 ? caustic_tracer_ : tracer_).chunks())
+  for (const std::vector<Photon>& chunk : (caustic_photons > 0 ? caustic_tracer : tracer)->chunks())
     std::copy_if(chunk.begin(), chunk.end(), std::back_inserter(caustics),
                  [](const Photon& photon) { return photon.flags.caustic; });
   maps.caustic = TwoPassMaps::Map::build(caustics, settings.color);
   if (settings_.precomputes_irradiance)
-    maps.irradiance = IrradiancePhotons::build(maps.global, tracer_.chunks(), settings_.estimates.global, maps.draw.w);
+    maps.irradiance = IrradiancePhotons::build(maps.global, tracer->chunks(), settings_.estimates.global, maps.draw.w);
   if (settings_.shows_shadows() || (settings_.spares_shadow_rays && !scene.has_media()))
     maps.shadows =
         ShadowPhotons::trace(scene, {settings.seed, Stream::shadow, pass, settings.photons}, maps.draw, shadow_rays);
   if (settings_.guides_gathering)
-    maps.guides = GuidePhotons::build(tracer_.chunks(), maps.draw.w,
+    maps.guides = GuidePhotons::build(tracer->chunks(), maps.draw.w,
                                       [](const PhotonFlags& flags) { return !flags.direct && !flags.caustic; });
-  if (!tracer_.medium_chunks().empty())
-    maps.volume.emplace(settings_.volume, settings_.estimates.global.kernel, volume_radius_, tracer_.medium_chunks(),
+  if (!tracer->medium_chunks().empty())
+    maps.volume.emplace(settings_.volume, settings_.estimates.global.kernel, volume_radius_, tracer->medium_chunks(),
                         settings.color);
   maps.report = report_of(maps);
-  maps.report.rays = tracer_.rays();
-  maps.report.rays += caustic_tracer_.rays();
+  maps.report.rays = tracer->rays();
+  maps.report.light_paths = tracer->emitted();
+  if (caustic_photons > 0) {
+    maps.report.rays += caustic_tracer->rays();
+    maps.report.light_paths += caustic_tracer->emitted();
+  }
   maps.report.rays += shadow_rays;
-  maps.report.light_paths = tracer_.emitted() + caustic_tracer_.emitted();
   if (settings_.fills_cache()) fill_gather_caches(job, settings_.estimates, pass, maps);
   return maps;
 }
 
-PassReport PhotonMapper::render_pass(const RenderJob& job, std::uint32_t pass, Film& film, const PhaseObserver& begin) {
+PassReport PhotonMapper::render_pass(const RenderJob& job, std::uint32_t pass, const FilmPass& film,
+                                     const PhaseObserver& begin) {
   std::optional<TwoPassMaps> fresh;
   if (!kept_) fresh = trace(job, pass, begin);
   const TwoPassMaps& maps = kept_ ? *kept_ : *fresh;

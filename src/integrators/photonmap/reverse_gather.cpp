@@ -36,7 +36,7 @@ struct ReverseGather {
   const TwoPassMaps& maps;
   const InfluencePhotons& photons;
   std::uint32_t pass;
-  Film& film;
+  const FilmPass& film;
 
   RayCounts render_block(const PixelWindow& block) const;
 };
@@ -73,7 +73,7 @@ RayCounts ReverseGather::render_block(const PixelWindow& block) const {
 }  // namespace
 
 PassReport gather_in_reverse(const RenderJob& job, const TwoPassSettings& settings, const TwoPassMaps& maps,
-                             RadiusRule radii, std::uint32_t pass, Film& film, const PhaseObserver& begin) {
+                             RadiusRule radii, std::uint32_t pass, const FilmPass& film, const PhaseObserver& begin) {
   begin(Phase::build);
   const InfluencePhotons photons = InfluencePhotons::of(maps.global, photon_radii(maps.global, settings.global, radii));
   PassReport report = maps.report;

@@ -12,6 +12,6 @@ namespace lanthorn {
 /// Adds the pass to the film, in blocks of pixels whose reverse photons fit into about the `memory` bytes of the
 /// settings.
 PassReport gather_in_reverse(const RenderJob& job, const TwoPassSettings& settings, const TwoPassMaps& maps,
-                             RadiusRule radii, std::uint32_t pass, Film& film, const PhaseObserver& begin);
+                             RadiusRule radii, std::uint32_t pass, const FilmPass& film, const PhaseObserver& begin);
 
 }  // namespace lanthorn

@@ -21,6 +21,7 @@
 #include <string>
 #include <vector>
 
+#include "base/pool.h"
 #include "integrators/integrator.h"
 #include "integrators/vcm/vcm_pass.h"
 #include "integrators/vcm/vcm_visitors.h"
@@ -32,7 +33,7 @@ namespace lanthorn {
 
 namespace {
 
-RayCounts trace_light_paths(const VcmPass& pass, Film& film) {
+RayCounts trace_light_paths(const VcmPass& pass, const FilmPass& film) {
   const View& view = pass.job.view;
   return trace_light_paths(
       pass, &film, [&](const LightArrival& light, const LensLight& seen, const PlaceEffort& there, std::size_t) {
@@ -41,7 +42,7 @@ RayCounts trace_light_paths(const VcmPass& pass, Film& film) {
       });
 }
 
-RayCounts trace_eye_paths(const VcmPass& pass, Film& film) {
+RayCounts trace_eye_paths(const VcmPass& pass, const FilmPass& film) {
   return trace_eye_paths(
       pass.job, {pass.number, {pass.max_depth(), pass.settings.roulette_depth}}, film,
       [&](Sampler& sampler) { return pass.draw_of_eye_path(sampler); },
@@ -96,6 +97,8 @@ class VertexConnectionAndMerging final : public Integrator {
     return settings_.chooses_effort && prepared_ ? prepared_->effort.findings() : std::string();
   }
   bool passes_share_wavelengths() const override { return true; }
+  // Until the tests of the radii are done, each pass adds to them in its turn.
+  bool passes_may_overlap() const override { return !tests_ || tests_->are_done(); }
   void prepare(const RenderJob& job) override {
     prepared_.emplace(job, settings_);
     tests_.reset();
@@ -111,7 +114,8 @@ class VertexConnectionAndMerging final : public Integrator {
     if (tests_) tests_->load(results);
   }
 
-  PassReport render_pass(const RenderJob& job, std::uint32_t number, Film& film, const PhaseObserver& begin) override {
+  PassReport render_pass(const RenderJob& job, std::uint32_t number, const FilmPass& film,
+                         const PhaseObserver& begin) override {
     if (prepared_->effort.light_paths() == 0) {  // path tracing
       begin(Phase::eye);
       PassReport report;
@@ -120,7 +124,8 @@ class VertexConnectionAndMerging final : public Integrator {
     }
     begin(Phase::photons);
     if (tests_) count_photons_before(job, number);
-    VcmPass pass(job, number, settings_, *prepared_, vertices_, tests_ ? &*tests_ : nullptr);
+    const auto vertices = vertices_.borrow();
+    VcmPass pass(job, number, settings_, *prepared_, *vertices, tests_ ? &*tests_ : nullptr);
     PassReport report;
     report.light_paths = pass.light_paths.total();
     report.rays = trace_light_paths(pass, film);
@@ -137,8 +142,9 @@ class VertexConnectionAndMerging final : public Integrator {
  private:
   // The radii of a pass depend on the first passes. Those before a shard are not rendered here.
   void count_photons_before(const RenderJob& job, std::uint32_t number) {
+    const auto vertices = vertices_.borrow();
     while (!tests_->are_done() && tests_->passes_counted() < number) {
-      VcmPass pass(job, tests_->passes_counted(), settings_, *prepared_, vertices_, &*tests_);
+      VcmPass pass(job, tests_->passes_counted(), settings_, *prepared_, *vertices, &*tests_);
       count_photons(pass);
       tests_->end_pass();
     }
@@ -147,7 +153,7 @@ class VertexConnectionAndMerging final : public Integrator {
   VcmSettings settings_;
   std::optional<VcmPreparation> prepared_;
   std::optional<UniformityTests> tests_;  // if radii shrink pixel by pixel
-  LightVertices vertices_;                // their memory serves all passes
+  Pool<LightVertices> vertices_;
 };
 
 }  // namespace

@@ -35,7 +35,7 @@ struct LightArrival {
 template <class See>
 class LightVisitor {
  public:
-  LightVisitor(const PathContext& path, const VcmPass& pass, std::uint32_t light, float time, const Film* film,
+  LightVisitor(const PathContext& path, const VcmPass& pass, std::uint32_t light, float time, const FilmPass* film,
                LightVertices::Chunk& chunk, const See& see)
       : path_(path),
         pass_(pass),
@@ -91,7 +91,7 @@ class LightVisitor {
   std::uint32_t light_;
   float time_;
   bool keeps_beams_ = false;
-  const Film* film_;
+  const FilmPass* film_;
   LightVertices::Chunk& chunk_;
   const See& see_;
   Subpath subpath_;
@@ -244,7 +244,7 @@ class EyeVisitor {
 
 /// Traces the light paths of a pass. `film`: where light will be splatted, if it will; its memory is fetched before.
 template <class See>
-RayCounts trace_light_paths(const VcmPass& pass, const Film* film, const See& see) {
+RayCounts trace_light_paths(const VcmPass& pass, const FilmPass* film, const See& see) {
   pass.vertices.begin(pass.light_paths.chunk_count());
   const WalkLimits limits{.max_depth = pass.max_depth()};
   return pass.light_paths.for_each([&](const LightPath& start, Sampler& sampler, RayCounts& counts, std::size_t c) {

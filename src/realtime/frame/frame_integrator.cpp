@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "base/parallel.h"
-#include "film/film.h"
+#include "film/film_pass.h"
 #include "gl/context.h"
 #include "lanthorn/realtime.h"
 #include "math/sampler.h"
@@ -70,7 +70,7 @@ float place_frame(const RenderJob& job, std::uint32_t pass, FrameSettings& setti
 
 /// Adds the last frame to the film: light and features.
 void add_frame(const Renderer& renderer, const RenderJob& job, const FrameSettings& settings, float weight,
-               Film& film) {
+               const FilmPass& film) {
   const FrameOnCpu seen = read_frame(renderer);
   const Point eye = window_rays(job.view, settings.offset, settings.lens, settings.time).eye;
   const int width = seen.light.width;
@@ -128,7 +128,8 @@ class FrameIntegrator final : public Integrator {
     const gl::Driver& driver = context_->driver();
     return fmt::format("{} draws by {}{}", name(), driver.renderer, driver.software ? ", in software" : "");
   }
-  PassReport render_pass(const RenderJob& job, std::uint32_t pass, Film& film, const PhaseObserver& begin) override;
+  PassReport render_pass(const RenderJob& job, std::uint32_t pass, const FilmPass& film,
+                         const PhaseObserver& begin) override;
 
  private:
   const std::string& name() const { return technique_.description.name; }
@@ -143,7 +144,7 @@ class FrameIntegrator final : public Integrator {
   std::optional<Renderer> renderer_;  // its objects are those of the context, which must outlive it
 };
 
-PassReport FrameIntegrator::render_pass(const RenderJob& job, std::uint32_t pass, Film& film,
+PassReport FrameIntegrator::render_pass(const RenderJob& job, std::uint32_t pass, const FilmPass& film,
                                         const PhaseObserver& begin) {
   const bool has_photons = technique_.description.has_photons;
   const gl::CurrentScope current(*context_);

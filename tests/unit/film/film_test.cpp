@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include "film/film.h"
+#include "film/film_pass.h"
 
 #include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>
@@ -8,6 +8,7 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <iterator>
 #include <nlohmann/json.hpp>
@@ -84,9 +85,8 @@ std::vector<Contribution> random_contributions(std::size_t count) {
 Film film_of(const std::vector<Contribution>& contributions) {
   Film film(width, height, 100, {.light = layers, .splats = true});
   for (const Contribution& c : contributions) {
-    film.begin_pass(c.pass);
-    film.add(c.pixel, c.sample);
-    film.splat(c.pixel, c.layer, c.splat);
+    FilmPass(film, c.pass).add(c.pixel, c.sample);
+    FilmPass(film, c.pass).splat(c.pixel, c.layer, c.splat);
   }
   return film;
 }
@@ -107,7 +107,7 @@ TEST(Film, ConcurrentSplatsAddExactly) {
       parallel(width, height, 100, {.light = layers, .splats = true});
   const auto splat_all = [&](Film& film) {
     for (int i = 0; i < 300; ++i)
-      for (const Contribution& c : contributions) film.splat(c.pixel % 2, c.layer, c.splat);
+      for (const Contribution& c : contributions) FilmPass(film, 0).splat(c.pixel % 2, c.layer, c.splat);
   };
   for (int i = 0; i < 4; ++i) splat_all(serial);
   {
@@ -163,12 +163,11 @@ TEST(Film, HalvesHaveOneOfEachTwoPassesAndAreEven) {
 TEST(Film, BiasIsAMeanOfSamplesAndNotOfTheColor) {
   Film film(1, 1, 4, {.light = layers, .bias = true});
   for (std::uint64_t pass = 0; pass < 8; ++pass) {
-    film.begin_pass(pass);
     PixelSample s;
     s.light[direct] = {1, 2, 3};
     s.bias = half_of_pass(pass) == FilmHalf::first ? Rgb{-1, 0, 2} : Rgb{3, 0, 0};
     s.weight = 0.5f;
-    film.add(0, s);
+    FilmPass(film, pass).add(0, s);
   }
   EXPECT_EQ(film.resolve_color(8).pixels, (std::vector<float>{1, 2, 3}));
   EXPECT_EQ(film.resolve_half(FilmHalf::first, 4, {2, 2, 2}).bias.pixels, (std::vector<float>{-2, 0, 4}));
@@ -178,19 +177,17 @@ TEST(Film, BiasIsAMeanOfSamplesAndNotOfTheColor) {
 
 TEST(Film, ResolvesMeans) {
   Film film(width, height, 4, {.light = layers, .splats = true});
-  film.begin_pass(0);
   PixelSample s;
   s.light[emission] = {1, 2, 3};
   s.light[direct] = {0.5f, 0, 0};
   s.features.albedo = {0.25f, 0.5f, 1};
   s.features.normal = {0, 0, 1};
   s.features.depth = 3.0f;
-  film.add(8, s);
-  film.splat(8, caustic, {2, 4, 6});
-  film.begin_pass(1);
+  FilmPass(film, 0).add(8, s);
+  FilmPass(film, 0).splat(8, caustic, {2, 4, 6});
   PixelSample miss;
   miss.light[emission] = {3, 3, 3};
-  film.add(8, miss);
+  FilmPass(film, 1).add(8, miss);
 
   const Image image = film.resolve(2);
   const auto value = [&](const char* channel) { return image.at(1, 1, image.find_channel(channel).value()); };
@@ -221,10 +218,10 @@ TEST(Film, BucketsHoldMeansOverTheWavelengthsInThem) {
   PixelSample s;
   s.spectrum = radiance_at({410, 480, 510, 720}, 3);  // one outside of all buckets
   s.weight = 0.25f;
-  film.add(0, s);
+  FilmPass(film, 0).add(0, s);
   s.spectrum = radiance_at({420, 530, 599, 399}, 3);
   s.weight = 1.5f;
-  film.add(0, s);
+  FilmPass(film, 0).add(0, s);
   const auto value = [&](int x, const char* channel) {
     const Image image = film.resolve(4);
     return image.at(x, 0, image.find_channel(channel).value());
@@ -239,11 +236,11 @@ TEST(Film, BucketsHoldMeansOverTheWavelengthsInThem) {
   varying.spectrum = radiance_at({499, 599, 699, 900}, 0);
   varying.spectrum->lambda = {499, 419, 900, 900};
   varying.spectrum->radiance = {1, 4, 7, 7};
-  film.add(1, varying);
+  FilmPass(film, 0).add(1, varying);
   EXPECT_NEAR(value(1, "S0.450,0nm"), (500 * 1 + 600 * 4) / (500.0f + 600), 1e-4f);
   film = Film(2, 1, 4, {.light = layers, .splats = true, .buckets = buckets});
   // Splats count with their density, and are divided by the passes.
-  film.splat_spectrum(1, radiance_at({449, 659, 699, 900}, 2), 0.5f);
+  FilmPass(film, 0).splat_spectrum(1, radiance_at({449, 659, 699, 900}, 2), 0.5f);
   EXPECT_NEAR(value(1, "S0.450,0nm"), 0.5f * 2 * 450 / (4 * 100) / 4, 1e-5f);
   EXPECT_NEAR(value(1, "S0.650,0nm"), 0.5f * 2 * (660 + 700) / (4 * 100) / 4, 1e-5f);
 }
@@ -255,9 +252,9 @@ TEST(Film, TechniquesAddUpToColor) {
   s.light[indirect] = {0.5f, 0.25f, 0};
   s.parts = {Rgb{0.25f, 0, 0}, Rgb{0.75f, 2, 0}, Rgb{0, 0.25f, 3}, Rgb{0.5f, 0, 0}};
   s.weight = 0.5f;
-  film.add(1, s);
-  film.splat(1, caustic, {2, 0, 0});
-  film.splat(1, direct, {0, 0, 4});
+  FilmPass(film, 0).add(1, s);
+  FilmPass(film, 0).splat(1, caustic, {2, 0, 0});
+  FilmPass(film, 0).splat(1, direct, {0, 0, 4});
   const auto layer = [&](const char* name) { return select_layer(film.resolve(2), name).value(); };
   std::vector<float> sum(6);
   for (const char* name : {"hit", "nee", "vc", "vm", "splat"}) {
@@ -286,7 +283,7 @@ TEST(Film, SharesAreOfPositiveLight) {
   Film film(1, 1, 4, {.light = layers, .decomposition = techniques});
   PixelSample s;
   s.parts = {Rgb{1, 1, 1}, Rgb{0, -1, 0}, Rgb{0, 0, 0}, Rgb{1, 1, 1}};
-  film.add(0, s);
+  FilmPass(film, 0).add(0, s);
   EXPECT_EQ(select_layer(film.resolve(1), "technique.share")->pixels, (std::vector<float>{0.5f, 0, 0.5f}));
 }
 
@@ -295,14 +292,13 @@ TEST(Film, BucketsAreSavedAndMergedExactly) {
   const auto film_of_passes = [&](unsigned begin, unsigned end) {
     Film film(2, 2, 4, {.light = layers, .splats = true, .buckets = buckets});
     for (unsigned pass = begin; pass < end; ++pass) {
-      film.begin_pass(pass);
       std::mt19937 rng(pass);
       const auto nm = [&] { return 350 + 490 * std::generate_canonical<float, 24>(rng); };
       for (std::uint32_t pixel = 0; pixel < 4; ++pixel) {
         PixelSample s;
         s.spectrum = radiance_at({nm(), nm(), nm(), nm()}, nm());
-        film.add(pixel, s);
-        film.splat_spectrum(pixel, radiance_at({nm(), nm(), nm(), nm()}, 1e-9f), 1);
+        FilmPass(film, pass).add(pixel, s);
+        FilmPass(film, pass).splat_spectrum(pixel, radiance_at({nm(), nm(), nm(), nm()}, 1e-9f), 1);
       }
     }
     return film;
@@ -328,7 +324,7 @@ TEST(Film, SamplesThatAreScaledDownAreSoInTheirBuckets) {
   PixelSample s;
   s.light[emission] = {1, 1, 1};  // Y = 1, Z = 1.089
   s.spectrum = radiance_at({450, 500, 550, 600}, 1);
-  film.add(0, s);
+  FilmPass(film, 0).add(0, s);
   const Image image = film.resolve(1);
   EXPECT_NEAR(image.at(0, 0, image.channel_count() - 1), image.at(0, 0, 0), 1e-5f);
   EXPECT_LT(image.at(0, 0, 0), 0.5f);
@@ -357,13 +353,12 @@ TEST(Film, TinyContributionsAreNotLost) {
   double expected = 0;
   constexpr int count = 200000;
   for (int i = 0; i < count; ++i) {
-    film.begin_pass(static_cast<std::uint64_t>(i));
     const float value = std::generate_canonical<float, 24>(rng) * 0x1p-44f;
     expected += static_cast<double>(value);
-    film.splat(0, indirect, {value, 0x1p-45f, -value});
+    FilmPass(film, static_cast<std::uint64_t>(i)).splat(0, indirect, {value, 0x1p-45f, -value});
     PixelSample s;
     s.light[caustic].r = value;
-    film.add(0, s);
+    FilmPass(film, static_cast<std::uint64_t>(i)).add(0, s);
   }
   const auto sum = [&](std::size_t slot) {
     return static_cast<double>(film.plane(slot)[0] + film.plane(film.plane_count() / 2 + slot)[0]) * 0x1p-40;
@@ -381,7 +376,7 @@ TEST(Film, FloatsInRangeAreStoredExactly) {
   EXPECT_EQ(film.step_exponent(), 2 - 40);
   PixelSample s;
   s.light[direct] = {0x1.fffffep-15f, -0x1.234566p0f, 2.9999998f};
-  film.add(0, s);
+  FilmPass(film, 0).add(0, s);
   const Image image = film.resolve(1);
   EXPECT_EQ(select_layer(image, "direct")->pixels, (std::vector<float>{0x1.fffffep-15f, -0x1.234566p0f, 2.9999998f}));
 }
@@ -390,11 +385,9 @@ TEST(Film, ReportsNonFiniteValuesWithTheirPlace) {
   Film film(width, height, 1, {.light = layers, .splats = true});
   PixelSample bad;
   bad.light[indirect] = {std::nanf(""), 1, infinity};
-  film.begin_pass(9);
-  film.add(3, bad);
-  film.begin_pass(4);
-  film.add(20, bad);
-  film.splat(11, caustic, {0, -infinity, 0});
+  FilmPass(film, 9).add(3, bad);
+  FilmPass(film, 4).add(20, bad);
+  FilmPass(film, 4).splat(11, caustic, {0, -infinity, 0});
   const FilmReport report = film.report();
   EXPECT_FALSE(report.clean());
   EXPECT_EQ(report.non_finite, 5u);
@@ -404,8 +397,7 @@ TEST(Film, ReportsNonFiniteValuesWithTheirPlace) {
 
 TEST(Film, ReportsOverflowAndSaturates) {
   Film film(2, 1, 1, {.light = layers, .decomposition = techniques, .splats = true});
-  film.begin_pass(3);
-  film.splat(1, direct, {0x1p16f, 0x1p17f, 0});  // at the limit of a contribution, and beyond
+  FilmPass(film, 3).splat(1, direct, {0x1p16f, 0x1p17f, 0});  // at the limit of a contribution, and beyond
   EXPECT_EQ(film.report().too_large, 1u);
   EXPECT_EQ(film.report().first_too_large, (FilmPlace{3, 1}));
   EXPECT_EQ(film.report().saturated, 0u);
@@ -413,15 +405,15 @@ TEST(Film, ReportsOverflowAndSaturates) {
   s.light[emission] = {-0x1p16f, 0x1p15f, 0};
   s.parts[0].g = 0x1p16f;
   for (int i = 0; i < 100; ++i) {
-    film.splat(1, direct, {0x1p16f, 0, 0});
-    film.add(0, s);
+    FilmPass(film, 3).splat(1, direct, {0x1p16f, 0, 0});
+    FilmPass(film, 3).add(0, s);
   }
   EXPECT_EQ(film.report().saturated, 3u);
   EXPECT_EQ(film.plane(first_splats + 3)[1], std::int64_t{1} << 62);
   EXPECT_EQ(film.plane(0)[0], -(std::int64_t{1} << 62));
-  film.splat(1, direct, {-1, 0, 0});
+  FilmPass(film, 3).splat(1, direct, {-1, 0, 0});
   s.light[emission].r = 1;
-  film.add(0, s);
+  FilmPass(film, 3).add(0, s);
   EXPECT_EQ(film.plane(0)[0], -(std::int64_t{1} << 62)) << "saturation sticks";
   EXPECT_EQ(film.plane(first_splats + 3)[1], std::int64_t{1} << 62) << "saturation sticks";
   Film other = film;
@@ -431,16 +423,35 @@ TEST(Film, ReportsOverflowAndSaturates) {
 
 TEST(Film, ConcurrentOverflowSaturates) {
   Film film(1, 1, 1, {.light = layers, .splats = true});
-  parallel_for(0, 2000, [&](int) { film.splat(0, direct, {0x1.9p15f, -0x1.7p15f, 1}); });
+  parallel_for(0, 2000, [&](int) { FilmPass(film, 0).splat(0, direct, {0x1.9p15f, -0x1.7p15f, 1}); });
   EXPECT_EQ(film.plane(first_splats + 3)[0], std::int64_t{1} << 62);
   EXPECT_EQ(film.report().saturated, 2u);
 }
 
+// Passes 0, 3, 5 and 6 belong to one half.
+TEST(Film, AddsSamplesOfSeveralPassesToOnePixelAtOnce) {
+  FilmContents contents{.light = {"direct"}, .decomposition = {.parts = {"a", "b"}}, .bias = true};
+  contents.buckets = SpectralBuckets{};
+  const std::array<std::uint64_t, 4> passes{0, 3, 5, 6};
+  const auto add = [](Film& film, std::uint64_t pass, int i) {
+    PixelSample s;
+    s.light[0] = {static_cast<float>(i), 1e-13f, 1};
+    s.parts[1] = s.light[0];
+    s.weight = 1 + static_cast<float>(pass);
+    s.spectrum = radiance_at({449, 559, 659, 699}, 2);
+    FilmPass(film, pass).add(0, s);
+  };
+  Film together(1, 1, 1, contents), in_turn(1, 1, 1, contents);
+  parallel_for(0, 40000, [&](int i) { add(together, passes[static_cast<std::size_t>(i) % 4], i); });
+  for (int i = 0; i < 40000; ++i) add(in_turn, passes[static_cast<std::size_t>(i) % 4], i);
+  for (std::size_t plane = 0; plane < together.plane_count(); ++plane)
+    EXPECT_EQ(together.plane(plane), in_turn.plane(plane)) << plane;
+}
+
 TEST(Film, ConcurrentReportsAgreeOnTheFirstPlace) {
   Film film(100, 100, 1, {.light = layers, .splats = true});
-  film.begin_pass(1);
   parallel_for(0u, 10000u, [&](std::uint32_t i) {
-    if (i >= 17) film.splat(i, direct, {infinity, 0, 0});
+    if (i >= 17) FilmPass(film, 1).splat(i, direct, {infinity, 0, 0});
   });
   EXPECT_EQ(film.report().non_finite, 10000u - 17);
   EXPECT_EQ(film.report().first_non_finite, (FilmPlace{1, 17}));
@@ -710,7 +721,7 @@ TEST(Film, SamplesAreClampedAsAWhole) {
   bright.light[caustic] = {3, 3, 3};
   bright.parts[2] = {4, 4, 4};
   bright.features.albedo = {1, 1, 1};
-  film.add(0, bright);
+  FilmPass(film, 0).add(0, bright);
   const Image image = film.resolve(1);
   const auto mean = [&](const char* channel) { return image.at(0, 0, *image.find_channel(channel)); };
   EXPECT_NEAR(mean("R"), 4 * 2 / 4.356f, 0.003f);
@@ -719,7 +730,7 @@ TEST(Film, SamplesAreClampedAsAWhole) {
   EXPECT_EQ(mean("albedo.B"), 1);
   Film dim(1, 1, 10, {.light = layers});
   dim.set_sensor({{}, 4.4f});
-  dim.add(0, bright);
+  FilmPass(dim, 0).add(0, bright);
   EXPECT_EQ(dim.resolve(1).at(0, 0, 0), 4);
 }
 
@@ -730,8 +741,8 @@ TEST(Film, SensorsBalanceSamplesAndSplats) {
   PixelSample sample;
   sample.light[emission] = {1, 2, 3};
   sample.parts[0] = sample.light[emission];
-  film.add(0, sample);
-  film.splat(0, caustic, {4, 5, 6});
+  FilmPass(film, 0).add(0, sample);
+  FilmPass(film, 0).splat(0, caustic, {4, 5, 6});
   const Image image = film.resolve(1);
   EXPECT_EQ(select_layer(image, "technique.hit")->pixels, select_layer(image, "emission")->pixels);
   EXPECT_EQ(image.at(0, 0, 0), 2 + 5);

@@ -29,7 +29,8 @@ class AmbientOcclusion final : public Integrator {
 
   FilmContents film_contents(const Scene&) const override { return {.light = {"occlusion", "background"}}; }
 
-  PassReport render_pass(const RenderJob& job, std::uint32_t pass, Film& film, const PhaseObserver& begin) override {
+  PassReport render_pass(const RenderJob& job, std::uint32_t pass, const FilmPass& film,
+                         const PhaseObserver& begin) override {
     begin(Phase::eye);
     PassReport report;
     report.rays = for_each_pixel(job.view.window, [&](const PixelPlace& place, RayCounts& counts) {
@@ -65,7 +66,7 @@ class AmbientOcclusion final : public Integrator {
 // Its passes from the third on need more memory than there is.
 class Insatiable final : public Integrator {
  public:
-  PassReport render_pass(const RenderJob& /*any*/, std::uint32_t pass, Film& film,
+  PassReport render_pass(const RenderJob& /*any*/, std::uint32_t pass, const FilmPass& film,
                          const PhaseObserver& begin) override {
     begin(Phase::eye);
     PixelSample sample;

@@ -10,6 +10,7 @@
 #include <random>
 #include <string>
 
+#include "film/film_pass.h"
 #include "lanthorn/error.h"
 #include "lanthorn/file.h"
 #include "render/render.h"
@@ -33,17 +34,16 @@ RenderState shard(std::uint64_t first, std::uint64_t end, bool splats = true) {
   RenderState state;
   state.film = Film(6, 4, 10, {.light = {"direct", "caustic"}, .splats = splats});
   for (std::uint64_t pass = first; pass < end; ++pass) {
-    state.film.begin_pass(pass);
     std::mt19937 rng(static_cast<unsigned>(pass));
     const auto value = [&] { return std::generate_canonical<float, 24>(rng) * 12 - 1; };
     for (std::uint32_t pixel = 0; pixel < 24; ++pixel) {
       PixelSample s;
       s.light[0] = {value(), value(), value()};
       s.features.depth = value();
-      state.film.add(pixel, s);
-      if (splats) state.film.splat(pixel, 1, {value(), 1e-13f, 0});
+      FilmPass(state.film, pass).add(pixel, s);
+      if (splats) FilmPass(state.film, pass).splat(pixel, 1, {value(), 1e-13f, 0});
     }
-    if (pass % 3 == 1) state.film.add(static_cast<std::uint32_t>(pass), {.light = {Rgb{NAN, 0, 0}}});
+    if (pass % 3 == 1) FilmPass(state.film, pass).add(static_cast<std::uint32_t>(pass), {.light = {Rgb{NAN, 0, 0}}});
     state.add_pass(pass);
   }
   state.integrator = "probppm";
@@ -83,8 +83,8 @@ TEST(State, KeepsLayersAndTheirDecomposition) {
   PixelSample s;
   s.light = {Rgb{1, 2, 3}, Rgb{0, 1, 0}, Rgb{4, 0, 0}};
   s.parts = {Rgb{5, 2, 3}, Rgb{0, 1, 0}};
-  state.film.add(1, s);
-  state.film.splat(1, 2, {0, 0, 8});
+  FilmPass(state.film, 0).add(1, s);
+  FilmPass(state.film, 0).splat(1, 2, {0, 0, 8});
   const RenderState read = decode_state(encode_state(state), "a.state");
   EXPECT_EQ(read.film.contents(), state.film.contents());
   const Image image = read.film.resolve(1);
@@ -102,7 +102,7 @@ TEST(State, KeepsSpectralBuckets) {
   s.spectrum->radiance = {1, 2, 3, 4};
   s.spectrum->lambda = {410, 500, 600, 690};
   s.spectrum->pdf = {0.01f, 0.02f, 0.03f, 0.04f};
-  state.film.add(4, s);
+  FilmPass(state.film, 0).add(4, s);
   const RenderState read = decode_state(encode_state(state), "a.state");
   EXPECT_EQ(read.film.buckets(), state.film.buckets());
   EXPECT_EQ(read.film.resolve(3).pixels, state.film.resolve(3).pixels);

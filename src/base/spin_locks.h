@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <memory>
+
+namespace lanthorn {
+
+/// Locks for the items of an array, each of which serves a group of neighbours. For critical sections of some
+/// nanoseconds that seldom meet: a thread waits by spinning. A copy has locks of its own, none of which is taken.
+class SpinLocks {
+ public:
+  SpinLocks() : locks_(std::make_unique<Lock[]>(count)) {}
+  SpinLocks(const SpinLocks&) : SpinLocks() {}
+  SpinLocks& operator=(const SpinLocks&) { return *this; }
+  ~SpinLocks() = default;
+
+  /// Holds the lock of item `index` while it lives.
+  class Guard {
+   public:
+    Guard(const SpinLocks& locks, std::size_t index) : lock_(locks.locks_[index / group % count].flag) {
+      while (lock_.test_and_set(std::memory_order_acquire)) __builtin_ia32_pause();
+    }
+    Guard(const Guard&) = delete;
+    Guard& operator=(const Guard&) = delete;
+    ~Guard() { lock_.clear(std::memory_order_release); }
+
+   private:
+    std::atomic_flag& lock_;
+  };
+
+ private:
+  static constexpr std::size_t count = 1021;  // a prime: groups in one column of a picture have different locks
+  static constexpr std::size_t group = 16;
+  struct alignas(64) Lock {  // a cache line each: threads that take neighbouring locks do not disturb one another
+    std::atomic_flag flag;
+  };
+  std::unique_ptr<Lock[]> locks_;
+};
+
+}  // namespace lanthorn

@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// Passes that are rendered at once, so that threads which find no more work in one pass go on with another.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "integrators/integrator.h"
+#include "lanthorn/session.h"
+#include "lanthorn/statistics.h"
+#include "render/plan.h"
+
+namespace lanthorn {
+
+/// How many passes to render at once. Sums do not depend on it, only the time does.
+class BatchSize {
+ public:
+  explicit BatchSize(const RenderPlan& plan) : plan_(plan) {}
+
+  /// `seconds`, `passes`: of the last batch.
+  void measured(double seconds, std::size_t passes) { seconds_of_pass_ = seconds / static_cast<double>(passes); }
+  /// At most `most`. `seconds_left`: until the render must end; none: it has no such limit.
+  std::size_t next(std::uint64_t most, std::optional<double> seconds_left) const;
+
+ private:
+  const RenderPlan& plan_;
+  std::optional<double> seconds_of_pass_;
+};
+
+/// Passes that were rendered at once.
+struct BatchReport {
+  std::vector<PassReport> passes;
+  std::array<double, phase_count> phase_seconds{};  ///< of the clock: what passes share is divided among them
+};
+
+/// Renders `passes` into the film of the plan, all at once. If a pass throws, the others come to their end first.
+BatchReport render_batch(const RenderJob& job, RenderPlan& plan, const std::vector<std::uint64_t>& passes);
+
+}  // namespace lanthorn
