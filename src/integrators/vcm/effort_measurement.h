@@ -59,10 +59,6 @@ class PilotGrid {
     const int y = middle(cell.y, window_.height(), rows_ * cells_per_block);
     return {window_.x0 + x, window_.y0 + y, static_cast<std::uint32_t>(y * window_.width() + x)};
   }
-  std::size_t block_of(int x, int y) const {
-    const int block = y / cells_per_block * columns_ + x / cells_per_block;
-    return static_cast<std::size_t>(block);
-  }
 
  private:
   PixelWindow window_;

@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <concepts>
+#include <span>
 #include <utility>
 #include <vector>
 
+#include "base/parallel.h"
 #include "integrators/vcm/vcm_visitors.h"
 #include "path/eye_pass.h"
 
@@ -94,9 +96,12 @@ class Pilot {
   EffortMeasurement measure(const VcmPreparation& prepared) {
     for (std::uint32_t i = 0; i < pilot_passes; ++i) run(i, prepared);
     const std::size_t count = measured_.candidates.size();
-    for (std::size_t i = 0; i < cells_.size(); ++i)
-      block_of_cell(i / count).moments[i % count].square +=
-          (sqr(cells_[i].sum) - cells_[i].squares) / (pilot_passes - 1);
+    for_each_cell_by_blocks([&](EffortBlock& block, std::size_t cell) {
+      for (std::size_t k = 0; k < count; ++k) {
+        const Cell& sums = cells_[cell * count + k];
+        block.moments[k].square += (sqr(sums.sum) - sums.squares) / (pilot_passes - 1);
+      }
+    });
     return std::move(measured_);
   }
 
@@ -113,16 +118,23 @@ class Pilot {
   static Effort places_of(const PixelWindow& window, const PilotGrid& grid) {
     return {0, window, grid.columns(), std::vector<PlaceEffort>(grid.block_count()), {}};
   }
-  EffortBlock& block_of_cell(std::size_t cell) {
+  // Calls `body(block, cell)` for each cell, row by row within a block. One thread does a whole block.
+  template <class Body>
+  void for_each_cell_by_blocks(Body&& body) {
+    constexpr std::size_t side = PilotGrid::cells_per_block;
     const auto width = static_cast<std::size_t>(measured_.grid.cells().width());
-    return measured_.blocks[measured_.grid.block_of(static_cast<int>(cell % width), static_cast<int>(cell / width))];
+    parallel_for(std::size_t{0}, measured_.blocks.size(), [&](std::size_t b) {
+      const std::size_t first = b / (width / side) * side * width + b % (width / side) * side;
+      for (std::size_t y = 0; y < side; ++y)
+        for (std::size_t x = 0; x < side; ++x) body(measured_.blocks[b], first + y * width + x);
+    });
   }
 
   void run(std::uint32_t pass, const VcmPreparation& prepared);
   void trace_light(const VcmPass& pass);
-  void add(const SeenLight& seen);
+  void add(std::span<const SeenLight> seen);
   void trace_eye(const VcmPass& pass, const VcmPass& other);
-  void add(std::size_t cell, const PathMoments& moments, float caustic);
+  void add(EffortBlock& block, std::size_t cell, const PathMoments& moments, float caustic);
 
   RenderJob job_;
   const VcmSettings& settings_;
@@ -167,28 +179,35 @@ void Pilot::trace_light(const VcmPass& pass) {
   measured_.light_paths += static_cast<double>(pass.light_paths.total());
   for (std::size_t c = 0; c < chunks.size(); ++c) {
     measured_.light_vertices += static_cast<double>(pass.vertices.chunk(c).vertices.size());
-    for (const SeenLight& seen : chunks[c]) add(seen);
+    add(chunks[c]);
   }
 }
 
 // To a pixel: as many eye paths as pilot passes see each cell, but all light paths all pixels, twice.
-void Pilot::add(const SeenLight& seen) {
-  EffortBlock& block = measured_.blocks[seen.block];
-  const double share = static_cast<double>(sqr(PilotGrid::cells_per_block)) / (2 * block.pixels);
-  const auto light = static_cast<double>(seen.light);
-  block.light += share * light;
-  block.from_light_paths += share * light;
-  if (seen.is_caustic) block.caustic += share * light;
-  for (std::size_t k = 0; k < measured_.candidates.size(); ++k) {
-    const EffortCandidate& c = measured_.candidates[k];
-    const auto ratio =
-        static_cast<double>(std::max(c.all(seen.weighed) / seen.weighed.all(), PathMoments::least_ratio));
-    const double all = share * seen.spread * sqr(light) / ratio;
-    const double own = all * static_cast<double>(c.samples(&TechniqueSum::lens)) / ratio;
-    block.moments[k].second += own;
-    block.moments[k].squares += own;
-    block.moments[k].all_squares += all;
+void Pilot::add(std::span<const SeenLight> seen) {
+  const auto share_of = [](const EffortBlock& block) {
+    return static_cast<double>(sqr(PilotGrid::cells_per_block)) / (2 * block.pixels);
+  };
+  for (const SeenLight& s : seen) {
+    EffortBlock& block = measured_.blocks[s.block];
+    const double light = share_of(block) * static_cast<double>(s.light);
+    block.light += light;
+    block.from_light_paths += light;
+    if (s.is_caustic) block.caustic += light;
   }
+  parallel_for(std::size_t{0}, measured_.candidates.size(), [&](std::size_t k) {
+    const EffortCandidate& c = measured_.candidates[k];
+    const auto samples = static_cast<double>(c.samples(&TechniqueSum::lens));
+    for (const SeenLight& s : seen) {
+      EffortBlock& block = measured_.blocks[s.block];
+      const auto ratio = static_cast<double>(std::max(c.all(s.weighed) / s.weighed.all(), PathMoments::least_ratio));
+      const double all = share_of(block) * s.spread * sqr(static_cast<double>(s.light)) / ratio;
+      const double own = all * samples / ratio;
+      block.moments[k].second += own;
+      block.moments[k].squares += own;
+      block.moments[k].all_squares += all;
+    }
+  });
 }
 
 void Pilot::trace_eye(const VcmPass& pass, const VcmPass& other) {
@@ -210,11 +229,11 @@ void Pilot::trace_eye(const VcmPass& pass, const VcmPass& other) {
     moments.work.rays = static_cast<std::uint32_t>(counts.walk - before.walk);
     caustic[cell.index] = flux_of(layers.light(PathClass::caustic), false, draw.w);
   });
-  for (std::size_t i = 0; i < count; ++i) add(i, of_cells[i], caustic[i]);
+  for_each_cell_by_blocks(
+      [&](EffortBlock& block, std::size_t cell) { add(block, cell, of_cells[cell], caustic[cell]); });
 }
 
-void Pilot::add(std::size_t cell, const PathMoments& moments, float caustic) {
-  EffortBlock& block = block_of_cell(cell);
+void Pilot::add(EffortBlock& block, std::size_t cell, const PathMoments& moments, float caustic) {
   for (std::size_t k = 0; k < measured_.candidates.size(); ++k) {
     const PathMoments::Estimate e = moments.estimate(k);
     EffortBlock::Moments& m = block.moments[k];
