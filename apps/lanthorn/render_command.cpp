@@ -33,7 +33,7 @@ OptionTable render_command_options(RenderCommand& a) {
        .otherwise = "the scene file's, else 64"},
       {.names = "-t,--time",
        .value = into(a.options.seconds, duration_type()),
-       .brief = "Stop after the pass during which this time is reached: 30s, 1.5m, 2h"},
+       .brief = "Stop when this time is reached, after the running passes: 30s, 1.5m, 2h"},
       {.names = "--noise",
        .value = into(a.options.noise, share_type()),
        .brief = "Stop when the picture's error is below this, such as 2%",

@@ -20,11 +20,10 @@
 
 namespace lanthorn {
 
-/// What is kept so that a running pass can be given up.
+/// What is kept so that running passes can be given up.
 enum class Undo : std::uint8_t {
-  /// A copy of the film if a pass takes at least a second and 50 times as long as the copy, and if a quarter of the
-  /// free
-  /// memory holds it.
+  /// A copy of the film if the passes take at least a second and 50 times as long as the copy, and if a quarter of the
+  /// free memory holds it.
   if_cheap,
   always,  ///< a copy of the film
   never,   ///< nothing: giving up a pass gives up the render
@@ -37,9 +36,9 @@ struct StopRule {
   /// Bound of the picture's error (`ErrorEstimate::is_below`). Looked at after numbers of passes that are fixed in
   /// advance, so that the picture does not depend on the machine's speed.
   std::optional<double> noise{};
-  /// After the running pass; one pass is always rendered.
+  /// After the running passes; one pass is always rendered.
   const std::atomic<bool>* interrupted = nullptr;
-  /// At once: the running pass is given up and leaves no trace if `undo` allows it, and is finished otherwise.
+  /// At once: the running passes are given up and leave no trace if `undo` allows it, and are finished otherwise.
   const std::atomic<bool>* drop = nullptr;
   Undo undo = Undo::if_cheap;
 };
@@ -53,7 +52,8 @@ struct RenderProgress {
 /// `state` and `statistics`: as an observer's `progress` has them.
 RenderProgress progress_of(const StopRule& stop, const RenderState& state, const RenderStatistics& statistics);
 
-/// What the pass loop reports. All are called between passes, on the thread that renders.
+/// What the pass loop reports. All are called on the thread that renders, between passes, or between batches of passes
+/// that are rendered at once.
 struct Observer {
   /// Before the preparation and before every pass: whether `StopRule::drop` will stop it.
   std::function<void(bool)> can_drop = [](bool) {};
@@ -76,7 +76,7 @@ std::array<int, 2> film_size(const ViewDescription& view, const ViewOptions& opt
 /// Throws Error as `check_view` does.
 Transform camera_placement(const ViewDescription& view, const ViewOptions& options = {});
 
-/// A render of a scene: passes one after the other, as many as wanted, and the picture at any time.
+/// A render of a scene: as many passes as wanted, and the picture at any time.
 ///
 /// One thread at a time may call the functions that are not const. `picture`, `pass_count` and `stop` may be called
 /// by any thread at any time.

@@ -70,6 +70,9 @@ PhaseSeconds divide_time(double all, const std::vector<PhaseSeconds>& of_passes)
 
 std::size_t BatchSize::next(std::uint64_t most, std::optional<double> seconds_left) const {
   if (!seconds_of_pass_ || thread_count() < 2 || !plan_.integrator->passes_may_overlap()) return 1;
+  // Users wait for the end of a batch. Long passes spend little of their time at the ends of phases.
+  constexpr double long_pass = 5;  // s
+  if (*seconds_of_pass_ > long_pass) return 1;
   // Two hide the end of each phase; of short passes more, so that ends of batches are rare, too.
   constexpr double batch_seconds = 0.2;
   constexpr double fewest = 2, many = 64;
