@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include <bit>
+#include <algorithm>
 #include <cmath>
 
 #include "lanthorn/error.h"
@@ -82,13 +82,16 @@ std::optional<std::vector<Image>> render_run(const Scene& scene, const ViewDescr
   std::vector<Image> images;
   Observer observer;
   observer.progress = [&](const RenderState& state, const RenderStatistics&) {
-    const std::uint64_t passes = state.pass_count();
-    if (std::has_single_bit(passes)) images.push_back(state.film.resolve_color(passes, colour_balance(state)));
-    settings.progress(runs, passes);
+    settings.progress(runs, state.pass_count());
   };
-  const std::uint64_t asked = plan.stop.passes.end - plan.stop.passes.begin;
-  const RenderStatistics statistics = render(scene, plan, plan.stop, observer);
-  if (settings.stop && settings.stop->load() && statistics.passes < asked) return {};
+  const PassRange asked = plan.stop.passes;
+  for (std::uint64_t passes = 1; plan.state.pass_count() < asked.end - asked.begin; passes *= 2) {
+    plan.stop.passes.end = std::min(asked.end, asked.begin + passes);
+    render(scene, plan, plan.stop, observer);
+    if (settings.stop && settings.stop->load() && !plan.state.has_pass(plan.stop.passes.end - 1)) return {};
+    if (plan.state.pass_count() == passes)
+      images.push_back(plan.state.film.resolve_color(passes, colour_balance(plan.state)));
+  }
   return images;
 }
 

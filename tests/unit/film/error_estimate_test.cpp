@@ -132,6 +132,22 @@ TEST(ErrorEstimate, NoiseOfAPartIsMeasured) {
   EXPECT_GE(tried.kept, 0.8);
 }
 
+// Most pixels of a half have no bright path, and some have one or two. Stripes leave no surroundings to compare with: the
+// truth is known from the pixel itself, which such a path makes too bright.
+std::vector<double> rare_bright_paths(std::mt19937& rng) {
+  constexpr double mean = 0.3;
+  std::poisson_distribution<int> number(mean);
+  std::vector<double> field(std::size_t{width} * height * 3);
+  for (double& value : field) value = (number(rng) - mean) / std::sqrt(mean);
+  return field;
+}
+TEST(ErrorEstimate, BrightPathsDoNotHideBehindTheirOwnLight) {
+  const Field stripes = [](int x, int) { return x % 2 == 0 ? 1.0 : 4.0; };
+  const Tried tried = try_pictures(
+      stripes, [&](int x, int y) { return 0.5 * std::sqrt(32) * stripes(x, y); }, rare_bright_paths);
+  EXPECT_NEAR(tried.ratio, 1, 0.06);
+}
+
 // The estimate is as good, but less certain.
 TEST(ErrorEstimate, CorrelatedNoiseWidensTheBound) {
   const Tried tried = try_pictures(
