@@ -8,6 +8,7 @@
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
 #include <tbb/parallel_sort.h>
+#include <tbb/task_group.h>
 
 #include <algorithm>
 #include <atomic>
@@ -23,7 +24,14 @@ struct Stopped {};
 
 namespace detail {
 inline thread_local const std::atomic<bool>* stop_flag = nullptr;
-}
+
+/// The tasks of a loop treat denormal numbers as its caller does. Without a context of its own, a loop treats them as
+/// its thread did when it first used TBB; if that was within Embree, which flushes them to zero, results would differ.
+struct LoopContext {
+  tbb::task_group_context of_tasks;
+  LoopContext() { of_tasks.capture_fp_settings(); }
+};
+}  // namespace detail
 
 /// While it lives, the parallel loops that its thread starts, and all loops nested in them, throw `Stopped` between
 /// chunks once the flag is set (by any thread or a signal handler). Null: loops cannot be stopped.
@@ -47,12 +55,16 @@ inline void stop_point() {
 template <class Index, class Body>
 void parallel_for(Index begin, Index end, Body&& body) {
   const auto* const flag = detail::stop_flag;
-  if (!flag) return tbb::parallel_for(begin, end, body);
-  tbb::parallel_for(begin, end, [&](Index i) {
-    const StopScope scope(flag);
-    stop_point();
-    body(i);
-  });
+  detail::LoopContext context;
+  if (!flag) return tbb::parallel_for(begin, end, body, context.of_tasks);
+  tbb::parallel_for(
+      begin, end,
+      [&](Index i) {
+        const StopScope scope(flag);
+        stop_point();
+        body(i);
+      },
+      context.of_tasks);
 }
 
 /// Splits [0, count) into chunks of `chunk` items (the last may be shorter) and calls `body(chunk_index, begin, end)`
@@ -61,13 +73,17 @@ template <class Body>
 void parallel_chunks(std::size_t count, std::size_t chunk, Body&& body) {
   const std::size_t chunks = (count + chunk - 1) / chunk;
   const auto* const flag = detail::stop_flag;
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, chunks, 1), [&](const tbb::blocked_range<std::size_t>& range) {
-    const StopScope scope(flag);
-    for (std::size_t c = range.begin(); c != range.end(); ++c) {
-      stop_point();
-      body(c, c * chunk, std::min(count, (c + 1) * chunk));
-    }
-  });
+  detail::LoopContext context;
+  tbb::parallel_for(
+      tbb::blocked_range<std::size_t>(0, chunks, 1),
+      [&](const tbb::blocked_range<std::size_t>& range) {
+        const StopScope scope(flag);
+        for (std::size_t c = range.begin(); c != range.end(); ++c) {
+          stop_point();
+          body(c, c * chunk, std::min(count, (c + 1) * chunk));
+        }
+      },
+      context.of_tasks);
 }
 
 /// Sorts values in parallel. They must all differ, so that the result does not depend on the threads.
@@ -80,6 +96,7 @@ void parallel_sort(Values& values) {
 template <class A, class B>
 void parallel_invoke(A&& a, B&& b) {
   const auto* const flag = detail::stop_flag;
+  detail::LoopContext context;
   tbb::parallel_invoke(
       [&] {
         const StopScope scope(flag);
@@ -90,7 +107,8 @@ void parallel_invoke(A&& a, B&& b) {
         const StopScope scope(flag);
         stop_point();
         b();
-      });
+      },
+      context.of_tasks);
 }
 
 }  // namespace lanthorn

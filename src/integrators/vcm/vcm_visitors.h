@@ -208,7 +208,7 @@ class EyeVisitor {
     const GatherVertex gather(v);
     const Techniques& t = bidirectional_.techniques;
     UniformityTests* const tests = has_merged_ ? nullptr : pass_.uniformity;
-    const std::uint32_t pixel = pass_.radii.pixel_at(raster_);
+    const std::uint32_t pixel = tests ? pass_.radii.pixel_at(raster_) : 0;
     const auto add = [&](const MergePhoton& photon, const PhotonHit& hit, const PlaceInDisc& place) {
       const SubpathEnd at_eye = end_of_eye_path(subpath_.densities(), hit.pdf_reverse);
       const SubpathEnd at_light = end_of_light_path(photon.densities, hit.pdf, subpath_.coherence_beyond());

@@ -18,11 +18,15 @@
 
 namespace tbb {
 
+struct task_group_context {
+  void capture_fp_settings() {}
+};
+
 inline thread_local bool is_in_loop = false;
 
 /// The numbers are drawn without an order between the threads, which would hide races.
 template <class Index, class Body>
-void parallel_for(Index begin, Index end, const Body& body) {
+void parallel_for(Index begin, Index end, const Body& body, task_group_context& /*of all threads the same*/) {
   std::atomic<Index> next{begin};
   std::mutex mutex;
   std::exception_ptr problem;
@@ -59,8 +63,9 @@ class blocked_range {
   Index begin_, end_;
 };
 template <class Index, class Body>
-void parallel_for(const blocked_range<Index>& range, const Body& body) {
-  parallel_for(range.begin(), range.end(), [&](Index i) { body(blocked_range<Index>(i, i + 1, 1)); });
+void parallel_for(const blocked_range<Index>& range, const Body& body, task_group_context& context) {
+  parallel_for(
+      range.begin(), range.end(), [&](Index i) { body(blocked_range<Index>(i, i + 1, 1)); }, context);
 }
 
 template <class Iterator>
@@ -69,8 +74,9 @@ void parallel_sort(Iterator begin, Iterator end) {
 }
 
 template <class A, class B>
-void parallel_invoke(const A& a, const B& b) {
-  parallel_for(0, 2, [&](int i) { i == 0 ? a() : b(); });
+void parallel_invoke(const A& a, const B& b, task_group_context& context) {
+  parallel_for(
+      0, 2, [&](int i) { i == 0 ? a() : b(); }, context);
 }
 
 }  // namespace tbb
