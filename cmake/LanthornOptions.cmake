@@ -4,6 +4,7 @@
 option(LANTHORN_NATIVE "Generate code for this machine's instruction set" ON)
 option(LANTHORN_BUILD_TESTS "Build the tests" ON)
 option(LANTHORN_BUILD_VIEWER "Build what draws by OpenGL: the methods ispm and voxelcones and the window of lanthorn view" ON)
+option(LANTHORN_BUILD_MPI "Build the module that lets several processes share a render under mpirun" ON)
 option(LANTHORN_BUILD_BENCH "Build the benchmarks" OFF)
 option(LANTHORN_BUILD_FUZZERS "Build the libFuzzer targets (Clang only)" OFF)
 option(LANTHORN_UNITY "Compile several sources of a folder at once: a clean build is faster, a rebuild slower" OFF)

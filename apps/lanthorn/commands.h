@@ -21,6 +21,7 @@ void add_converge(CLI::App& app);
 void add_denoise(CLI::App& app);
 void add_develop(CLI::App& app);
 void add_merge(CLI::App& app);
+void add_shards(CLI::App& app);
 void add_photons(CLI::App& app);
 void add_list(CLI::App& app);
 void add_manual(CLI::App& app);

@@ -23,6 +23,8 @@ namespace {
   throw Error(fmt::format("standard output cannot be written: {}", std::generic_category().message(code)));
 }
 
+bool is_mute = false;
+
 // The error number, if the text cannot be written.
 std::optional<int> write_output(std::string_view text) {
   errno = 0;
@@ -42,7 +44,10 @@ void open_console() {
   spdlog::set_pattern("%^%l%$: %v");
 }
 
+void mute() { is_mute = true; }
+
 void say_text(std::string_view text) {
+  if (is_mute) return;
   while (!text.empty()) {
     const ssize_t written = ::write(STDERR_FILENO, text.data(), text.size());
     if (written < 0 && errno != EINTR) return;
@@ -50,13 +55,16 @@ void say_text(std::string_view text) {
   }
 }
 
-void warn_text(std::string_view text) { spdlog::warn("{}", text); }
+void warn_text(std::string_view text) {
+  if (!is_mute) spdlog::warn("{}", text);
+}
 
 void print_text(std::string_view text) {
   if (const auto code = write_output(text)) fail(*code);
 }
 
 void announce_text(std::string_view text) {
+  if (is_mute) return;
   if (const auto code = write_output(text))
     warn("standard output cannot be written: {}", std::generic_category().message(*code));
 }

@@ -37,6 +37,9 @@ std::string format_printable(fmt::format_string<Values...> format, const Values&
 /// their number, and with it the messages. Writing to a closed standard output is still an error.
 void open_console();
 
+/// From now on messages, warnings and reports are not written: another process writes the same.
+void mute();
+
 /// Writes a message to standard error, if that can be done.
 void say_text(std::string_view text);
 template <class... Values>

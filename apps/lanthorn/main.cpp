@@ -72,6 +72,7 @@ int run(int argc, char** argv) {
   add_develop(app);
   add_convert(app);
   add_merge(app);
+  add_shards(app);
   add_photons(app);
   add_ibl(app);
   add_list(app);

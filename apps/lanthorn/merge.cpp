@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include "lanthorn/state.h"
 #include "output.h"
 #include "output_check.h"
+#include "shards.h"
 
 namespace lanthorn::program {
 namespace {
@@ -22,22 +24,75 @@ namespace fs = std::filesystem;
 struct MergeCommand {
   std::vector<std::string> inputs;
   std::string output;
+  std::optional<PassRange> expected;
   OutputSettings settings;
 };
+
+// Adds one state after the other: two are in memory.
+class Merger {
+ public:
+  void add(const std::string& input) {
+    const std::shared_ptr<RenderState> next = open_state(input);
+    if (!sum_ || !identity_difference(*sum_, *next))
+      for (const PassRange& range : summarize(*next).passes) passes_.push_back(range);
+    if (!sum_) {
+      sum_ = next;
+      return;
+    }
+    try {
+      merge_into(*sum_, *next);
+    } catch (const Error& e) {
+      throw Error({input}, e.message);
+    }
+  }
+  /// Of all states of this render, those that are in several too.
+  const std::vector<PassRange>& passes() const { return passes_; }
+  std::shared_ptr<RenderState> sum() const { return sum_; }
+
+ private:
+  std::shared_ptr<RenderState> sum_;
+  std::vector<PassRange> passes_;
+};
+
+std::shared_ptr<RenderState> merge_all(const MergeCommand& o) {
+  Merger merger;
+  for (const std::string& input : o.inputs) merger.add(input);
+  return merger.sum();
+}
+
+// Names all that is wrong, and what to render again.
+std::shared_ptr<RenderState> merge_expected(const MergeCommand& o) {
+  Merger merger;
+  std::size_t refused = 0;
+  for (const std::string& input : o.inputs) {
+    try {
+      merger.add(input);
+    } catch (const Error& e) {
+      say("lanthorn: {}\n", e.what());
+      ++refused;
+    }
+  }
+  const PassCheck check = check_passes(*o.expected, merger.passes());
+  if (!check.doubled.empty()) say("lanthorn: in several states: passes {}\n", ranges_text(check.doubled));
+  for (const PassRange& missing : check.missing)
+    say("lanthorn: missing: render again with --pass-range {}:{}\n", missing.begin, missing.end);
+  if (!check.missing.empty() || refused > 0)
+    throw Error(
+        fmt::format("--expect {}:{}: {} of {} states cannot be merged, {} ranges of passes are missing: "
+                    "nothing is written",
+                    o.expected->begin, o.expected->end, refused, o.inputs.size(), check.missing.size()));
+  const std::vector<PassRange> passes = summarize(*merger.sum()).passes;
+  if (passes.front().begin < o.expected->begin || passes.back().end > o.expected->end)
+    throw Error(fmt::format("--expect {}:{}: the states also have other passes: {}", o.expected->begin, o.expected->end,
+                            ranges_text(passes)));
+  return merger.sum();
+}
 
 void run(const MergeCommand& o) {
   std::vector<InputFile> read;
   for (const std::string& input : o.inputs) read.push_back({input, "one of the states to merge"});
   check_outputs(read, {{o.output, "-o", output_extensions}}, o.settings.force);
-  std::shared_ptr<RenderState> merged = open_state(o.inputs.front());
-  for (std::size_t i = 1; i < o.inputs.size(); ++i) {
-    const std::shared_ptr<RenderState> next = open_state(o.inputs[i]);
-    try {
-      merged = merge(*merged, *next);
-    } catch (const Error& e) {
-      throw Error({o.inputs[i]}, e.message);
-    }
-  }
+  const std::shared_ptr<RenderState> merged = o.expected ? merge_expected(o) : merge_all(o);
   StatePicture picture(*merged, {o.output}, {}, o.settings.denoise);
   const StateSummary& summary = picture.summary();
   if (fs::path(o.output).extension() == ".state" && !o.settings.force)
@@ -52,6 +107,12 @@ OptionTable merge_options(MergeCommand& a) {
                          .value = each_into(a.inputs, text_type("FILE"), Arity::several),
                          .brief = "Saved states with disjoint passes of the same render; any order",
                          .required = true},
+                        {.names = "--expect",
+                         .value = into(a.expected, pass_range_type()),
+                         .brief = "Passes FIRST:END (END not included) that the states must have, all of them",
+                         .details = "Else nothing is written, and messages name states that are missing, damaged or "
+                                    "double, and the passes to render again.",
+                         .otherwise = "any passes"},
                         {.names = "-o,--output",
                          .value = into(a.output, text_type("FILE")),
                          .brief = "Output file: .state, .exr (all layers) or .png",

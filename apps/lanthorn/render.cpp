@@ -25,6 +25,7 @@
 #include "progress.h"
 #include "render_command.h"
 #include "signals.h"
+#include "team.h"
 #include "tev.h"
 
 namespace lanthorn::program {
@@ -167,19 +168,50 @@ struct Prepared {
 };
 
 // `like`: the scene of another moment, or null.
-Prepared prepare(const RenderCommand& a, SceneDescription description, Film& film, const SharedScene& like = {}) {
+Prepared prepare(const RenderCommand& a, const Team* team, SceneDescription description, Film& film,
+                 const SharedScene& like = {}) {
   film.keep_camera(description);
   check_view(description.view, a.options);
   std::vector<fs::path> outputs = choose_outputs(a, a.scene, description);
-  check_files(a, a.scene, description, outputs);
+  if (is_first(team)) check_files(a, a.scene, description, outputs);
   return {build_scene(std::move(description), like), std::move(outputs)};
 }
 
-void render_view(const RenderCommand& a, const Prepared& prepared, const ViewDescription& view, Film& film) {
+// Of rank 0: when it needs the sums of the others.
+void plan_gathering(const Onlookers& onlookers, const RenderCommand& a, Team& team) {
+  constexpr double automatic_interval = 2;  // seconds
+  team.gather_seconds.reset();
+  if (onlookers.checkpoints) team.gather_seconds = onlookers.checkpoints->interval();
+  team.preview_seconds.reset();
+  if (onlookers.previews || onlookers.tev) team.preview_seconds = a.preview_seconds.value_or(automatic_interval);
+}
+
+// A process that leaves files and messages to another one.
+void help_to_render(Session& session, Team& team) {
+  StopRule stop = session.plan();
+  stop.team = &team;
+  session.render(stop);
+}
+
+void save_view(const RenderCommand& a, const std::vector<fs::path>& outputs, const Scene& scene,
+               const ViewDescription& view, const Session& session, const RenderStatistics& statistics, Film& film) {
+  save_render(a, a.options, outputs, scene, session.state(), statistics);
+  if (!film.exposure) film.exposure = exposure_measured(a, session);
+  explain_black(a, scene, view, outputs.front(), session);
+  if (statistics.out_of_memory)
+    throw Error(
+        fmt::format("not enough memory for a pass: the pictures have the {} passes before it; fewer --photons "
+                    "need less",
+                    session.pass_count()));
+}
+
+void render_view(const RenderCommand& a, Team* team, const Prepared& prepared, const ViewDescription& view,
+                 Film& film) {
   const std::vector<fs::path>& outputs = prepared.outputs;
   const SharedScene scene = scale_lights(prepared.scene, a.changes.lights);
   Session session(scene, view, a.options);
   if (!a.resume.empty()) session.resume(open_state(a.resume), a.resume);
+  if (!is_first(team)) return help_to_render(session, *team);
   check_states(a, outputs, session);
 
   Onlookers onlookers{ProgressDisplay(session.plan(), a.quiet)};
@@ -196,6 +228,8 @@ void render_view(const RenderCommand& a, const Prepared& prepared, const ViewDes
   StopRule stop = session.plan();
   stop.interrupted = &stop_requested();
   stop.drop = &drop_requested();
+  stop.team = team;
+  if (team) plan_gathering(onlookers, a, *team);
   const RenderStatistics statistics = session.render(stop, make_observer(a, onlookers));
   onlookers.progress.finish();
   if (session.pass_count() == 0) {
@@ -204,61 +238,56 @@ void render_view(const RenderCommand& a, const Prepared& prepared, const ViewDes
     end_by_signal();
   }
   if (onlookers.tev) onlookers.tev->show(session.picture());
-  save_render(a, a.options, outputs, *scene, session.state(), statistics);
-  if (!film.exposure) film.exposure = exposure_measured(a, session);
-  explain_black(a, *scene, view, outputs.front(), session);
-  if (statistics.out_of_memory)
-    throw Error(
-        fmt::format("not enough memory for a pass: the pictures have the {} passes before it; fewer --photons "
-                    "need less",
-                    session.pass_count()));
+  save_view(a, outputs, *scene, view, session, statistics, film);
   if (onlookers.checkpoints) onlookers.checkpoints->finish(session.state(), stop_requested());
 }
 
 ViewDescription first_view(const RenderCommand& a, const Scene& scene) { return view_of(scene, a.changes, a.options); }
 
 // The scene is read and built once: the camera alone moves.
-void render_turntable(const RenderCommand& a) {
+void render_turntable(const RenderCommand& a, Team* team) {
   const FrameRange frames = frames_of(a);
   const RenderCommand first = of_frame(a, frames.begin);
   Film film;
-  Prepared prepared = prepare(first, read_scene(first.scene, first.reading), film);
+  Prepared prepared = prepare(first, team, read_scene(first.scene, first.reading), film);
   const Scene& scene = *prepared.scene;
   std::vector<ViewDescription> views = turntable(first_view(a, scene), scene, *a.turntable);
   for (std::uint64_t i = frames.begin; i < frames.end && !stop_requested(); ++i) {
     RenderCommand one = of_frame(a, i);
     film.keep_exposure(one.output);
     prepared.outputs = choose_outputs(one, a.scene, description_of(scene));
-    check_files(one, a.scene, description_of(scene), prepared.outputs);
+    if (is_first(team)) check_files(one, a.scene, description_of(scene), prepared.outputs);
     focus(views[i], a.changes.lens, scene, a.options);
-    render_view(one, prepared, views[i], film);
+    render_view(one, team, prepared, views[i], film);
   }
 }
 
 // The file is read once, and images are shared from moment to moment: what moves is built anew.
-void render_animation(const RenderCommand& a) {
+void render_animation(const RenderCommand& a, Team* team) {
   SceneFile file(a.scene, a.reading);
   SharedScene last;
   Film film;
   for (std::uint64_t i = a.frames->begin; i < a.frames->end && !stop_requested(); ++i) {
     RenderCommand one = of_frame(a, i);
     film.keep_exposure(one.output);
-    const Prepared prepared = prepare(one, file.at(one.reading.at), film, std::exchange(last, nullptr));
-    render_view(one, prepared, first_view(one, *prepared.scene), film);
+    const Prepared prepared = prepare(one, team, file.at(one.reading.at), film, std::exchange(last, nullptr));
+    render_view(one, team, prepared, first_view(one, *prepared.scene), film);
     last = prepared.scene;
   }
 }
 
-void run_render(const RenderCommand& a) {
-  handle_signals();
-  viewer_of(a);
-  const ThreadLimit limit(a.threads);
-  if (a.frames || a.turntable) check_frames(a);
-  if (a.turntable) return render_turntable(a);
-  if (a.frames) return render_animation(a);
-  Film film;
-  const Prepared prepared = prepare(a, read_scene(a.scene, a.reading), film);
-  render_view(a, prepared, first_view(a, *prepared.scene), film);
+void run_render(RenderCommand& command) {
+  viewer_of(command);
+  const ThreadLimit limit(command.threads);
+  run_in_team(command, [&](Team* team) {
+    const RenderCommand& a = command;
+    if (a.frames || a.turntable) check_frames(a);
+    if (a.turntable) return render_turntable(a, team);
+    if (a.frames) return render_animation(a, team);
+    Film film;
+    const Prepared prepared = prepare(a, team, read_scene(a.scene, a.reading), film);
+    render_view(a, team, prepared, first_view(a, *prepared.scene), film);
+  });
 }
 
 }  // namespace

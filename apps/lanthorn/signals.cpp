@@ -101,6 +101,8 @@ extern "C" void on_signal(int signal, siginfo_t* info, void* /*context*/) {
   errno = error;
 }
 
+constexpr int handled[] = {SIGINT, SIGTERM, SIGHUP, SIGPIPE, SIGXFSZ, SIGXCPU, SIGUSR1, SIGUSR2};
+
 }  // namespace
 
 void handle_signals() {
@@ -108,11 +110,15 @@ void handle_signals() {
   action.sa_sigaction = on_signal;
   action.sa_flags = SA_SIGINFO | SA_RESTART;
   ::sigfillset(&action.sa_mask);
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGPIPE, SIGXFSZ, SIGXCPU, SIGUSR1, SIGUSR2}) {
+  for (const int signal : handled) {
     struct sigaction old {};
     if (::sigaction(signal, nullptr, &old) == 0 && old.sa_handler == SIG_IGN) continue;
     ::sigaction(signal, &action, nullptr);
   }
+}
+
+void ignore_signals() {
+  for (const int signal : handled) ::signal(signal, SIG_IGN);
 }
 
 void set_stage(Stage next) { stage = next; }

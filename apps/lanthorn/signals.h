@@ -22,6 +22,8 @@ enum class Stage {
 /// loading. What is ignored (SIGHUP under nohup) stays ignored. SIGPIPE and SIGXFSZ that come of the program's own
 /// messages and files, and SIGXCPU, which the system repeats, count once, as a first signal.
 void handle_signals();
+/// These signals do nothing from now on: of processes that another one commands.
+void ignore_signals();
 void set_stage(Stage stage);
 /// Whether the running pass can be given up, for the answer to the second signal.
 void set_can_drop(bool can_drop);

@@ -20,6 +20,8 @@
 
 namespace lanthorn {
 
+struct Team;
+
 /// What is kept so that running passes can be given up.
 enum class Undo : std::uint8_t {
   /// A copy of the film if the passes take at least a second and 50 times as long as the copy, and if a quarter of the
@@ -41,6 +43,9 @@ struct StopRule {
   /// At once: the running passes are given up and leave no trace if `undo` allows it, and are finished otherwise.
   const std::atomic<bool>* drop = nullptr;
   Undo undo = Undo::if_cheap;
+  /// Processes that share the passes (lanthorn/team.h). Those of other ranks than 0 obey that rank's rule. Until the
+  /// render ends, `Session::picture` has the passes of this process alone.
+  Team* team = nullptr;
 };
 
 /// How far a call of `Session::render` has come.
@@ -53,7 +58,7 @@ struct RenderProgress {
 RenderProgress progress_of(const StopRule& stop, const RenderState& state, const RenderStatistics& statistics);
 
 /// What the pass loop reports. All are called on the thread that renders, between passes, or between batches of passes
-/// that are rendered at once.
+/// that are rendered at once. Of a team, rank 0 reports; its states have the passes whose sums have been gathered.
 struct Observer {
   /// Before the preparation and before every pass: whether `StopRule::drop` will stop it.
   std::function<void(bool)> can_drop = [](bool) {};

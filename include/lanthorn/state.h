@@ -88,6 +88,8 @@ std::shared_ptr<RenderState> open_state(const std::filesystem::path& path);
 /// The state of all passes of both, exactly; commutative and associative to the bit. Throws Error if passes overlap,
 /// identities differ (naming the first differing field), or passes depend on each other.
 std::shared_ptr<RenderState> merge(const RenderState& a, const RenderState& b);
+/// The same, into `sum`, without a third state in memory. `sum` stays as it is if an Error is thrown.
+void merge_into(RenderState& sum, const RenderState& more);
 
 /// How the bytes of a saved state come out.
 struct SaveOptions {

@@ -61,6 +61,7 @@ struct StageSeconds {
 /// Sums over the passes of one call of `Session::render`.
 struct RenderStatistics {
   std::uint64_t passes = 0;
+  std::uint64_t passes_elsewhere = 0;               ///< of these: not gathered yet from the processes of a team
   double seconds = 0;                               ///< wall clock, including the preparation
   double prepare_seconds = 0;                       ///< pilot passes
   std::array<double, phase_count> phase_seconds{};  ///< by Phase

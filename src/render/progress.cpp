@@ -27,7 +27,7 @@ double fraction_of_noise(double bound, const RenderState& state, const RenderSta
   if (!statistics.error || !statistics.error->is_known()) return 0;
   if (statistics.error->is_below(bound)) return 1;
   const double needed = growth_to_reach(*statistics.error, bound) * static_cast<double>(statistics.error_passes);
-  const auto before = static_cast<double>(state.pass_count() - statistics.passes);
+  const auto before = static_cast<double>(state.pass_count() + statistics.passes_elsewhere - statistics.passes);
   return std::min(0.99, static_cast<double>(statistics.passes) / std::max(1.0, needed - before));
 }
 
@@ -35,7 +35,8 @@ double fraction_of_noise(double bound, const RenderState& state, const RenderSta
 
 RenderProgress progress_of(const StopRule& stop, const RenderState& state, const RenderStatistics& statistics) {
   RenderProgress progress;
-  const std::uint64_t left = passes_left(stop.passes, state);
+  const std::uint64_t missing = passes_left(stop.passes, state);
+  const std::uint64_t left = missing - std::min(missing, statistics.passes_elsewhere);
   if (left <= endless) {
     progress.passes_left = left;
     const double done = static_cast<double>(statistics.passes), all = done + static_cast<double>(left);

@@ -12,13 +12,17 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <utility>
+#include <variant>
 #include <vector>
 
 #include "base/parallel.h"
 #include "integrators/integrator.h"
 #include "lanthorn/error.h"
+#include "render/looks.h"
 #include "render/pass_batch.h"
 #include "render/pass_undo.h"
+#include "render/team/member.h"
 
 namespace lanthorn {
 
@@ -67,12 +71,9 @@ class ErrorLooks {
   ErrorLooks(const StopRule& stop, const Film& film)
       : is_needed_(stop.noise.has_value()), cost_(guessed_per_pixel * film.pixel_count()) {}
 
-  /// The number of passes, of which `passes` are done, until the next look.
-  static std::uint64_t passes_until_look(std::uint64_t passes) { return first_look_from(passes + 1) - passes; }
-
-  /// After a batch of passes, `seconds` into the render.
+  /// After a pass, `seconds` into the render.
   void look_if_due(const RenderState& state, RenderStatistics& statistics, double seconds) {
-    if (first_look_from(state.pass_count()) != state.pass_count()) return;
+    if (!is_look(state.pass_count())) return;
     if (!is_needed_ && seconds - last_ < cost_ / most_of_time) return;
     const Clock::time_point start = Clock::now();
     statistics.error = estimate_error(state);
@@ -82,14 +83,6 @@ class ErrorLooks {
   }
 
  private:
-  // Each look comes after an eighth more passes than the one before: more would seldom end a render earlier.
-  static std::uint64_t first_look_from(std::uint64_t passes) {
-    constexpr std::uint64_t first = 4, share = 8;
-    std::uint64_t look = first;
-    while (look < passes) look += std::max<std::uint64_t>(1, look / share);
-    return look;
-  }
-
   static constexpr double guessed_per_pixel = 1e-6, most_of_time = 0.01;
 
   bool is_needed_;
@@ -116,32 +109,6 @@ bool run_pass(const std::atomic<bool>* flag, bool can_undo, bool& out_of_memory,
   return false;
 }
 
-// The next `most` passes of the range that the state does not have.
-std::vector<std::uint64_t> next_passes(const RenderState& state, const PassRange& range, std::size_t most) {
-  std::vector<std::uint64_t> passes;
-  for (std::uint64_t pass = range.begin; pass < range.end && passes.size() < most; ++pass)
-    if (!state.has_pass(pass)) passes.push_back(pass);
-  return passes;
-}
-
-// A look at the error must find the passes that it is fixed to, and no others.
-std::uint64_t passes_until_stop(const StopRule& stop, const RenderState& state) {
-  return stop.noise ? ErrorLooks::passes_until_look(state.pass_count()) : std::numeric_limits<std::uint64_t>::max();
-}
-
-std::optional<double> seconds_left(const StopRule& stop, const RenderStatistics& statistics) {
-  if (!stop.seconds) return std::nullopt;
-  return *stop.seconds - statistics.seconds;
-}
-
-void add(RenderState& state, const std::vector<std::uint64_t>& passes, const BatchReport& report) {
-  for (std::size_t i = 0; i < passes.size(); ++i) {
-    state.add_pass(passes[i]);
-    state.eye += report.passes[i].rays.eye;
-    state.light += report.passes[i].rays.light;
-  }
-}
-
 void keep_findings(const Integrator& integrator, RenderState& state) {
   const std::string findings = integrator.findings();
   if (findings.empty()) return;
@@ -156,60 +123,224 @@ void load_integrator_state(RenderPlan& plan) try {
   throw Error({plan.resumed_from}, problem.message);
 }
 
+// False if it was given up.
+bool prepare(RenderPlan& plan, const RenderJob& job, const StopRule& stop, const Observer& observer) {
+  if (plan.is_prepared) return true;
+  RenderState& state = plan.state;
+  state.film.set_sensor(job.view.sensor);
+  state.film.set_window(job.view.window, job.view.camera.width());
+  observer.can_drop(stop.drop != nullptr);
+  if (!run_unless_stopped(stop.drop, [&] { plan.integrator->prepare(job); })) return false;
+  load_integrator_state(plan);
+  plan.is_prepared = true;
+  keep_findings(*plan.integrator, state);
+  if (const std::string remark = plan.integrator->remark(); !remark.empty()) observer.remark(remark);
+  observer.prepared(state);
+  return true;
+}
+
+// The next `most` passes of the range that the state does not have.
+std::vector<std::uint64_t> next_passes(const RenderState& state, const PassRange& range, std::size_t most) {
+  std::vector<std::uint64_t> passes;
+  for (std::uint64_t pass = range.begin; pass < range.end && passes.size() < most; ++pass)
+    if (!state.has_pass(pass)) passes.push_back(pass);
+  return passes;
+}
+
+void add(RenderState& state, const std::vector<std::uint64_t>& passes, const BatchReport& report) {
+  for (std::size_t i = 0; i < passes.size(); ++i) {
+    state.add_pass(passes[i]);
+    state.eye += report.passes[i].rays.eye;
+    state.light += report.passes[i].rays.light;
+  }
+}
+
+// Batches of passes, one after the other. In a team, a batch is one pass; the plan's state has what this process has
+// rendered and not handed over, and rank 0 has the sums of all besides.
+class PassLoop {
+ public:
+  PassLoop(RenderPlan& plan, const RenderJob& job, const StopRule& stop, const Observer& observer,
+           RenderStatistics& statistics, Clock::time_point start)
+      : plan_(plan),
+        job_(job),
+        stop_(stop),
+        observer_(observer),
+        statistics_(statistics),
+        start_(start),
+        seconds_before_(plan.state.seconds),
+        undo_(stop.undo),
+        looks_(stop, plan.state.film),
+        batch_size_(plan) {
+    if (stop.noise) looks_.look_if_due(plan.state, statistics, statistics.seconds);  // of a state that is resumed
+    if (stop.team && stop.team->link.size > 1) join_team();
+  }
+
+  void run() {
+    for (auto batch = next(); !batch.empty(); batch = next())
+      if (!render(batch)) give_up();
+    if (!member_) return;
+    member_->finish();
+    if (!total_) return;
+    statistics_.passes = total_->pass_count() - passes_before_;
+    statistics_.passes_elsewhere = 0;
+    plan_.state = *std::move(total_);
+  }
+
+ private:
+  void join_team();
+  using Batch = std::vector<std::uint64_t>;  // empty: nothing more is to be rendered
+  Batch next() { return member_ ? next_of_team() : next_of_own(); }
+  Batch next_of_own();
+  Batch next_of_team();
+  void add_gathered(const RoundSums& sums);
+  bool render(const Batch& batch);
+  void record(const Batch& batch, const BatchReport& report, Clock::time_point batch_start);
+  void show();
+  void give_up();
+  bool is_discarded() const { return member_ && member_->discard()->load(); }
+  const std::atomic<bool>* drop_flag() const {
+    return member_ && !member_->is_first() ? member_->give_up() : stop_.drop;
+  }
+
+  RenderPlan& plan_;
+  const RenderJob& job_;
+  const StopRule& stop_;
+  const Observer& observer_;
+  RenderStatistics& statistics_;
+  Clock::time_point start_;
+  double seconds_before_;
+  PassUndo undo_;
+  ErrorLooks looks_;
+  BatchSize batch_size_;
+  bool is_over_ = false;
+  std::optional<double> batch_seconds_;
+  Clock::time_point last_checkpoint_ = Clock::now();
+
+  std::optional<TeamMember> member_;
+  std::optional<RenderState> total_;  // of rank 0: what has been gathered
+  std::uint64_t passes_before_ = 0;
+  RenderStatistics rendered_;  // since the last question
+};
+
+void PassLoop::join_team() {
+  RenderState& state = plan_.state;
+  if (!state.shardable)
+    throw Error(
+        fmt::format("each pass of {} depends on all before it, so that several processes cannot share them; "
+                    "render it with one, or choose another --integrator",
+                    state.integrator));
+  member_.emplace(*stop_.team, stop_, state, start_);
+  passes_before_ = state.pass_count();
+  RenderState own = empty_like(state);
+  if (member_->is_first()) total_ = std::move(state);
+  state = std::move(own);
+  seconds_before_ = 0;
+  if (member_->is_first() && is_reached(stop_, statistics_)) member_->stop();
+}
+
+PassLoop::Batch PassLoop::next_of_own() {
+  if (is_over_ || must_stop(stop_, statistics_)) return {};
+  // A look at the error must find the passes that it is fixed to, and no others.
+  const std::uint64_t done = plan_.state.pass_count(),
+                      most = stop_.noise ? next_look(done) - done : std::numeric_limits<std::uint64_t>::max();
+  std::optional<double> left;
+  if (stop_.seconds) left = *stop_.seconds - statistics_.seconds;
+  return next_passes(plan_.state, stop_.passes, batch_size_.next(most, left));
+}
+
+PassLoop::Batch PassLoop::next_of_team() {
+  for (;;) {
+    const TeamMember::Task task = member_->next(plan_.state, rendered_);
+    rendered_ = {};
+    if (const auto* pass = std::get_if<TeamMember::Pass>(&task)) return {pass->number};
+    const auto* gathered = std::get_if<TeamMember::Sums>(&task);
+    if (!gathered) return {};
+    add_gathered(gathered->sums);
+  }
+}
+
+void PassLoop::add_gathered(const RoundSums& sums) {
+  if (sums) add_state(*total_, *sums);
+  looks_.look_if_due(*total_, statistics_, statistics_.seconds);
+  member_->settle(is_reached(stop_, statistics_));
+  if (observer_.checkpoint(*total_, seconds_between(last_checkpoint_, Clock::now()))) last_checkpoint_ = Clock::now();
+  show();
+}
+
+// False if the batch was given up and has left no trace.
+bool PassLoop::render(const Batch& batch) {
+  RenderState& state = plan_.state;
+  state.film.set_sensor(job_.view.sensor);  // of a new film, after the last one was handed over
+  state.film.set_window(job_.view.window, job_.view.camera.width());
+  const std::atomic<bool>* const drop = drop_flag();
+  const bool can_undo = undo_.begin(state, batch_seconds_), can_drop = drop && can_undo;
+  observer_.can_drop(can_drop);
+  const std::atomic<bool>* const flag = can_drop ? drop : member_ ? member_->discard() : nullptr;
+  const Clock::time_point batch_start = Clock::now();
+  BatchReport report;
+  if (!run_pass(flag, can_undo && stop_.undo != Undo::never, statistics_.out_of_memory,
+                [&] { report = render_batch(job_, plan_, batch); })) {
+    if (is_discarded())
+      state = empty_like(state);
+    else
+      undo_.restore(state);
+    plan_.renew_integrator();
+    return false;
+  }
+  record(batch, report, batch_start);
+  return true;
+}
+
+void PassLoop::record(const Batch& batch, const BatchReport& report, Clock::time_point batch_start) {
+  RenderState& state = plan_.state;
+  const Clock::time_point now = Clock::now();
+  add(statistics_, report);
+  if (member_) add(rendered_, report);
+  add(state, batch, report);
+  state.integrator_state = plan_.integrator->save();
+  batch_seconds_ = seconds_between(batch_start, now);
+  batch_size_.measured(*batch_seconds_, batch.size());
+  statistics_.seconds = seconds_between(start_, now);
+  if (statistics_.passes == 1) statistics_.first_pass_seconds = statistics_.seconds;
+  if (member_) {
+    state.seconds += *batch_seconds_;
+    show();
+    return;
+  }
+  state.seconds = seconds_before_ + statistics_.seconds;
+  looks_.look_if_due(state, statistics_, statistics_.seconds);
+  if (observer_.checkpoint(state, seconds_between(last_checkpoint_, now))) last_checkpoint_ = Clock::now();
+  show();
+}
+
+void PassLoop::show() {
+  if (!member_) return observer_.progress(plan_.state, statistics_);
+  if (!total_) return;
+  RenderStatistics all = statistics_;
+  add_counts(all, encode_counts(member_->counts_of_others()));
+  const std::uint64_t gathered = total_->pass_count() - passes_before_;
+  all.passes_elsewhere = all.passes - std::min(all.passes, gathered);
+  observer_.progress(*total_, all);
+}
+
+void PassLoop::give_up() {
+  is_over_ = true;
+  if (!member_) return;
+  if (member_->is_first())
+    member_->stop();
+  else if (statistics_.out_of_memory)
+    throw std::bad_alloc();
+}
+
 }  // namespace
 
 RenderStatistics render(const Scene& scene, RenderPlan& plan, const StopRule& stop, const Observer& observer) {
   const RenderJob job = plan.job(scene);
-  RenderState& state = plan.state;
   RenderStatistics statistics;
   const Clock::time_point start = Clock::now();
-  const double seconds_before = state.seconds;
-  if (!plan.is_prepared) {
-    state.film.set_sensor(job.view.sensor);
-    state.film.set_window(job.view.window, job.view.camera.width());
-    observer.can_drop(stop.drop != nullptr);
-    if (!run_unless_stopped(stop.drop, [&] { plan.integrator->prepare(job); })) return statistics;
-    load_integrator_state(plan);
-    plan.is_prepared = true;
-    keep_findings(*plan.integrator, state);
-    if (const std::string remark = plan.integrator->remark(); !remark.empty()) observer.remark(remark);
-    observer.prepared(state);
-  }
+  if (!prepare(plan, job, stop, observer)) return statistics;
   statistics.prepare_seconds = statistics.seconds = seconds_between(start, Clock::now());
-
-  PassUndo undo(stop.undo);
-  ErrorLooks looks(stop, state.film);
-  if (stop.noise) looks.look_if_due(state, statistics, statistics.seconds);  // of a state that is resumed
-  BatchSize batch_size(plan);
-  std::optional<double> batch_seconds;
-  Clock::time_point last_checkpoint = Clock::now();
-  while (!must_stop(stop, statistics)) {
-    const std::vector<std::uint64_t> batch = next_passes(
-        state, stop.passes, batch_size.next(passes_until_stop(stop, state), seconds_left(stop, statistics)));
-    if (batch.empty()) break;
-    const bool can_undo = undo.begin(state, batch_seconds), can_drop = stop.drop && can_undo;
-    observer.can_drop(can_drop);
-    const Clock::time_point batch_start = Clock::now();
-    BatchReport report;
-    if (!run_pass(can_drop ? stop.drop : nullptr, can_undo && stop.undo != Undo::never, statistics.out_of_memory,
-                  [&] { report = render_batch(job, plan, batch); })) {
-      undo.restore(state);
-      plan.renew_integrator();
-      break;
-    }
-    add(statistics, report);
-    add(state, batch, report);
-    const Clock::time_point now = Clock::now();
-    state.integrator_state = plan.integrator->save();
-    batch_seconds = seconds_between(batch_start, now);
-    batch_size.measured(*batch_seconds, batch.size());
-    statistics.seconds = seconds_between(start, now);
-    if (statistics.passes == 1) statistics.first_pass_seconds = statistics.seconds;
-    state.seconds = seconds_before + statistics.seconds;
-    looks.look_if_due(state, statistics, statistics.seconds);
-    if (observer.checkpoint(state, seconds_between(last_checkpoint, now))) last_checkpoint = Clock::now();
-    observer.progress(state, statistics);
-  }
+  PassLoop(plan, job, stop, observer, statistics, start).run();
   return statistics;
 }
 

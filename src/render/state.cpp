@@ -517,7 +517,9 @@ RenderState load_state(const std::filesystem::path& path) {
   return decode_state(std::as_bytes(std::span(bytes)), path.string());
 }
 
-RenderState merge_states(const RenderState& a, const RenderState& b) {
+namespace {
+
+void require_mergeable(const RenderState& a, const RenderState& b) {
   if (a.integrator != b.integrator)
     throw Error(fmt::format("cannot merge: integrators differ ({} and {})", std::min(a.integrator, b.integrator),
                             std::max(a.integrator, b.integrator)));
@@ -529,20 +531,40 @@ RenderState merge_states(const RenderState& a, const RenderState& b) {
   if (const auto difference = identity_difference(a.settings, b.settings))
     throw Error(fmt::format("cannot merge: the renders differ in {}", *difference));
   if (!a.film.compatible(b.film)) throw Error("cannot merge: the films differ in size, scale or contents");
-  std::vector<PassRange> ranges = a.passes;
-  ranges.insert(ranges.end(), b.passes.begin(), b.passes.end());
+}
+
+}  // namespace
+
+void add_state(RenderState& sum, const RenderState& more) {
+  require_mergeable(sum, more);
+  std::vector<PassRange> ranges = sum.passes;
+  ranges.insert(ranges.end(), more.passes.begin(), more.passes.end());
   auto passes = joined(std::move(ranges));
   if (!passes) throw Error("cannot merge: some passes are in both; make shards with disjoint --pass-range");
 
+  sum.film.merge(more.film);
+  sum.integrator_state = std::max(sum.integrator_state, more.integrator_state);  // any that is not empty serves
+  sum.passes = std::move(*passes);
+  sum.seconds = coarse(sum.seconds) + coarse(more.seconds);
+  sum.eye += more.eye;
+  sum.light += more.light;
+  sum.settings = common_members(sum.settings, more.settings);  // what differs does not hold for the sum
+}
+
+RenderState merge_states(const RenderState& a, const RenderState& b) {
   RenderState merged = a;
-  merged.film.merge(b.film);
-  merged.integrator_state = std::max(a.integrator_state, b.integrator_state);  // any that is not empty serves
-  merged.passes = std::move(*passes);
-  merged.seconds = coarse(a.seconds) + coarse(b.seconds);
-  merged.eye += b.eye;
-  merged.light += b.light;
-  merged.settings = common_members(a.settings, b.settings);  // what differs does not hold for the sum
+  add_state(merged, b);
   return merged;
+}
+
+RenderState empty_like(const RenderState& state) {
+  RenderState empty;
+  const Film& film = state.film;
+  empty.film = Film::with_exponent(film.width(), film.height(), film.step_exponent(), film.contents());
+  empty.integrator = state.integrator;
+  empty.settings = state.settings;
+  empty.shardable = state.shardable;
+  return empty;
 }
 
 }  // namespace lanthorn

@@ -54,4 +54,10 @@ RenderState load_state(const std::filesystem::path& path);
 /// As `merge`.
 RenderState merge_states(const RenderState& a, const RenderState& b);
 
+/// As `merge`, into `sum`, which stays as it is if an Error is thrown.
+void add_state(RenderState& sum, const RenderState& more);
+
+/// A state without passes of the same render.
+RenderState empty_like(const RenderState& state);
+
 }  // namespace lanthorn

@@ -67,4 +67,6 @@ std::shared_ptr<RenderState> merge(const RenderState& a, const RenderState& b) {
   return std::make_shared<RenderState>(merge_states(a, b));
 }
 
+void merge_into(RenderState& sum, const RenderState& more) { add_state(sum, more); }
+
 }  // namespace lanthorn

@@ -1,0 +1,150 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "shards.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "commands.h"
+#include "console.h"
+#include "lanthorn/error.h"
+#include "lanthorn/shell.h"
+#include "options.h"
+#include "render_arguments.h"
+
+namespace lanthorn::program {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+enum class Format : std::uint8_t { shell, slurm, json };
+
+struct ShardsCommand : RenderArguments {
+  std::uint64_t passes = 0, shards = 0;
+  std::string output;
+  Format format = Format::shell;
+};
+
+std::string stem_of(const ShardsCommand& a) { return fs::path(a.output).replace_extension().string(); }
+
+// "picture.shard-007.state", so that names sort as passes do.
+std::string state_of(const ShardsCommand& a, std::uint64_t shard) {
+  const std::size_t digits = fmt::formatted_size("{}", a.shards - 1);
+  return fmt::format("{}.shard-{:0{}}.state", stem_of(a), shard, digits);
+}
+
+// What all shards have in common: the scene and the options that decide the picture.
+std::string render_words(const ShardsCommand& a) {
+  RenderArguments printed;  // at first with the defaults, which the table remembers
+  const OptionTable table = render_options(printed);
+  printed = a;
+  return command_line("lanthorn render", table);
+}
+
+std::string shard_command(const ShardsCommand& a, const PassRange& passes, std::uint64_t shard) {
+  return fmt::format("{} --pass-range {}:{} -o {}", render_words(a), passes.begin, passes.end,
+                     shell_word(state_of(a, shard)));
+}
+
+std::string merge_command(const ShardsCommand& a) {
+  std::string text = fmt::format("lanthorn merge --expect 0:{}", a.passes);
+  for (std::uint64_t i = 0; i < a.shards; ++i) text += ' ' + shell_word(state_of(a, i));
+  return text + " -o " + shell_word(a.output);
+}
+
+void print_shell(const ShardsCommand& a) {
+  print_text("#!/bin/sh\nset -e\n");
+  const std::vector<PassRange> ranges = split_passes(a.passes, a.shards);
+  for (std::uint64_t i = 0; i < a.shards; ++i) print_text(shard_command(a, ranges[i], i) + '\n');
+  print_text(merge_command(a) + '\n');
+}
+
+void print_json(const ShardsCommand& a) {
+  nlohmann::json shards = nlohmann::json::array();
+  const std::vector<PassRange> ranges = split_passes(a.passes, a.shards);
+  for (std::uint64_t i = 0; i < a.shards; ++i)
+    shards.push_back({{"command", shard_command(a, ranges[i], i)},
+                      {"passes", {ranges[i].begin, ranges[i].end}},
+                      {"output", state_of(a, i)}});
+  const nlohmann::json all{{"shards", std::move(shards)},
+                           {"merge", {{"command", merge_command(a)}, {"output", a.output}}}};
+  print_text(all.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + '\n');
+}
+
+// A job that is requeued goes on from its last checkpoint.
+void print_slurm(const ShardsCommand& a) {
+  const std::size_t digits = fmt::formatted_size("{}", a.shards - 1);
+  print_text(fmt::format(
+      R"(#!/bin/bash
+# Run this where the scene lies. Its arguments go to sbatch: --partition=long --cpus-per-task=64
+set -e
+job=$(sbatch --parsable --job-name={0} --array=0-{1} --requeue --open-mode=append "$@" <<'JOB'
+#!/bin/bash
+begin=$((SLURM_ARRAY_TASK_ID * {2} / {3})) end=$(((SLURM_ARRAY_TASK_ID + 1) * {2} / {3}))
+state={4}$(printf %0{5}d $SLURM_ARRAY_TASK_ID).state
+resume=(); [ -e "$state" ] && resume=(--resume "$state")
+exec {6}{8} --pass-range $begin:$end --checkpoint 10m -o "$state" "${{resume[@]}}"
+JOB
+)
+sbatch --parsable --job-name={0}-merge --dependency=afterok:$job "$@" <<'JOB'
+#!/bin/bash
+exec {7}
+JOB
+)",
+      shell_word(fs::path(stem_of(a)).filename().string()), a.shards - 1, a.passes, a.shards,
+      shell_word(stem_of(a) + ".shard-"), digits, render_words(a), merge_command(a),
+      a.threads == 0 ? " --threads ${SLURM_CPUS_PER_TASK:-0}" : ""));
+}
+
+void run(const ShardsCommand& a) {
+  if (a.shards > a.passes)
+    throw Error(fmt::format("--shards {}: expected at most one shard for each of the {} passes", a.shards, a.passes));
+  const std::string extension = fs::path(a.output).extension().string();
+  if (extension != ".exr" && extension != ".png" && extension != ".state")
+    throw Error(fmt::format("-o {}: expected a name that ends in .exr, .png or .state", a.output));
+  if (a.format == Format::shell) return print_shell(a);
+  if (a.format == Format::json) return print_json(a);
+  print_slurm(a);
+}
+
+OptionTable shards_options(ShardsCommand& a) {
+  constexpr std::uint64_t most = 1'000'000;
+  const OptionTable own{
+      {.names = "-p,--passes",
+       .value = into(a.passes, count_type({1, most})),
+       .brief = "Passes of the whole picture",
+       .required = true},
+      {.names = "--shards",
+       .value = into(a.shards, count_type({1, most})),
+       .brief = "Number of jobs that share them",
+       .required = true},
+      {.names = "-o,--output",
+       .value = into(a.output, text_type("FILE")),
+       .brief = "The merged picture: .exr, .png or .state",
+       .details = "The states of the shards lie beside it.",
+       .required = true},
+      {.names = "--format",
+       .value = into(a.format,
+                     choice_type<Format>({{"shell", Format::shell}, {"slurm", Format::slurm}, {"json", Format::json}})),
+       .brief = "What is printed: a script, a script that submits jobs to Slurm, or JSON",
+       .otherwise = "shell"}};
+  return joined(render_options(a), own);
+}
+
+}  // namespace
+
+void add_shards(CLI::App& app) {
+  const auto a = std::make_shared<ShardsCommand>();
+  constexpr const char* footer =
+      "Nothing is rendered. All options of render that decide the picture go into the commands.\n\nExamples:\n"
+      "  lanthorn shards a.pbrt -p 1000 --shards 50 -o a.exr > a.sh\n"
+      "  lanthorn shards a.pbrt -p 1000 --shards 50 -o a.exr --format slurm > a.slurm.sh; bash a.slurm.sh -c 64";
+  add_command(app, {"shards", "Print the commands that render a picture in parts, and merge it", shards_options(*a),
+                    footer, [a] { run(*a); }});
+}
+
+}  // namespace lanthorn::program

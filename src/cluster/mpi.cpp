@@ -1,0 +1,62 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include <dlfcn.h>
+#include <fmt/format.h>
+
+#include <cstdlib>
+#include <stdexcept>
+
+#include "cluster/launcher.h"
+#include "cluster/mpi_functions.h"
+#include "lanthorn/error.h"
+
+namespace lanthorn {
+
+namespace {
+
+#ifdef LANTHORN_MPI_MODULE
+const MpiFunctions& load() {
+  // MPI's own plug-ins look for its symbols among the global ones.
+  void* const module = dlopen(LANTHORN_MPI_MODULE, RTLD_LAZY | RTLD_GLOBAL);
+  void* const symbol = module != nullptr ? dlsym(module, mpi_functions_symbol) : nullptr;
+  if (symbol == nullptr) throw Error(std::string("the module for MPI cannot be loaded: ") + dlerror());
+  return *reinterpret_cast<MpiFunctionsSymbol>(symbol)();
+}
+#else
+const MpiFunctions& load() {
+  throw Error(
+      "a launcher of MPI has started several processes, but this program is built without MPI "
+      "(-DLANTHORN_BUILD_MPI=ON)");
+}
+#endif
+
+const MpiFunctions& functions() {
+  static const MpiFunctions& loaded = load();
+  return loaded;
+}
+
+}  // namespace
+
+std::optional<TeamLink> join_mpi() {
+  const auto launcher = find_launcher([](const char* name) { return std::getenv(name); });
+  if (!launcher || launcher->size == 1) return std::nullopt;
+  try {
+    TeamLink link = functions().join();
+    if (link.size > 1) return link;
+  } catch (const std::runtime_error& problem) {
+    throw Error(std::string("MPI does not start: ") + problem.what());
+  }
+  throw Error(
+      fmt::format("{} says that there are {} processes, but Open MPI finds this one alone: each would render "
+                  "the whole picture; start them with mpirun, or srun --mpi=pmix",
+                  launcher->variable, launcher->size));
+}
+
+void leave_mpi() { functions().leave(); }
+
+void abort_mpi(int exit_code) {
+  functions().abort(exit_code);
+  std::_Exit(exit_code);
+}
+
+}  // namespace lanthorn

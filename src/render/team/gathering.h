@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// The way of sums to rank 0.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "render/state.h"
+
+namespace lanthorn {
+
+/// Sums of a round; none of a process that has rendered no pass of it.
+using RoundSums = std::optional<RenderState>;
+
+/// Sums go up a tree: each process adds those of its children to its own and passes them on to its parent, so that rank
+/// 0 receives two states of a round and not as many as there are processes. Film sums are exact, so that the tree does
+/// not show in them.
+class Gathering {
+ public:
+  Gathering(int rank, int size) : awaited_(1 + children(rank, size)) {}
+
+  static int parent(int rank) { return (rank - 1) / 2; }
+  static int children(int rank, int size) { return (2 * rank + 1 < size ? 1 : 0) + (2 * rank + 2 < size ? 1 : 0); }
+
+  /// Adds the sums of this process or, with all below it, of a child.
+  void add(std::uint64_t round, RoundSums sums) {
+    Part& part = parts_[round];
+    ++part.arrived;
+    if (!part.sums)
+      part.sums = std::move(sums);
+    else if (sums)
+      add_state(*part.sums, *sums);
+  }
+
+  /// Removes and returns the sums of the oldest round if nothing of it is missing.
+  std::optional<std::pair<std::uint64_t, RoundSums>> take_complete() {
+    if (parts_.empty() || parts_.begin()->second.arrived < awaited_) return std::nullopt;
+    auto node = parts_.extract(parts_.begin());
+    return std::pair(node.key(), std::move(node.mapped().sums));
+  }
+
+  bool is_empty() const { return parts_.empty(); }
+
+ private:
+  struct Part {
+    int arrived = 0;
+    RoundSums sums;
+  };
+  int awaited_;
+  std::map<std::uint64_t, Part> parts_;
+};
+
+}  // namespace lanthorn
