@@ -14,6 +14,7 @@
 #include "lanthorn/shell.h"
 #include "options.h"
 #include "render_arguments.h"
+#include "scene_changes.h"
 
 namespace lanthorn::program {
 
@@ -23,7 +24,13 @@ namespace fs = std::filesystem;
 
 enum class Format : std::uint8_t { shell, slurm, json };
 
-struct ShardsCommand : RenderArguments {
+// What decides the picture.
+struct PictureArguments : RenderArguments {
+  SceneChanges changes;
+};
+OptionTable picture_options(PictureArguments& a) { return joined(render_options(a), scene_change_options(a.changes)); }
+
+struct ShardsCommand : PictureArguments {
   std::uint64_t passes = 0, shards = 0;
   std::string output;
   Format format = Format::shell;
@@ -39,8 +46,8 @@ std::string state_of(const ShardsCommand& a, std::uint64_t shard) {
 
 // What all shards have in common: the scene and the options that decide the picture.
 std::string render_words(const ShardsCommand& a) {
-  RenderArguments printed;  // at first with the defaults, which the table remembers
-  const OptionTable table = render_options(printed);
+  PictureArguments printed;  // at first with the defaults, which the table remembers
+  const OptionTable table = picture_options(printed);
   printed = a;
   return command_line("lanthorn render", table);
 }
@@ -75,22 +82,26 @@ void print_json(const ShardsCommand& a) {
   print_text(all.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + '\n');
 }
 
-// A job that is requeued goes on from its last checkpoint.
+// A job that is requeued, because its node failed or it was killed, goes on from its last checkpoint.
 void print_slurm(const ShardsCommand& a) {
   const std::size_t digits = fmt::formatted_size("{}", a.shards - 1);
   print_text(fmt::format(
       R"(#!/bin/bash
 # Run this where the scene lies. Its arguments go to sbatch: --partition=long --cpus-per-task=64
+# The last job merges, or says which passes are missing.
 set -e
 job=$(sbatch --parsable --job-name={0} --array=0-{1} --requeue --open-mode=append "$@" <<'JOB'
 #!/bin/bash
 begin=$((SLURM_ARRAY_TASK_ID * {2} / {3})) end=$(((SLURM_ARRAY_TASK_ID + 1) * {2} / {3}))
 state={4}$(printf %0{5}d $SLURM_ARRAY_TASK_ID).state
 resume=(); [ -e "$state" ] && resume=(--resume "$state")
-exec {6}{8} --pass-range $begin:$end --checkpoint 10m -o "$state" "${{resume[@]}}"
+{6}{8} --pass-range $begin:$end --checkpoint 10m -o "$state" "${{resume[@]}}" && exit
+code=$?  # above 128: killed, by a lack of memory or of power
+[ $code -gt 128 ] && [ ${{SLURM_RESTART_COUNT:-0}} -lt 3 ] && scontrol requeue $SLURM_JOB_ID
+exit $code
 JOB
 )
-sbatch --parsable --job-name={0}-merge --dependency=afterok:$job "$@" <<'JOB'
+sbatch --parsable --job-name={0}-merge --dependency=afterany:$job "$@" <<'JOB'
 #!/bin/bash
 exec {7}
 JOB
@@ -132,7 +143,7 @@ OptionTable shards_options(ShardsCommand& a) {
                      choice_type<Format>({{"shell", Format::shell}, {"slurm", Format::slurm}, {"json", Format::json}})),
        .brief = "What is printed: a script, a script that submits jobs to Slurm, or JSON",
        .otherwise = "shell"}};
-  return joined(render_options(a), own);
+  return joined(picture_options(a), own);
 }
 
 }  // namespace

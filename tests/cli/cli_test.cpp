@@ -24,7 +24,7 @@ namespace {
 const Words integrators{"auto",      "probppm",          "sppm",    "ppm", "vcm", "bpm", "bdpt", "path", "light", "mlt",
                         "photonmap", "reversephotonmap", "splitsum"};
 const Words subcommands{"render",  "info",    "compare", "converge", "photons", "ibl",
-                        "convert", "denoise", "develop", "merge",    "list"};
+                        "convert", "denoise", "develop", "merge",    "shards",  "list"};
 
 TEST_F(Cli, HelpNamesSubcommandsAndOptions) {
   const Ending program = succeed({"--help"});

@@ -74,7 +74,7 @@ TEST_F(Shards, TheScriptForSlurmSubmitsAnArrayAndAMerge) {
   ASSERT_EQ(ending.exit_code, 0) << ending.err;
   const std::string calls = bytes("calls");
   EXPECT_TRUE(contains(calls, "--array=0-2 --requeue")) << calls;
-  EXPECT_TRUE(contains(calls, "--dependency=afterok:17 --partition=long")) << calls;
+  EXPECT_TRUE(contains(calls, "--dependency=afterany:17 --partition=long")) << calls;
   succeed({"merge", "--expect", "0:7", "all.shard-0.state", "all.shard-1.state", "all.shard-2.state", "-o", "a.exr",
            "--reproducible"});
   succeed({"render", "tiny.pbrt", "-i", "path", "-p", "7", "-o", "alone.exr", "--reproducible", "-q"});
