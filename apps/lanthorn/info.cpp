@@ -11,8 +11,10 @@
 #include "commands.h"
 #include "console.h"
 #include "json_text.h"
+#include "lanthorn/error.h"
 #include "lanthorn/methods.h"
 #include "lanthorn/scene.h"
+#include "machine_report.h"
 #include "render_arguments.h"
 #include "render_file.h"
 #include "scene_report.h"
@@ -75,7 +77,7 @@ void show_scene(const std::string& file, const ReadOptions& reading, bool as_jso
 
 struct InfoCommand {
   std::string file;
-  bool json = false;
+  bool json = false, machine = false;
   ReadOptions reading;
 };
 
@@ -83,13 +85,19 @@ OptionTable info_options(InfoCommand& a) {
   const OptionTable own{
       {.names = "file",
        .value = into(a.file, existing_file_type()),
-       .brief = "Scene file (.pbrt, .gltf, .glb, .obj), saved state (.state) or picture (.exr, .png ...)",
-       .required = true},
+       .brief = "Scene file (.pbrt, .gltf, .glb, .obj), saved state (.state) or picture (.exr, .png ...)"},
+      {.names = "--machine",
+       .value = flag(a.machine),
+       .brief = "Show the processor, memory and limits of this machine, and versions of libraries",
+       .details = "CPU affinity and control groups (containers) can leave less than the machine has."},
       {.names = "--json", .value = flag(a.json), .brief = "Print as JSON"}};
   return joined(own, read_options(a.reading));
 }
 
 void run(const InfoCommand& a) {
+  if (a.machine != a.file.empty())
+    throw Error(a.machine ? "info --machine takes no file" : "info: expected a file, or --machine");
+  if (a.machine) return show_machine(a.json);
   switch (kind_of_file(a.file)) {
     case FileKind::state:
       return show_state(a.file, a.json);
@@ -107,8 +115,8 @@ void add_info(CLI::App& app) {
   constexpr const char* footer =
       "Of a scene: counts, bounds, memory, lights, materials, warnings. Of a state or a picture: the method, its\n"
       "settings, seed, passes, size, layers and version, as far as the file holds them. A damaged file is an error.";
-  add_command(
-      app, {"info", "Show what is in a scene, a saved state or a picture", info_options(*a), footer, [a] { run(*a); }});
+  add_command(app, {"info", "Show what is in a scene, a saved state or a picture, or what this machine has",
+                    info_options(*a), footer, [a] { run(*a); }});
 }
 
 }  // namespace lanthorn::program

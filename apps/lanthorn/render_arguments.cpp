@@ -27,7 +27,9 @@ Option threads_option(unsigned& threads, const std::string& what) {
   return {.names = "-T,--threads",
           .value = into(threads, count_type({0, most_threads})),
           .brief = "Number of threads; 0: all cores",
-          .details = what + " on it.",
+          .details = what +
+                     " on it. Of all cores, those count that CPU affinity and the quota of a control group "
+                     "(container) leave to the program; 'lanthorn info --machine' shows them.",
           .otherwise = "0"};
 }
 

@@ -6,10 +6,10 @@
 
 namespace lanthorn {
 
-/// While it lives, limits the threads of all parallel loops of this process. Results never depend on it.
+/// Limits the threads of all parallel loops of this process while it lives; the newest counts. Changes no result.
 class ThreadLimit {
  public:
-  /// 0: all cores. Uses fewer threads if the system grants fewer.
+  /// 0: what CPU affinity and control groups leave. Never more than the cores of the affinity or what can be started.
   explicit ThreadLimit(unsigned threads);
   ~ThreadLimit();
   ThreadLimit(const ThreadLimit&) = delete;

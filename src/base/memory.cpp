@@ -10,24 +10,14 @@
 #include <array>
 #include <filesystem>
 #include <fstream>
-#include <limits>
-#include <string_view>
+
+#include "base/control_group.h"
 
 namespace lanthorn {
 
 namespace {
 
 namespace fs = std::filesystem;
-
-// The number after `key` in a file of lines "key number"; nullopt if the key is missing.
-std::optional<std::uint64_t> find_number(const fs::path& file, std::string_view key) {
-  std::ifstream in(file);
-  for (std::string name; in >> name; in.ignore(std::numeric_limits<std::streamsize>::max(), '\n')) {
-    std::uint64_t value = 0;
-    if (name == key && in >> value) return value;
-  }
-  return {};
-}
 
 std::optional<std::uint64_t> read_number(const fs::path& file) {
   std::uint64_t value = 0;
@@ -38,28 +28,6 @@ std::optional<std::uint64_t> read_number(const fs::path& file) {
 std::optional<std::uint64_t> left_by_machine() {
   if (const auto kibibytes = find_number("/proc/meminfo", "MemAvailable:")) return *kibibytes * 1024;
   return {};
-}
-
-// Memory that the control group may still take. Cached files count as used, but can be reclaimed.
-std::optional<std::uint64_t> left_by_group(const fs::path& group) {
-  const auto most = read_number(group / "memory.max"), used = read_number(group / "memory.current");
-  if (!most || !used) return {};
-  const std::uint64_t held = *used - std::min(*used, find_number(group / "memory.stat", "inactive_file").value_or(0));
-  return *most - std::min(*most, held);
-}
-
-std::optional<std::uint64_t> left_by_groups() {
-  const fs::path root = "/sys/fs/cgroup";
-  std::string line;
-  constexpr std::string_view unified = "0::/";
-  for (std::ifstream in("/proc/self/cgroup"); std::getline(in, line) && !line.starts_with(unified);) {
-  }
-  if (!line.starts_with(unified)) return {};
-  std::optional<std::uint64_t> least;
-  for (fs::path group = root / line.substr(unified.size());; group = group.parent_path()) {
-    if (const auto left = left_by_group(group)) least = std::min(*left, least.value_or(*left));
-    if (group == root || !group.has_relative_path()) return least;
-  }
 }
 
 std::optional<std::uint64_t> left_by_limit() {
@@ -75,7 +43,7 @@ std::optional<std::uint64_t> left_by_limit() {
 
 std::optional<std::uint64_t> available_memory() {
   std::optional<std::uint64_t> least;
-  for (const auto& left : {left_by_machine(), left_by_groups(), left_by_limit()})
+  for (const auto& left : {left_by_machine(), group_limits().memory_left, left_by_limit()})
     if (left) least = std::min(*left, least.value_or(*left));
   return least;
 }

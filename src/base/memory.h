@@ -12,8 +12,8 @@
 
 namespace lanthorn {
 
-/// Bytes that this process can still allocate: the least of what the machine, its control group (version 2) and its
-/// address-space limit (ulimit -v) leave. nullopt if none of them is known.
+/// Bytes that this process can still allocate: the least of what the machine, its control groups (base/control_group.h)
+/// and its address-space limit (ulimit -v) leave. nullopt if none of them is known.
 std::optional<std::uint64_t> available_memory();
 
 /// "1.5 GiB"; whole bytes below a KiB.

@@ -4,17 +4,23 @@
 
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
+#include <tbb/version.h>
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <exception>
 #include <filesystem>
 #include <iterator>
 #include <latch>
+#include <list>
+#include <mutex>
+#include <optional>
 #include <system_error>
 #include <thread>
 #include <vector>
 
+#include "base/control_group.h"
 #include "lanthorn/threads.h"
 
 namespace lanthorn {
@@ -70,14 +76,53 @@ std::size_t available_threads(unsigned threads) {
 
 }  // namespace
 
-struct ThreadLimit::Control {
-  tbb::global_control control;
+namespace {
+
+// The limits of all `ThreadLimit`s that live, oldest first. TBB itself would take the least of them.
+struct Limits {
+  std::mutex mutex;
+  std::list<std::size_t> living;
+  std::optional<tbb::global_control> control;
+
+  // Replaces TBB's limit by the newest. The caller holds the mutex.
+  void apply() {
+    control.reset();
+    if (!living.empty()) control.emplace(tbb::global_control::max_allowed_parallelism, living.back());
+  }
 };
 
-ThreadLimit::ThreadLimit(unsigned threads)
-    : control_(new Control{tbb::global_control(tbb::global_control::max_allowed_parallelism,
-                                               available_threads(threads > 0 ? threads : most_threads()))}) {}
-ThreadLimit::~ThreadLimit() = default;
+Limits& limits() {
+  static Limits all;
+  return all;
+}
+
+}  // namespace
+
+struct ThreadLimit::Control {
+  std::list<std::size_t>::iterator place;
+};
+
+ThreadLimit::ThreadLimit(unsigned threads) : control_(new Control) {
+  const std::size_t limit = available_threads(threads > 0 ? threads : usable_threads());
+  const std::lock_guard lock(limits().mutex);
+  control_->place = limits().living.insert(limits().living.end(), limit);
+  limits().apply();
+}
+
+ThreadLimit::~ThreadLimit() {
+  const std::lock_guard lock(limits().mutex);
+  limits().living.erase(control_->place);
+  limits().apply();
+}
+
+unsigned allowed_threads() { return most_threads(); }  // TBB looks at the affinity
+
+std::string version_of_tbb() { return TBB_runtime_version(); }
+
+unsigned usable_threads() {
+  const double cores = allowed_threads();
+  return static_cast<unsigned>(std::max(1.0, std::ceil(std::min(cores, group_limits().cores.value_or(cores)))));
+}
 
 unsigned thread_count() {
   return static_cast<unsigned>(

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <string>
+
 namespace lanthorn {
 
 /// Number of threads, at most `wanted`, that can be started besides this one; starts them briefly to find out. Less
@@ -11,5 +13,14 @@ unsigned startable_threads(unsigned wanted);
 /// Number of threads that are left to the libraries behind images (image/image_codec.h), which start theirs when they
 /// are loaded, and end the program if they cannot.
 unsigned threads_of_image_libraries();
+
+/// Number of hardware threads that this process may run on (CPU affinity).
+unsigned allowed_threads();
+
+/// Number of threads that keep this process's share of the machine busy: those that it may have, or fewer if a control
+/// group (container) grants less CPU time; a share of a core counts as one.
+unsigned usable_threads();
+
+std::string version_of_tbb();
 
 }  // namespace lanthorn

@@ -60,6 +60,8 @@ struct ImageCodec {
                      int height, float* colors);
   /// Decodes OpenEXR with the calling thread alone from now on.
   void (*use_one_thread)();
+  /// Version of OpenImageIO, such as "2.4.7".
+  std::string (*version)();
 };
 
 /// The function of the module that returns its codec.

@@ -13,6 +13,7 @@
 #include <memory>
 #include <mutex>
 #include <stdexcept>
+#include <string>
 
 #include "image/image_codec.h"
 
@@ -184,10 +185,15 @@ void apply_view(const std::string& file, const std::string& wanted_display, cons
 
 void use_one_thread() { OIIO::attribute("exr_threads", -1); }
 
+std::string version() {
+  const int number = OIIO::openimageio_version();  // of the library that was loaded
+  return std::to_string(number / 10000) + '.' + std::to_string(number / 100 % 100) + '.' + std::to_string(number % 100);
+}
+
 }  // namespace
 
 extern "C" const ImageCodec* lanthorn_image_codec() {
-  static constexpr ImageCodec codec{open, encode, apply_view, use_one_thread};
+  static constexpr ImageCodec codec{open, encode, apply_view, use_one_thread, version};
   return &codec;
 }
 

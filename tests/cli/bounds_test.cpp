@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 // What the program does with input that asks for too much, or for files that are none of its business.
+#include <sched.h>
 #include <sys/stat.h>
 
 #include <algorithm>
@@ -271,6 +272,69 @@ TEST_F(Bounds, SandboxReadsOnlyWhatIsInTheScenesFolder) {
   }
   succeed({"info", "uploads/b.pbrt"});
   succeed({"info", "uploads/good.pbrt", "--sandbox"});
+}
+
+TEST_F(Bounds, InfoSaysWhatTheMachineLeaves) {
+  const auto machine = nlohmann::json::parse(succeed({"info", "--machine", "--json"}).out);
+  EXPECT_GE(machine.at("hardware_threads"), machine.at("allowed_threads"));
+  EXPECT_GE(machine.at("allowed_threads"), machine.at("default_threads"));
+  EXPECT_GT(machine.at("memory_bytes").at("machine"), machine.at("memory_bytes").at("available"));
+  for (const std::string library : {"Lanthorn", "Embree", "oneTBB", "OpenImageIO"})
+    EXPECT_TRUE(contains(machine.at("libraries").at(library), ".")) << library;
+  const std::string text = succeed({"info", "--machine"}).out;
+  for (const std::string line :
+       {"processor ", "sets ", "cores ", "threads ", "memory ", "gpu ", "version    Embree 3."})
+    EXPECT_TRUE(contains(text, line)) << text;
+  refuse({"info"}, "expected a file, or --machine");
+  refuse({"info", "tiny.pbrt", "--machine"}, "takes no file");
+}
+
+// Restores the CPU affinity of this process, which programs that it starts inherit.
+class AffinityScope {
+ public:
+  AffinityScope() { sched_getaffinity(0, sizeof before_, &before_); }
+  ~AffinityScope() { sched_setaffinity(0, sizeof before_, &before_); }
+  AffinityScope(const AffinityScope&) = delete;
+  AffinityScope& operator=(const AffinityScope&) = delete;
+
+  void allow_first_only() const {
+    int first = 0;
+    while (!CPU_ISSET(first, &before_)) ++first;
+    cpu_set_t one;
+    CPU_ZERO(&one);
+    CPU_SET(first, &one);
+    sched_setaffinity(0, sizeof one, &one);
+  }
+
+ private:
+  cpu_set_t before_{};
+};
+
+TEST_F(Bounds, ThreadsKeepToTheAffinity) {
+  const AffinityScope scope;
+  scope.allow_first_only();
+  const auto machine = nlohmann::json::parse(succeed({"info", "--machine", "--json"}).out);
+  EXPECT_EQ(machine.at("allowed_threads"), 1);
+  EXPECT_EQ(machine.at("default_threads"), 1);
+  succeed(render({"-p", "1", "-o", "a.exr", "-T", "7", "--json", "a.json"}));
+  EXPECT_EQ(json("a.json").at("threads"), 1);
+}
+
+// A group of version 1 made by hand; skipped where the user may not make one.
+TEST_F(Bounds, ThreadsAndMemoryKeepToTheControlGroup) {
+  const Ending made = run_shell(
+      "g=/sys/fs/cgroup/cpu/lanthorn-test-$$ m=/sys/fs/cgroup/memory/lanthorn-test-$$\n"
+      "trap 'echo $$ >/sys/fs/cgroup/cpu/cgroup.procs; echo $$ >/sys/fs/cgroup/memory/cgroup.procs; rmdir $g $m' EXIT\n"
+      "mkdir $g $m && echo 20000 >$g/cpu.cfs_quota_us && echo 256M >$m/memory.limit_in_bytes || exit 77\n"
+      "echo $$ >$g/cgroup.procs && echo $$ >$m/cgroup.procs || exit 77\n"
+      "(L info --machine --json)");
+  if (made.exit_code == 77) GTEST_SKIP() << "no control groups can be made here: " << made.err;
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  const auto machine = nlohmann::json::parse(made.out);
+  EXPECT_DOUBLE_EQ(machine.at("cpu_quota"), .2);
+  EXPECT_EQ(machine.at("default_threads"), 1);
+  EXPECT_EQ(machine.at("memory_bytes").at("limit"), 256 << 20);
+  EXPECT_LT(machine.at("memory_bytes").at("available"), 256 << 20);
 }
 
 }  // namespace

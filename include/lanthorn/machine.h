@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// The machine and this process's share of it.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace lanthorn {
+
+/// A word and what belongs to it.
+struct NamedText {
+  std::string name, text;
+};
+
+/// Cores of one kind, in processors that have several: fast ones and ones that save power.
+struct CoreKind {
+  std::string name;
+  unsigned threads = 0;  ///< hardware threads
+};
+
+/// Empty texts and nullopt: unknown, or no limit.
+struct MachineInfo {
+  std::string processor;
+  std::vector<std::string> instruction_sets;  ///< of those that matter for speed, in the kernel's names
+  unsigned cores = 0;                         ///< 0: unknown
+  unsigned hardware_threads = 0;
+  std::vector<CoreKind> core_kinds;               ///< empty if all cores are alike
+  unsigned allowed_threads = 0;                   ///< hardware threads that the process may run on (CPU affinity)
+  std::optional<double> cpu_quota;                ///< CPU seconds for each second that control groups grant
+  unsigned default_threads = 0;                   ///< threads of a render without --threads
+  std::optional<std::uint64_t> memory;            ///< bytes, of the machine
+  std::optional<std::uint64_t> memory_limit;      ///< bytes, of the control groups
+  std::optional<std::uint64_t> memory_available;  ///< bytes that the process can still allocate
+  std::vector<std::string> gpus;                  ///< as far as drivers name them in /proc or /sys
+  std::vector<NamedText> libraries;               ///< versions
+};
+
+/// Looks at the machine and loads the module that reads images, for its version. Throws Error if it cannot be loaded.
+MachineInfo machine_info();
+
+}  // namespace lanthorn
