@@ -15,10 +15,13 @@
 #include <optional>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "base/memory.h"
 #include "io/gzip.h"
 #include "lanthorn/error.h"
 #include "lanthorn/text.h"
+#include "shape/triangle_memory.h"
 
 namespace lanthorn {
 
@@ -300,6 +303,7 @@ class BodyReader {
   explicit BodyReader(Body body) : body_(std::move(body)) {}
 
   void read(const Header& header) {
+    require_memory_of(header);
     for (const Element& element : header.elements) {
       check_size(element);
       if (element.name == "vertex" && !has_vertices_)
@@ -320,6 +324,23 @@ class BodyReader {
   Faces faces;
 
  private:
+  // Refuses a mesh whose scene cannot be built, before any of it is read. Faces count as triangles.
+  void require_memory_of(const Header& header) const {
+    double vertices_there = 0, triangles = 0;
+    bool has_attributes = false;
+    for (const Element& element : header.elements) {
+      check_size(element);
+      if (element.name == "vertex") {
+        vertices_there = static_cast<double>(element.count);
+        for (const Property& p : element.properties) has_attributes = has_attributes || attribute_named(p.name) > z;
+      }
+      if (element.name == "face") triangles = static_cast<double>(element.count);
+    }
+    const double trees = triangles * (tree_bytes_per_triangle + building_bytes_per_triangle);
+    require_memory(mesh_bytes(vertices_there, triangles, has_attributes) + trees, body_.place(),
+                   fmt::format("the mesh ({:.0f} faces) with its search tree", triangles));
+  }
+
   // Before memory is allocated: the file must be long enough for the header's counts.
   void check_size(const Element& element) const {
     std::size_t smallest = 0;

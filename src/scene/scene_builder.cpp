@@ -24,6 +24,7 @@
 #include "scene/media.h"
 #include "scene/medium_around.h"
 #include "scene/scene_data.h"
+#include "scene/scene_memory.h"
 #include "scene/volume_lights.h"
 #include "shape/curves.h"
 #include "shape/displacement.h"
@@ -92,6 +93,7 @@ class SceneBuilder {
 void SceneBuilder::build() {
   const auto started = std::chrono::steady_clock::now();
   check_displacements();
+  require_geometry_memory(data_.description);
   load_textures_of_shapes();
   data_.media = std::make_shared<const std::vector<Medium>>(make_media(data_.description, *data_.spectra));
   data_.has_emissive =

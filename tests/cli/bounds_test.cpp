@@ -274,6 +274,21 @@ TEST_F(Bounds, SandboxReadsOnlyWhatIsInTheScenesFolder) {
   succeed({"info", "uploads/good.pbrt", "--sandbox"});
 }
 
+// The header says what the scene will take. Nothing of the mesh, which would be refused for its contents, is read.
+TEST_F(Bounds, MeshesThatDoNotFitAreRefusedByTheirHeader) {
+  write("mesh.ply",
+        "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+        "element face 40000000\nproperty list uchar int vertex_indices\nend_header\n");
+  fs::resize_file(path("mesh.ply"), fs::file_size(path("mesh.ply")) + 36 + 40000000);
+  write("huge.pbrt", tiny_scene + std::string("Shape \"plymesh\" \"string filename\" \"mesh.ply\"\n"));
+  for (const std::string command : {"info huge.pbrt", "render huge.pbrt -q -o a.exr"}) {
+    const Ending ending = run_shell("ulimit -v 4000000; L " + command);
+    EXPECT_EQ(ending.exit_code, 2) << ending.err;
+    EXPECT_TRUE(contains(ending.err, "the mesh (40000000 faces) with its search tree takes 6.9 GiB of memory"))
+        << ending.err;
+  }
+}
+
 TEST_F(Bounds, InfoSaysWhatTheMachineLeaves) {
   const auto machine = nlohmann::json::parse(succeed({"info", "--machine", "--json"}).out);
   EXPECT_GE(machine.at("hardware_threads"), machine.at("allowed_threads"));
