@@ -119,10 +119,11 @@ unsigned allowed_threads() { return most_threads(); }  // TBB looks at the affin
 
 std::string version_of_tbb() { return TBB_runtime_version(); }
 
-unsigned usable_threads() {
-  const double cores = allowed_threads();
-  return static_cast<unsigned>(std::max(1.0, std::ceil(std::min(cores, group_limits().cores.value_or(cores)))));
+unsigned threads_for(unsigned cores, std::optional<double> quota) {
+  return static_cast<unsigned>(std::max(1.0, std::ceil(std::min<double>(cores, quota.value_or(cores)))));
 }
+
+unsigned usable_threads() { return threads_for(allowed_threads(), group_limits().cores); }
 
 unsigned thread_count() {
   return static_cast<unsigned>(

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 
 namespace lanthorn {
@@ -16,6 +17,9 @@ unsigned threads_of_image_libraries();
 
 /// Number of hardware threads that this process may run on (CPU affinity).
 unsigned allowed_threads();
+
+/// Number of threads that use so many cores for as many CPU seconds a second as `quota` grants.
+unsigned threads_for(unsigned cores, std::optional<double> quota);
 
 /// Number of threads that keep this process's share of the machine busy: those that it may have, or fewer if a control
 /// group (container) grants less CPU time; a share of a core counts as one.

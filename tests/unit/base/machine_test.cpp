@@ -63,6 +63,13 @@ TEST(Machine, NonsenseIsUnknown) {
   EXPECT_FALSE(machine.memory);
 }
 
+TEST(ThreadLimit, SharesOfCoresCountAsCores) {
+  EXPECT_EQ(threads_for(8, {}), 8u);
+  EXPECT_EQ(threads_for(8, 1.2), 2u);
+  EXPECT_EQ(threads_for(8, .2), 1u);
+  EXPECT_EQ(threads_for(2, 7.5), 2u);
+}
+
 TEST(ThreadLimit, TheNewestCounts) {
   const unsigned all = usable_threads();
   EXPECT_GE(all, 1u);
