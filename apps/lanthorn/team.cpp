@@ -74,6 +74,8 @@ void run_in_team(RenderCommand& a, const std::function<void(Team*)>& work) {
     if (!is_first(&team)) wait_for_the_end(team.link, text_of(std::current_exception()));
     abort_mpi(say_problem(std::current_exception()));
   }
+  // The others do not know that there will be no more frames.
+  if (is_first(&team) && stop_requested() && (a.frames || a.turntable)) abort_mpi(0);
   leave_mpi();
 }
 
