@@ -42,7 +42,8 @@ TEST_F(Cli, HelpNamesSubcommandsAndOptions) {
       {"convert", {"scene", "output", "--sandbox", "pbrt-v3"}},
       {"denoise", {"input", "--output", "--replace", "--exposure", "--reproducible"}},
       {"develop", {"picture", "output", "--layer", "--exposure", "--view-transform"}},
-      {"merge", {"--output", "--exposure", "--view-transform", "--reproducible"}},
+      {"merge", {"--output", "--expect", "--exposure", "--view-transform", "--reproducible"}},
+      {"shards", {"--passes", "--shards", "--format", "--output", "--look-at"}},
       {"list", {"integrator"}}};
   for (const std::string& name : subcommands) {
     const Ending help = succeed({name, "--help"});
