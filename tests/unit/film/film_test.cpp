@@ -432,6 +432,7 @@ TEST(Film, ConcurrentOverflowSaturates) {
 TEST(Film, AddsSamplesOfSeveralPassesToOnePixelAtOnce) {
   FilmContents contents{.light = {"direct"}, .decomposition = {.parts = {"a", "b"}}, .bias = true};
   contents.buckets = SpectralBuckets{};
+  constexpr int samples = 2000000;  // so that threads meet
   const std::array<std::uint64_t, 4> passes{0, 3, 5, 6};
   const auto add = [](Film& film, std::uint64_t pass, int i) {
     PixelSample s;
@@ -442,8 +443,8 @@ TEST(Film, AddsSamplesOfSeveralPassesToOnePixelAtOnce) {
     FilmPass(film, pass).add(0, s);
   };
   Film together(1, 1, 1, contents), in_turn(1, 1, 1, contents);
-  parallel_for(0, 40000, [&](int i) { add(together, passes[static_cast<std::size_t>(i) % 4], i); });
-  for (int i = 0; i < 40000; ++i) add(in_turn, passes[static_cast<std::size_t>(i) % 4], i);
+  parallel_for(0, samples, [&](int i) { add(together, passes[static_cast<std::size_t>(i) % 4], i); });
+  for (int i = 0; i < samples; ++i) add(in_turn, passes[static_cast<std::size_t>(i) % 4], i);
   for (std::size_t plane = 0; plane < together.plane_count(); ++plane)
     EXPECT_EQ(together.plane(plane), in_turn.plane(plane)) << plane;
 }
