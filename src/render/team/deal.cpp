@@ -17,8 +17,6 @@ std::uint64_t count_of(const std::vector<PassRange>& passes) {
   return count;
 }
 
-bool is_set(const std::atomic<bool>* flag) { return flag && flag->load(); }
-
 }  // namespace
 
 Deal::Deal(const StopRule& stop, const Team& team, std::vector<PassRange> done)
@@ -40,9 +38,10 @@ bool Deal::is_done(std::uint64_t pass) const {
 }
 
 bool Deal::must_stop(double seconds) const {
-  if (is_set(stop_.drop)) return true;
+  if (stop_.drop && stop_.drop->load()) return true;
   // At least one pass is rendered, however early the stop: there must be a picture.
-  return dealt_ > 0 && (is_set(stop_.interrupted) || (stop_.seconds && seconds >= *stop_.seconds));
+  return dealt_ > 0 &&
+         ((stop_.interrupted && stop_.interrupted->load()) || (stop_.seconds && seconds >= *stop_.seconds));
 }
 
 bool Deal::is_gathering_due(double seconds) const {
