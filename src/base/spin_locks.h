@@ -5,11 +5,12 @@
 #include <atomic>
 #include <cstddef>
 #include <memory>
+#include <thread>
 
 namespace lanthorn {
 
 /// Locks for the items of an array, each of which serves a group of neighbours. For critical sections of some
-/// nanoseconds that seldom meet: a thread waits by spinning. A copy has locks of its own, none of which is taken.
+/// nanoseconds that seldom meet: a thread that waits tries again and again. A copy has locks of its own, none of which is taken.
 class SpinLocks {
  public:
   SpinLocks() : locks_(std::make_unique<Lock[]>(count)) {}
@@ -21,7 +22,7 @@ class SpinLocks {
   class Guard {
    public:
     Guard(const SpinLocks& locks, std::size_t index) : lock_(locks.locks_[index / group % count].flag) {
-      while (lock_.test_and_set(std::memory_order_acquire)) __builtin_ia32_pause();
+      while (lock_.test_and_set(std::memory_order_acquire)) std::this_thread::yield();
     }
     Guard(const Guard&) = delete;
     Guard& operator=(const Guard&) = delete;
