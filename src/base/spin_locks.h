@@ -10,7 +10,7 @@
 namespace lanthorn {
 
 /// Locks for the items of an array, each of which serves a group of neighbours. For critical sections of some
-/// nanoseconds that seldom meet: a thread that waits tries again and again. A copy has locks of its own, none of which is taken.
+/// nanoseconds that seldom meet: a thread that waits tries again. A copy has locks of its own, none of which is taken.
 class SpinLocks {
  public:
   SpinLocks() : locks_(std::make_unique<Lock[]>(count)) {}
