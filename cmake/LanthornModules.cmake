@@ -34,6 +34,16 @@ function(lanthorn_test_headers name)
   target_precompile_headers(${name} PRIVATE <gtest/gtest.h> "${PROJECT_SOURCE_DIR}/tests/support/render_scene.h")
 endfunction()
 
+# Tells SOURCE, by a macro, the file of the module TARGET, which it opens. dlopen finds the module by the RUNPATH of the
+# program, but not where a sanitizer calls it instead of the program.
+function(lanthorn_opens_module source macro target)
+  set(module $<TARGET_FILE_NAME:${target}>)
+  if(LANTHORN_SANITIZE)
+    set(module $<TARGET_FILE:${target}>)
+  endif()
+  set_source_files_properties(${source} PROPERTIES COMPILE_DEFINITIONS ${macro}="${module}")
+endfunction()
+
 # One test program:
 #   lanthorn_test(unit_index KIND unit SOURCES kdtree_test.cpp MODULES index [LIBRARIES ...] [SHARDS n] [NIGHTLY])
 # Its label is its KIND. ctest runs it whole, or as SHARDS tests of about equal length that can run side by side. Kinds

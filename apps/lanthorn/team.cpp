@@ -18,7 +18,7 @@ namespace {
 
 constexpr int bad_input = 2, internal_error = 3;
 
-// What `main` would say, for all processes are ended by it.
+// Prints the message that `main` would print: MPI_Abort ends this process before `main` can.
 int say_problem(const std::exception_ptr& problem) try { std::rethrow_exception(problem); } catch (const Error& e) {
   say("lanthorn: {}\n", e.what());
   return bad_input;

@@ -24,7 +24,7 @@ struct CoreKind {
 /// Empty texts and nullopt: unknown, or no limit.
 struct MachineInfo {
   std::string processor;
-  std::vector<std::string> instruction_sets;  ///< of those that matter for speed, in the kernel's names
+  std::vector<std::string> instruction_sets;  ///< only those that affect speed, by the kernel's names
   unsigned cores = 0;                         ///< 0: unknown
   unsigned hardware_threads = 0;
   std::vector<CoreKind> core_kinds;               ///< empty if all cores are alike

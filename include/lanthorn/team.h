@@ -45,8 +45,8 @@ struct Team {
 /// For a process other than rank 0 that cannot render: tells rank 0 why, which throws this as an Error when it renders.
 void report_failure(const TeamLink& link, const std::string& message);
 
-/// The team of the processes that a launcher of MPI (mpirun, srun) has started with this one; nothing if this process
-/// is alone. Loads MPI only if a launcher's environment says that there are others. Call it once. Throws Error if MPI
+/// Joins the processes that one MPI launcher (mpirun, srun) has started. Returns nullopt if this process is alone.
+/// Loads MPI only if the launcher's environment variables show other processes. Call it once. Throws Error if MPI
 /// cannot be loaded or does not find the others.
 std::optional<TeamLink> join_mpi();
 /// Ends the use of MPI, after all processes have come here.

@@ -36,8 +36,8 @@ class FilmPass {
   /// in here.
   void splat_spectrum(std::uint32_t pixel, const SpectralRadiance& value, float weight) const;
 
-  /// Tells the processor that a sample of this pixel will be added soon: with more pixels than its caches hold, waiting
-  /// for their sums takes longer than adding to them.
+  /// Prefetches the sums of a pixel to which a sample is about to be added. If the film is larger than the caches,
+  /// waiting for the sums takes longer than adding to them.
   [[gnu::always_inline]] void prefetch(std::uint32_t pixel) const {
     prefetch(half_.samples, film_.samples_stride(), pixel);
     if (!film_.parts_.empty()) prefetch(film_.parts_, film_.parts_stride(), pixel);

@@ -82,7 +82,7 @@ std::size_t plan_memory(const Scene& scene, const View& view, const Integrator& 
     throw Error(fmt::format("--photons {}: a pass has {:.0f} light paths and as many photons at most", settings.photons,
                             most_numbers));
   if (use.fills_the_rest && option) settings.memory = static_cast<std::uint64_t>(limit.bytes - film - photons);
-  // What is free need not stay free, nor be left to others.
+  // Other programs may need some of the memory that is free now.
   const double room = option ? limit.bytes : limit.bytes / 2;
   constexpr double most = 1024;
   return static_cast<std::size_t>(std::clamp(photons > 0 ? (room - film) / photons : most, 1.0, most));

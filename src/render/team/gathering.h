@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The way of sums to rank 0.
+// How sums reach rank 0.
 #pragma once
 
 #include <cstdint>
@@ -16,8 +16,8 @@ namespace lanthorn {
 using RoundSums = std::optional<RenderState>;
 
 /// Sums go up a tree: each process adds those of its children to its own and passes them on to its parent, so that rank
-/// 0 receives two states of a round and not as many as there are processes. Film sums are exact, so that the tree does
-/// not show in them.
+/// 0 receives two states of a round and not as many as there are processes. Film sums are exact, so the result
+/// does not depend on the tree.
 class Gathering {
  public:
   Gathering(int rank, int size) : awaited_(1 + children(rank, size)) {}
