@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The Lanthorn authors
 # SPDX-License-Identifier: Apache-2.0
 # Build options, and the one interface target that carries every compiler flag.
-option(LANTHORN_NATIVE "Generate code for this machine's instruction set" ON)
+set(LANTHORN_ARCH native CACHE STRING "Instruction set, as -march= names it: native is that of this machine, x86-64-v2 runs on all since 2009")
 option(LANTHORN_BUILD_TESTS "Build the tests" ON)
 option(LANTHORN_BUILD_VIEWER "Build what draws by OpenGL: the methods ispm and voxelcones and the window of lanthorn view" ON)
 option(LANTHORN_BUILD_MPI "Build the module that lets several processes share a render under mpirun" ON)
@@ -36,9 +36,7 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
 endif()
 target_compile_definitions(lanthorn_flags INTERFACE GLM_FORCE_CXX17 GLM_FORCE_XYZW_ONLY SPDLOG_FMT_EXTERNAL FMT_HEADER_ONLY=0)
 set(CMAKE_CXX_FLAGS_RELEASE "-O3 -DNDEBUG")
-if(LANTHORN_NATIVE)
-  target_compile_options(lanthorn_flags INTERFACE -march=native)
-endif()
+target_compile_options(lanthorn_flags INTERFACE -march=${LANTHORN_ARCH})
 if(LANTHORN_WERROR)
   target_compile_options(lanthorn_flags INTERFACE -Werror)
   # What the optimiser of GCC believes of lengths and lifetimes depends on what it inlines, and so on the instruction set:
