@@ -127,7 +127,7 @@ float weight_of(const PathContext& path, const Bidirectional& pass, const Vertex
   const float cos_light = on_surface ? std::fabs(dot(l.normal, l.wi)) : 1.0f;
   const float pdf_walk = l.delta ? 0.0f : event.pdf_walk * passes;
   const float merging = at.volume_merging(pass.techniques.volume, passes, subpath.coherence());
-  ConnectedEnd at_eye{end_of_eye_path(subpath.densities(), at.reverse), 0, 0, merging};
+  ConnectedEnd at_eye{end_of_eye_path(subpath.densities(), at.reverse, v.state.non_delta > 0), 0, 0, merging};
   if (at_eye.has_other_techniques(pass.techniques)) {
     // Samples of far lights have no position: any point of the ray gives its densities.
     const EmittedRay ray{event.light, {far ? position_of(v) : l.position, l.normal, Vec2(0)}, -l.wi};
@@ -155,7 +155,7 @@ float weight_of_hit(const PathContext& path, const Bidirectional& pass, const Wa
   const float emission = has_light_paths(subpath.densities(), pass.techniques)
                              ? density_of_start(path, pass, {hit.index, hit.at, hit.to_eye}, is_of_direct_light)
                              : 0.0f;
-  return pass.weigh(sum_of_hit(subpath.densities(), direct, emission, pass.techniques));
+  return pass.weigh(sum_of_hit(subpath.densities(), direct, emission, state.non_delta, pass.techniques));
 }
 
 template <class Vertex>
@@ -168,16 +168,17 @@ DirectLight estimate_next_event(const PathContext& path, const Bidirectional& pa
 }
 
 // `passes`: probability that a walk passes the way between both ends.
-float weight_of_connection(const Bidirectional& pass, const Subpath& subpath, const End& eye, const LightVertex& other,
-                           const End& light, float distance2, float passes) {
+float weight_of_connection(const Bidirectional& pass, const WalkState& state, const Subpath& subpath, const End& eye,
+                           const LightVertex& other, const End& light, float distance2, float passes) {
   const Techniques& t = pass.techniques;
   const float to_light = eye.forward * light.density(passes) / distance2;
   const float to_eye = light.forward * eye.density(passes) / distance2;
   const float coherence = subpath.coherence_beyond();
-  const ConnectedEnd at_eye{end_of_eye_path(subpath.densities(), eye.reverse), to_eye, eye.merging,
+  const ConnectedEnd at_eye{end_of_eye_path(subpath.densities(), eye.reverse, state.non_delta > 0), to_eye, eye.merging,
                             eye.volume_merging(t.volume, passes, subpath.coherence())};
-  const ConnectedEnd at_light{end_of_light_path(other.densities, light.reverse, coherence * other.coherence), to_light,
-                              light.merging, light.volume_merging(t.volume.reversed(), passes, coherence)};
+  const ConnectedEnd at_light{
+      end_of_light_path(other.densities, light.reverse, !other.caustic, coherence * other.coherence), to_light,
+      light.merging, light.volume_merging(t.volume.reversed(), passes, coherence)};
   return pass.weigh(sum_of_connection(at_eye, at_light, t));
 }
 
@@ -199,8 +200,8 @@ DirectLight connect_ends(const PathContext& path, const Bidirectional& pass, con
       passage(path, ray_to(v, direction, other.phase ? SegmentEnd{other.at.position} : end_at(other.at)),
               medium_towards(v, direction), visitor_dimensions(v.state.depth));
   if (way.transmittance.is_black()) return {};
-  const float weight =
-      weight_of_connection(pass, subpath, eye, other, light, distance2, FlightDensity::passing(way.optical_depth));
+  const float weight = weight_of_connection(pass, v.state, subpath, eye, other, light, distance2,
+                                            FlightDensity::passing(way.optical_depth));
   return {value * way.transmittance * weight, v.state.dispersed || other.dispersed || eye.dispersed || light.dispersed};
 }
 
@@ -213,7 +214,7 @@ float weight_of_lens(const Bidirectional& pass, const Vertex& v, const Subpath& 
   const SubpathDensities densities =
       is_direct(v.state.depth, receiving_normal(v)) ? subpath.densities_of_direct_light() : subpath.densities();
   return pass.weigh(
-      sum_of_lens({end_of_light_path(densities, at.reverse, subpath.coherence_beyond()), density,
+      sum_of_lens({end_of_light_path(densities, at.reverse, v.state.non_delta > 0, subpath.coherence_beyond()), density,
                    v.state.depth == 1 ? 0.0f : at.merging, at.volume_merging(t.volume.reversed(), passes, 1)},
                   t));
 }

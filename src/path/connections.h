@@ -21,7 +21,7 @@ struct Bidirectional {
 
   float weigh(const TechniqueSum& sum) const {
     if (weighed) *weighed = sum;
-    return sum.weight();
+    return sum.weight(techniques);
   }
   float merging_at(const SurfacePoint& at) const { return merges_at(at) ? techniques.merging : 0.0f; }
 };

@@ -139,6 +139,10 @@ struct Techniques {
   VolumeMerging volume{};  ///< photons straight from a light are merged, too
   float volume_part = 1;   ///< 0 for pixels without merging in media
   float lens_part = 1;     ///< 0 for pixels without connections of light paths to the lens
+  /// Eye paths go on, with all techniques, after they have scattered by a lobe that is not delta. Otherwise, they
+  /// scatter by such a lobe once, connect and merge there alone, and then follow delta lobes to lights. In scenes
+  /// without media and fibres, merging then finds all other light.
+  bool goes_on = true;
 };
 
 /// What weights need to know of a subpath up to a vertex: d_VCM = `end` + c `vcm` and d_VC = `ends` + c `vc` + `media`
@@ -241,9 +245,8 @@ struct SubpathDensities : VertexDensities {
   }
 };
 
-/// The densities of all techniques that make a path, each times its number of samples, over a unit of their own.
-struct TechniqueSum {
-  float own = 1;          ///< of the technique that made it
+/// Densities of techniques, by kind, each times its number of samples.
+struct TechniqueDensities {
   float walk = 0;         ///< next-event estimation, and the eye path's hit
   float lens = 0;         ///< light vertices connected to the lens
   float connections = 0;  ///< of vertices of both paths
@@ -251,19 +254,35 @@ struct TechniqueSum {
   float media = 0;        ///< merging in media
 
   float all() const { return walk + lens + connections + merging + media; }
+};
+
+/// The densities of all techniques that make a path, over a unit of their own.
+struct TechniqueSum {
+  float own = 1;                ///< of the technique that made it
+  TechniqueDensities within{};  ///< of short eye paths (`Techniques::goes_on`)
+  TechniqueDensities beyond{};  ///< of longer ones; some of those that a longer eye path made are in `within`
+  bool is_beyond = false;       ///< the technique that made it is one of these
+
+  /// The part in which the technique is that made the path. `longer`: by a longer eye path.
+  TechniqueDensities& made_by(bool longer) {
+    is_beyond = longer;
+    return longer ? beyond : within;
+  }
+  float all() const { return within.all() + beyond.all(); }
   /// Of the balance heuristic.
-  float weight() const { return own / all(); }
+  float weight(const Techniques& t) const { return own / (t.goes_on ? all() : within.all()); }
 };
 
 /// The last vertex of a subpath that a technique joins to the other one.
 struct SubpathEnd {
   const VertexDensities& densities;
-  float reverse = 0;    ///< with which the other walk goes on from here to the vertex before, per solid angle
-  float coherence = 1;  ///< at a light path: of the eye path up to and including this vertex
-  float TechniqueSum::*end = nullptr;  ///< what the subpath ends with: `lens` of an eye path, `walk` of a light path
+  float reverse = 0;       ///< with which the other walk goes on from here to the vertex before, per solid angle
+  bool scattered = false;  ///< the subpath has scattered before by a lobe that is not delta
+  float coherence = 1;     ///< at a light path: of the eye path up to and including this vertex
+  float TechniqueDensities::*end = nullptr;  ///< what it ends with: `lens` of an eye path, `walk` of a light path
 
   /// Adds `factor` times r d_VC: all techniques that begin at vertices before, but for the connection to this one.
-  void add_earlier(float factor, const Techniques& t, TechniqueSum& sum) const {
+  void add_earlier(float factor, const Techniques& t, TechniqueDensities& sum) const {
     const float back = factor * reverse;
     sum.*end += back * part_of_end(t) * densities.ends;
     sum.connections += back * t.connections * densities.vc;
@@ -271,17 +290,17 @@ struct SubpathEnd {
     sum.merging += back * t.merging * densities.vm;
   }
   /// Adds `factor` times d_VCM: the connection to this vertex.
-  void add_here(float factor, const Techniques& t, TechniqueSum& sum) const {
+  void add_here(float factor, const Techniques& t, TechniqueDensities& sum) const {
     sum.*end += factor * part_of_end(t) * densities.end;
     sum.connections += factor * t.connections * densities.vcm;
   }
-  float part_of_end(const Techniques& t) const { return end == &TechniqueSum::lens ? t.lens_part : 1.0f; }
+  float part_of_end(const Techniques& t) const { return end == &TechniqueDensities::lens ? t.lens_part : 1.0f; }
 };
-inline SubpathEnd end_of_eye_path(const VertexDensities& densities, float reverse) {
-  return {densities, reverse, 1, &TechniqueSum::lens};
+inline SubpathEnd end_of_eye_path(const VertexDensities& densities, float reverse, bool scattered) {
+  return {densities, reverse, scattered, 1, &TechniqueDensities::lens};
 }
-inline SubpathEnd end_of_light_path(const VertexDensities& densities, float reverse, float coherence) {
-  return {densities, reverse, coherence, &TechniqueSum::walk};
+inline SubpathEnd end_of_light_path(const VertexDensities& densities, float reverse, bool scattered, float coherence) {
+  return {densities, reverse, scattered, coherence, &TechniqueDensities::walk};
 }
 
 /// One end of a connection.
@@ -292,17 +311,19 @@ struct ConnectedEnd : SubpathEnd {
 
   /// Whether there are other techniques whose other walk makes this vertex, too.
   bool has_other_techniques(const Techniques& t) const {
-    TechniqueSum sum;
-    ConnectedEnd{*this, 1, merging, volume_merging}.add_other_techniques(1, t, sum);
+    TechniqueDensities sum;
+    ConnectedEnd{*this, 1, merging, volume_merging}.add_other_techniques(1, t, sum, sum, sum);
     return sum.all() != 0;
   }
-  /// Adds `factor` times w_light, or w_eye: all techniques whose other walk makes this vertex, too (TR eqs. 40, 41).
-  void add_other_techniques(float factor, const Techniques& t, TechniqueSum& sum) const {
+  /// Adds `factor` times w_light, or w_eye: all techniques whose other walk makes this vertex, too (TR eqs. 40, 41):
+  /// to `merged` the merges at this vertex, to `connected` its connection to the vertex before, to `earlier` the rest.
+  void add_other_techniques(float factor, const Techniques& t, TechniqueDensities& merged,
+                            TechniqueDensities& connected, TechniqueDensities& earlier) const {
     const float there = factor * arrival;
-    sum.merging += there * merging;
-    sum.media += there * t.volume_part * volume_merging;
-    add_here(there, t, sum);
-    add_earlier(there, t, sum);
+    merged.merging += there * merging;
+    merged.media += there * t.volume_part * volume_merging;
+    add_here(there, t, connected);
+    add_earlier(there, t, earlier);
   }
 };
 
@@ -315,12 +336,15 @@ inline bool has_light_paths(const SubpathDensities& at_light, const Techniques& 
 /// An eye walk hits a light (TR eq. 43): its last vertex is the point there. `direct`: with which next-event estimation
 /// would have chosen the point, per area (infinite lights: per solid angle); `emission`: with which a light path starts
 /// there in that direction, the product of per area and per solid angle; any number without `has_light_paths`.
-inline TechniqueSum sum_of_hit(const SubpathDensities& at_light, float direct, float emission, const Techniques& t) {
-  return {.walk = 1 + direct * at_light.vcm,
-          .lens = emission * t.lens_part * at_light.ends,
-          .connections = emission * t.connections * at_light.vc,
-          .merging = emission * t.merging * at_light.vm_apart,
-          .media = emission * t.volume_part * at_light.media};
+/// `scatterings`: of the walk, by lobes that are not delta.
+inline TechniqueSum sum_of_hit(const SubpathDensities& at_light, float direct, float emission, int scatterings,
+                               const Techniques& t) {
+  TechniqueSum sum{.within = {.lens = emission * t.lens_part * at_light.ends,
+                              .connections = emission * t.connections * at_light.vc,
+                              .merging = emission * t.merging * at_light.vm_apart,
+                              .media = emission * t.volume_part * at_light.media}};
+  sum.made_by(scatterings > 1).walk = 1 + direct * at_light.vcm;
+  return sum;
 }
 
 /// Next-event estimation (TR eqs. 44, 45), with which the point on the light is chosen with density `pdf_direct`. The
@@ -328,37 +352,46 @@ inline TechniqueSum sum_of_hit(const SubpathDensities& at_light, float direct, f
 /// the point, over the density of next-event estimation; `at_eye.merging`: of photons straight from a light.
 inline TechniqueSum sum_of_next_event(const ConnectedEnd& at_eye, float pdf_direct, float pdf_walk,
                                       const Techniques& t) {
-  TechniqueSum sum{.walk = 1 + pdf_walk / pdf_direct};
-  at_eye.add_other_techniques(1, t, sum);
+  TechniqueSum sum;
+  TechniqueDensities& own = sum.made_by(at_eye.scattered);
+  own.walk = 1 + pdf_walk / pdf_direct;
+  at_eye.add_other_techniques(1, t, own, sum.within, sum.within);
   return sum;
 }
 
 /// A light vertex connected to the lens (TR eq. 46). `at_light.arrival`: of one pixel's eye paths.
 inline TechniqueSum sum_of_lens(const ConnectedEnd& at_light, const Techniques& t) {
-  TechniqueSum sum{.own = t.lens_part, .lens = t.lens_part};
-  at_light.add_other_techniques(1 / t.light_paths, t, sum);
+  TechniqueSum sum{.own = t.lens_part, .within = {.lens = t.lens_part}};
+  at_light.add_other_techniques(1 / t.light_paths, t, sum.within, sum.within,
+                                at_light.scattered ? sum.beyond : sum.within);
   return sum;
 }
 
 /// Two vertices connected (TR eq. 37), once of `connections`: each has the same part of the technique's weight.
 inline TechniqueSum sum_of_connection(const ConnectedEnd& at_eye, const ConnectedEnd& at_light, const Techniques& t) {
-  TechniqueSum sum{.connections = t.connections};
-  at_light.add_other_techniques(1, t, sum);
-  at_eye.add_other_techniques(1, t, sum);
+  TechniqueSum sum;
+  TechniqueDensities& own = sum.made_by(at_eye.scattered);
+  own.connections = t.connections;
+  at_light.add_other_techniques(1, t, sum.beyond, sum.beyond, sum.beyond);
+  at_eye.add_other_techniques(1, t, own, sum.within, sum.within);
   return sum;
 }
 
 /// Adds the techniques that begin at or before the ends of two subpaths that meet.
 inline void add_ends(const SubpathEnd& at_eye, const SubpathEnd& at_light, const Techniques& t, TechniqueSum& sum) {
-  for (const SubpathEnd* end : {&at_eye, &at_light}) {
-    if (t.connects) end->add_here(1, t, sum);
-    end->add_earlier(1, t, sum);
+  TechniqueDensities& here = at_eye.scattered ? sum.beyond : sum.within;
+  if (t.connects) {
+    at_eye.add_here(1, t, sum.within);
+    at_light.add_here(1, t, here);
   }
+  at_eye.add_earlier(1, t, sum.within);
+  at_light.add_earlier(1, t, at_light.scattered ? sum.beyond : here);
 }
 
 /// A photon merged into an eye vertex on a surface (TR eqs. 38, 39).
 inline TechniqueSum sum_of_merge(const SubpathEnd& at_eye, const SubpathEnd& at_light, const Techniques& t) {
-  TechniqueSum sum{.own = t.merging, .merging = t.merging};
+  TechniqueSum sum{.own = t.merging};
+  sum.made_by(at_eye.scattered).merging = t.merging;
   add_ends(at_eye, at_light, t, sum);
   return sum;
 }
@@ -366,7 +399,7 @@ inline TechniqueSum sum_of_merge(const SubpathEnd& at_eye, const SubpathEnd& at_
 /// of the eye path before the vertex.
 inline TechniqueSum sum_of_volume_merge(const SubpathEnd& at_eye, const SubpathEnd& at_light, float own, float all,
                                         const Techniques& t) {
-  TechniqueSum sum{.own = t.volume_part * own, .media = t.volume_part * all};
+  TechniqueSum sum{.own = t.volume_part * own, .within = {.media = t.volume_part * all}};
   add_ends(at_eye, at_light, t, sum);
   return sum;
 }

@@ -38,13 +38,17 @@ std::string Effort::describe() const {
                                                        percent(report_.caustic_light), percent(report_.caustic_part))
                                          : "hardly any light is in caustics";
   if (light_paths_ == 0) return found + ": path tracing";
-  return fmt::format("{}: {:.2g} light paths a pixel, merged in {} and connected in {} of the picture", found,
-                     report_.light_paths_per_pixel, percent(report_.merged_part), percent(report_.connected_part));
+  const std::string shorter =
+      report_.short_part > 0 ? fmt::format("; eye paths end where they merge in {}", percent(report_.short_part)) : "";
+  return fmt::format("{}: {:.2g} light paths a pixel, merged in {} and connected in {} of the picture{}", found,
+                     report_.light_paths_per_pixel, percent(report_.merged_part), percent(report_.connected_part),
+                     shorter);
 }
 
 std::string Effort::findings() const {
   // Variances of extreme scenes may exceed all numbers, which JSON does not know.
   const auto finite = [](double x) { return std::isfinite(x) ? x : std::numeric_limits<double>::max(); };
+  const EyeWork& eye = report_.work_of_eye_path;
   nlohmann::json uniform = nlohmann::json::array();
   for (const UniformEffort& u : report_.uniform)
     uniform.push_back({{"light_paths_per_pixel", u.light_paths_per_pixel},
@@ -52,6 +56,7 @@ std::string Effort::findings() const {
                        {"merges", u.place.merges},
                        {"merges_in_media", u.place.merges_in_media},
                        {"connects_to_lens", u.place.sees},
+                       {"goes_on", u.place.goes_on},
                        {"variance", finite(u.variance)},
                        {"work", u.work}});
   return nlohmann::json{{"summary", describe()},
@@ -61,14 +66,15 @@ std::string Effort::findings() const {
                         {"light_paths_per_pixel", report_.light_paths_per_pixel},
                         {"merged_part", report_.merged_part},
                         {"connected_part", report_.connected_part},
+                        {"short_part", report_.short_part},
                         {"variance", finite(report_.variance)},
                         {"work", report_.work},
                         {"eye_path",
-                         {{"rays", report_.rays},
-                          {"next_events", report_.next_events},
-                          {"connections", report_.connections},
-                          {"lookups", report_.lookups},
-                          {"merges", report_.merges}}},
+                         {{"rays", eye.rays},
+                          {"next_events", eye.next_events},
+                          {"connections", eye.connections},
+                          {"lookups", eye.lookups},
+                          {"merges", eye.merges}}},
                         {"light_path", {{"rays", report_.light_rays}, {"vertices", report_.light_vertices}}},
                         {"everywhere", std::move(uniform)}}
       .dump();

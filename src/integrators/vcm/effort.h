@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "camera/view.h"
+#include "integrators/vcm/moments.h"
 #include "math/vec.h"
 
 namespace lanthorn {
@@ -19,7 +20,8 @@ struct PlaceEffort {
   std::uint8_t connections = 1;  ///< light paths that each eye vertex is connected to
   bool merges = true;            ///< on surfaces
   bool merges_in_media = true;
-  bool sees = true;  ///< light paths are connected to the lens
+  bool sees = true;     ///< light paths are connected to the lens
+  bool goes_on = true;  ///< eye paths go on after a lobe that is not delta (`Techniques::goes_on`)
 };
 
 /// What the pilot expects of one choice for the whole picture.
@@ -36,11 +38,11 @@ struct EffortReport {
   double caustic_light = 0;         ///< share of the light that is caustics
   double caustic_part = 0;          ///< share of the picture where they are visible
   double merged_part = 0, connected_part = 0;  ///< likewise, where light paths are used
+  double short_part = 0;                       ///< likewise, where eye paths do not go on (`PlaceEffort::goes_on`)
   double light_paths_per_pixel = 0;
   double variance = 0, work = 0;  ///< as of UniformEffort, of what was chosen
   std::vector<UniformEffort> uniform;
-  /// Of an eye path, with one connection at each vertex and one light path a pixel.
-  double rays = 0, next_events = 0, connections = 0, lookups = 0, merges = 0;
+  EyeWork work_of_eye_path{};                 ///< with one connection at each vertex and one light path a pixel
   double light_rays = 0, light_vertices = 0;  ///< of a light path
 };
 

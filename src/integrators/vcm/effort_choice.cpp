@@ -41,7 +41,7 @@ constexpr double stratification = 2.3;
 constexpr double margin = 0.85;
 
 PlaceEffort place_of(const EffortCandidate& c) {
-  return {static_cast<std::uint8_t>(c.connections), c.merges, c.merges_in_media, c.sees};
+  return {static_cast<std::uint8_t>(c.connections), c.merges, c.merges_in_media, c.sees, c.goes_on};
 }
 
 class EffortChoice {
@@ -86,11 +86,12 @@ class EffortChoice {
 };
 
 double EffortChoice::work_of(const EffortBlock& block, const EffortCandidate& c) const {
-  double sum = ray_work_ * (block.rays + work::shadow * block.next_events);
-  if (c.light_paths > 0) sum += work::densities * block.rays;
-  sum += work::connection * block.connections * static_cast<double>(c.connections);
+  const EyeWork& of = c.goes_on ? block.work : block.short_work;
+  double sum = ray_work_ * (of.rays + work::shadow * of.next_events);
+  if (c.light_paths > 0) sum += work::densities * of.rays;
+  sum += work::connection * of.connections * static_cast<double>(c.connections);
   if (c.merges || c.merges_in_media)
-    sum += work::lookup * block.lookups + work::merge * block.merges * static_cast<double>(c.light_paths);
+    sum += work::lookup * of.lookups + work::merge * of.merges * static_cast<double>(c.light_paths);
   sum /= block.paths;
   if (c.sees) sum += work::lens * count_per_pixel(c.light_paths / m_.scale, m_.light_vertices);
   return sum;
@@ -140,17 +141,13 @@ double EffortChoice::count_per_pixel(float light_paths, double of_pilot) const {
 
 void EffortChoice::count_work(EffortReport& report) const {
   double paths = 0;
+  EyeWork all;
   for (const EffortBlock& block : m_.blocks) {
     paths += block.paths;
-    report.rays += block.rays;
-    report.next_events += block.next_events;
-    report.connections += block.connections;
-    report.lookups += block.lookups;
-    report.merges += block.merges;
+    all.add(block.work);
   }
-  for (double* sum : {&report.rays, &report.next_events, &report.connections, &report.lookups, &report.merges})
-    *sum /= paths;
-  report.merges /= per_pixel(1 / m_.scale);
+  report.work_of_eye_path.add(all, 1 / paths);
+  report.work_of_eye_path.merges /= per_pixel(1 / m_.scale);
   report.light_rays = m_.light_rays / std::max(1.0, m_.light_paths);
   report.light_vertices = m_.light_vertices / std::max(1.0, m_.light_paths);
 }
@@ -225,6 +222,7 @@ EffortReport EffortChoice::report_on(const Plan& plan, float light_paths) const 
     const EffortCandidate& c = m_.candidates[plan.candidates[b]];
     report.merged_part += c.merges || c.merges_in_media ? share : 0;
     report.connected_part += c.connections > 0 ? share : 0;
+    report.short_part += c.goes_on ? 0 : share;
     report.caustic_part += block.caustic > visible * block.light ? share : 0;
     light += block.light;
     by_light_paths += block.from_light_paths;

@@ -34,7 +34,7 @@ struct EffortBlock {
   std::vector<Moments> moments;  ///< by candidate
   double light = 0, from_light_paths = 0, caustic = 0;
   double paths = 0, pixels = 0;
-  double rays = 0, next_events = 0, connections = 0, lookups = 0, merges = 0;
+  EyeWork work, short_work;
 };
 
 /// The pilot's pixels, one in each cell, and blocks of cells.

@@ -26,13 +26,15 @@ constexpr std::uint64_t most_pilot_paths = 1u << 16;
 std::vector<EffortCandidate> all_candidates(float scale, bool one_time, bool in_media, bool merges_everywhere) {
   const auto is_possible = [&](const EffortCandidate& c) {
     const bool merges_all = merges_everywhere && c.merges && c.merges_in_media == in_media;
-    return (one_time || c.connections <= 1) && (in_media || !c.merges_in_media) && (c.sees || merges_all);
+    return (one_time || c.connections <= 1) && (in_media || !c.merges_in_media) && (c.sees || merges_all) &&
+           (c.goes_on || (merges_all && !in_media));
   };
   std::vector<EffortCandidate> all{{0, 0, false, false, false}};
   for (const float light_paths : light_path_choices)
     for (const float connections : {0.0f, 1.0f, 4.0f})
-      for (unsigned used = 0; used < 8; ++used) {
-        const EffortCandidate c{scale * light_paths, connections, (used & 4) != 0, (used & 2) != 0, (used & 1) != 0};
+      for (unsigned used = 0; used < 16; ++used) {
+        const EffortCandidate c{scale * light_paths, connections,     (used & 4) != 0,
+                                (used & 2) != 0,     (used & 1) != 0, (used & 8) == 0};
         if (is_possible(c)) all.push_back(c);
       }
   return all;
@@ -197,7 +199,7 @@ void Pilot::add(std::span<const SeenLight> seen) {
   }
   parallel_for(std::size_t{0}, measured_.candidates.size(), [&](std::size_t k) {
     const EffortCandidate& c = measured_.candidates[k];
-    const auto samples = static_cast<double>(c.samples(&TechniqueSum::lens));
+    const auto samples = static_cast<double>(c.samples(&TechniqueDensities::lens));
     for (const SeenLight& s : seen) {
       EffortBlock& block = measured_.blocks[s.block];
       const auto ratio = static_cast<double>(std::max(c.all(s.weighed) / s.weighed.all(), PathMoments::least_ratio));
@@ -226,7 +228,7 @@ void Pilot::trace_eye(const VcmPass& pass, const VcmPass& other) {
     walk_from_camera(path, start.camera, pass.job.view.medium,
                      TwoSets{moments, EyeVisitor(path, pass, start.raster, layers, &moments),
                              EyeVisitor(path, other, start.raster, other_layers, &moments)});
-    moments.work.rays = static_cast<std::uint32_t>(counts.walk - before.walk);
+    moments.work.rays = 2 * static_cast<double>(counts.walk - before.walk);
     caustic[cell.index] = flux_of(layers.light(PathClass::caustic), false, draw.w);
   });
   for_each_cell_by_blocks(
@@ -249,11 +251,9 @@ void Pilot::add(EffortBlock& block, std::size_t cell, const PathMoments& moments
   block.from_light_paths += static_cast<double>(moments.light - moments.by_walk);
   block.caustic += static_cast<double>(caustic);
   block.paths += 1;
-  block.rays += moments.work.rays;
-  block.next_events += moments.work.next_events / 2.0;
-  block.connections += moments.work.connections / 2.0;
-  block.lookups += moments.work.lookups / 2.0;
-  block.merges += moments.work.merges / 2.0;
+  constexpr double of_one_set = 0.5;
+  block.work.add(moments.work, of_one_set);
+  block.short_work.add(moments.short_work, of_one_set);
 }
 
 }  // namespace

@@ -23,20 +23,24 @@ struct EffortCandidate {
   bool merges = true;     ///< on surfaces
   bool merges_in_media = true;
   bool sees = true;      ///< light paths are connected to the lens
+  bool goes_on = true;   ///< eye paths go on after a lobe that is not delta (`Techniques::goes_on`)
   float merge_area = 1;  ///< of the discs of merging on surfaces: the radius depends on the number of light paths
 
   /// How many times the pilot's samples the technique has. Merging uses all light paths; on surfaces it has the more
   /// photons the larger its discs are.
-  float samples(float TechniqueSum::*technique) const {
-    if (technique == &TechniqueSum::walk) return 1;
-    if (technique == &TechniqueSum::connections) return light_paths > 0 ? connections : 0.0f;
-    if (technique == &TechniqueSum::merging) return merges ? merge_area * light_paths : 0.0f;
-    if (technique == &TechniqueSum::media && !merges_in_media) return 0;
-    if (technique == &TechniqueSum::lens && !sees) return 0;
+  float samples(float TechniqueDensities::*technique) const {
+    if (technique == &TechniqueDensities::walk) return 1;
+    if (technique == &TechniqueDensities::connections) return light_paths > 0 ? connections : 0.0f;
+    if (technique == &TechniqueDensities::merging) return merges ? merge_area * light_paths : 0.0f;
+    if (technique == &TechniqueDensities::media && !merges_in_media) return 0;
+    if (technique == &TechniqueDensities::lens && !sees) return 0;
     return light_paths;
   }
   /// The densities of all techniques with these numbers.
-  float all(const TechniqueSum& s) const {
+  float all(const TechniqueSum& s) const { return of(s.within) + (goes_on ? of(s.beyond) : 0.0f); }
+
+ private:
+  float of(const TechniqueDensities& s) const {
     const float c = light_paths > 0 ? connections : 0.0f;
     return s.walk + c * s.connections +
            light_paths *
@@ -44,9 +48,17 @@ struct EffortCandidate {
   }
 };
 
-/// How often the eye path of a sample did what takes time.
+/// How often eye paths did what takes time.
 struct EyeWork {
-  std::uint32_t rays = 0, next_events = 0, connections = 0, lookups = 0, merges = 0;
+  double rays = 0, next_events = 0, connections = 0, lookups = 0, merges = 0;
+
+  void add(const EyeWork& other, double factor = 1) {
+    rays += factor * other.rays;
+    next_events += factor * other.next_events;
+    connections += factor * other.connections;
+    lookups += factor * other.lookups;
+    merges += factor * other.merges;
+  }
 };
 
 /// Second moments of one eye path's light, one for each candidate, from two independent sets of light paths.
@@ -66,13 +78,13 @@ class PathMoments {
       : candidates_(candidates), sums_(candidates.size()) {}
 
   TechniqueSum weighed;          ///< of the contribution that comes next
-  EyeWork work;                  ///< with both sets
+  EyeWork work, short_work;      ///< with both sets; of the part that a short eye path does (`Techniques::goes_on`)
   int set = 0;                   ///< of light paths, which the contribution comes of: 0 or 1
   float light = 0, by_walk = 0;  ///< X with the first set, and the part of it that needs no light path
 
-  void add(float c, float TechniqueSum::*technique) {
+  void add(float c, float TechniqueDensities::*technique) {
     if (!(c > 0) || !std::isfinite(c)) return;
-    const bool is_walk = technique == &TechniqueSum::walk;
+    const bool is_walk = technique == &TechniqueDensities::walk;
     if (is_walk && set != 0) return;  // the same eye path again
     if (set == 0) light += c;
     if (is_walk) by_walk += c;
@@ -83,11 +95,11 @@ class PathMoments {
       const float ratio = std::max(candidate.all(weighed) / all, least_ratio);
       Sums& s = sums_[k];
       s.self += share * sqr(static_cast<double>(c)) / static_cast<double>(ratio);
-      if (candidate.samples(technique) == 0) continue;
-      PathSum& sum = is_walk                                   ? s.walk
-                     : technique == &TechniqueSum::connections ? s.connections[set]
-                     : technique == &TechniqueSum::media       ? s.media[set]
-                                                               : s.merges[set];
+      if (candidate.samples(technique) == 0 || (weighed.is_beyond && !candidate.goes_on)) continue;
+      PathSum& sum = is_walk                                         ? s.walk
+                     : technique == &TechniqueDensities::connections ? s.connections[set]
+                     : technique == &TechniqueDensities::media       ? s.media[set]
+                                                                     : s.merges[set];
       sum.add(static_cast<double>(c / ratio));
     }
   }
@@ -102,11 +114,11 @@ class PathMoments {
   Estimate estimate(std::size_t k) const {
     const Sums& s = sums_[k];
     const EffortCandidate& candidate = candidates_[k];
-    const auto samples = [&](float TechniqueSum::*technique) {
+    const auto samples = [&](float TechniqueDensities::*technique) {
       return static_cast<double>(candidate.samples(technique));
     };
-    const double m = samples(&TechniqueSum::connections), n = samples(&TechniqueSum::merging),
-                 v = samples(&TechniqueSum::media);
+    const double m = samples(&TechniqueDensities::connections), n = samples(&TechniqueDensities::merging),
+                 v = samples(&TechniqueDensities::media);
     const double w = s.walk.sum;
     const auto light_of = [&](int i) { return m * s.connections[i].sum + n * s.merges[i].sum + v * s.media[i].sum; };
     const double a = light_of(0), b = light_of(1);

@@ -55,9 +55,9 @@ RayCounts trace_eye_paths(const VcmPass& pass, const FilmPass& film) {
 struct UntilFirstMerge {
   EyeVisitor visitor;
 
-  Continuation operator()(const SurfaceVertex& v) {
-    const Continuation continuation = visitor(v);
-    return visitor.has_merged() ? Continuation::stop() : continuation;
+  EyeContinuation operator()(const SurfaceVertex& v) {
+    const EyeContinuation continuation = visitor(v);
+    return visitor.has_merged() ? EyeContinuation{Continuation::stop()} : continuation;
   }
   template <class Event>
   requires std::invocable<EyeVisitor&, const Event&>

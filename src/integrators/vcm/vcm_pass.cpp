@@ -74,6 +74,7 @@ Bidirectional VcmPass::bidirectional_at(const Vec2& raster, const PlaceEffort& h
   Techniques& t = result.techniques;
   t.connections = here.connections;
   t.lens_part = here.sees ? 1.0f : 0.0f;
+  t.goes_on = here.goes_on;
   t.volume_part = here.merges_in_media ? 1.0f : 0.0f;
   if (settings.switches.merging && here.merges) t.merging = t.light_paths * pi * sqr(radii.at(raster));
   return result;

@@ -97,6 +97,13 @@ class LightVisitor {
   Subpath subpath_;
 };
 
+/// An answer of `EyeVisitor`: whether the walk goes on, and whether by delta lobes alone.
+struct EyeContinuation : Continuation {
+  bool by_delta_alone = false;
+
+  WalkShare towards(float pdf) const { return {1, goes_on && (!by_delta_alone || pdf == infinity) ? 1.0f : 0.0f}; }
+};
+
 /// Step 3: finds the light of an eye path by all techniques but the lens.
 class EyeVisitor {
  public:
@@ -119,17 +126,20 @@ class EyeVisitor {
   }
 
   // It has come to a vertex (TR eqs. 34-36; through delta lobes eqs. 53-55).
-  Continuation operator()(const SurfaceVertex& v) {
+  EyeContinuation operator()(const SurfaceVertex& v) {
     layers_.see(v);
     subpath_.arrive(path_, v);
+    if (moments_) is_short_ = v.state.non_delta == 0;
+    if (moments_ && v.state.non_delta <= 1) ++moments_->short_work.rays;
     if (hits_count(v.state) && pass_.shows(0, v.state.depth + 1))
       add_hit(v, hit_emitter(path_, bidirectional_, v, subpath_), v.state.depth > 1);
-    if (!v.may_scatter) return Continuation::stop();
+    if (!v.may_scatter) return {Continuation::stop()};
+    if (v.state.non_delta > 0 && !bidirectional_.techniques.goes_on) return {Continuation::go_on(), true};
     if (has_non_delta(v.at.bsdf)) {
       if (pass_.connects()) connect_all(v);
       if (bidirectional_.techniques.merging > 0 && merges_at(v.at)) merge(v);
     }
-    return Continuation::go_on();
+    return {Continuation::go_on()};
   }
   Continuation operator()(const MediumVertex& v) {
     layers_.see(v);
@@ -155,6 +165,7 @@ class EyeVisitor {
     add_hit(v, hit_glow(path_, bidirectional_, v, subpath_), is_light && v.state.depth > 0);
   }
   void operator()(const EscapeVertex& v) {
+    if (moments_ && v.state.non_delta <= 1) ++moments_->short_work.rays;
     if (!hits_count(v.state) || !pass_.shows(0, v.state.depth + 2)) return;
     subpath_.escape(v.state, v.direction);
     add_hit(v, hit_environment(path_, bidirectional_, v, subpath_), v.state.depth > 0);
@@ -172,23 +183,30 @@ class EyeVisitor {
   // `is_weighed`: other techniques make the light as well.
   template <class Vertex>
   void add_hit(const Vertex& v, const Spectrum& light, bool is_weighed) {
-    if (moments_ && !is_weighed) bidirectional_.weigh({.walk = 1});
+    if (moments_ && !is_weighed) bidirectional_.weigh({.within = {.walk = 1}});
     layers_.add_hit(v, light, technique::hit);
-    note(light, v.state.dispersed, &TechniqueSum::walk);
+    note(light, v.state.dispersed, &TechniqueDensities::walk);
   }
-  void note(const Spectrum& light, bool dispersed, float TechniqueSum::*technique) {
+  void note(const Spectrum& light, bool dispersed, float TechniqueDensities::*technique) {
     if (moments_) moments_->add(flux_of(light, dispersed, path_.w), technique);
+  }
+
+  // A short eye path does what is done at its first vertex with a lobe that is not delta.
+  void count(double EyeWork::*work) {
+    if (!moments_) return;
+    ++(moments_->work.*work);
+    if (is_short_) ++(moments_->short_work.*work);
   }
 
   // Next-event estimation (TR eqs. 44, 45), and vertex connection (TR eqs. 40, 41).
   template <class Vertex>
   void connect_all(const Vertex& v) {
     const int eye_vertices = v.state.depth + 1;
-    if (moments_) ++moments_->work.next_events;
+    count(&EyeWork::next_events);
     if (pass_.shows(1, eye_vertices)) {
       const DirectLight direct = next_event(path_, bidirectional_, v, subpath_);
       layers_.add(class_of_next_event(v.state), technique::nee, direct.radiance, direct.dispersed);
-      note(direct.radiance, direct.dispersed, &TechniqueSum::walk);
+      note(direct.radiance, direct.dispersed, &TechniqueDensities::walk);
     }
     const auto connections = static_cast<int>(bidirectional_.techniques.connections);
     for (int i = 0; i < connections; ++i)
@@ -196,8 +214,8 @@ class EyeVisitor {
         if (v.state.depth + other.depth > pass_.max_depth() || !pass_.shows(other.depth + 1, eye_vertices)) continue;
         const DirectLight light = connect(path_, bidirectional_, v, subpath_, other);
         layers_.add(PathClass::indirect, technique::vc, light.radiance, light.dispersed);
-        note(light.radiance, light.dispersed, &TechniqueSum::connections);
-        if (moments_) ++moments_->work.connections;
+        note(light.radiance, light.dispersed, &TechniqueDensities::connections);
+        count(&EyeWork::connections);
       }
   }
 
@@ -207,24 +225,26 @@ class EyeVisitor {
   void merge(const SurfaceVertex& v) {
     const GatherVertex gather(v);
     const Techniques& t = bidirectional_.techniques;
+    const bool scattered = v.state.non_delta > 0;
     UniformityTests* const tests = has_merged_ ? nullptr : pass_.uniformity;
     const std::uint32_t pixel = tests ? pass_.radii.pixel_at(raster_) : 0;
     const auto add = [&](const MergePhoton& photon, const PhotonHit& hit, const PlaceInDisc& place) {
-      const SubpathEnd at_eye = end_of_eye_path(subpath_.densities(), hit.pdf_reverse);
-      const SubpathEnd at_light = end_of_light_path(photon.densities, hit.pdf, subpath_.coherence_beyond());
+      const SubpathEnd at_eye = end_of_eye_path(subpath_.densities(), hit.pdf_reverse, scattered);
+      const SubpathEnd at_light =
+          end_of_light_path(photon.densities, hit.pdf, !photon.caustic, subpath_.coherence_beyond());
       const float weight = bidirectional_.weigh(sum_of_merge(at_eye, at_light, t));
       const Spectrum light = v.state.beta * hit.f * photon.power * (weight * place.density * hit.ratio);
       const bool is_dispersed = gather.is_dispersed(photon.dispersed);
       layers_.add(class_of_merge(v.state, photon.depth, photon.caustic), technique::vm, light, is_dispersed);
       layers_.add_bias(merge_kernel.bias_share(place.u) * light, is_dispersed);
-      note(light, is_dispersed, &TechniqueSum::merging);
-      if (moments_) ++moments_->work.merges;
+      note(light, is_dispersed, &TechniqueDensities::merging);
+      count(&EyeWork::merges);
       if (tests) tests->count(pixel, v.at.shading.to_local(place.offset), place.u);
     };
     if (tests && tests->seeks_obstacles() && !is_flat_and_clear(path_, v, pass_.radii.at(raster_)))
       tests->note_obstacle(pixel);
     has_merged_ = true;
-    if (moments_) ++moments_->work.lookups;
+    count(&EyeWork::lookups);
     pass_.surface_merges->for_each_at(gather, raster_, pass_.max_depth(), add);
   }
   VolumeMergeContext volume_context() const {
@@ -238,6 +258,7 @@ class EyeVisitor {
   const Vec2 raster_;
   std::size_t partner_ = 0;
   bool has_merged_ = false;
+  bool is_short_ = false;  // the path has come here by delta lobes alone
   LightLayers& layers_;
   Subpath subpath_;
 };

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -70,7 +71,20 @@ RandomPath random_path(HashRng& rng) {
   if (path.techniques.connects) path.techniques.connections = rng.next() < 0.3f ? 0.0f : 4 * rng.next();
   path.techniques.volume_part = rng.next() < 0.3f ? 0.0f : 1.0f;
   path.techniques.lens_part = rng.next() < 0.3f ? 0.0f : 1.0f;
+  if (std::find(path.in_medium.begin(), path.in_medium.end(), true) == path.in_medium.end())
+    path.techniques.goes_on = rng.next() < 0.5f;
   return path;
+}
+
+// Number of scatterings by lobes that are not delta at x_first ... x_last.
+int scatterings(const RandomPath& path, int first, int last) {
+  int count = 0;
+  for (int i = first; i <= last; ++i) count += path.delta[static_cast<unsigned>(i)] ? 0 : 1;
+  return count;
+}
+// Whether eye paths are long enough to end at x_i.
+bool eye_path_reaches(const RandomPath& path, int i) {
+  return path.techniques.goes_on || scatterings(path, i + 1, path.last()) <= (i == 0 ? 1 : 0);
 }
 
 // Density at x_i by the light walk and by the eye walk: per area, and by those of walks that end there per volume in
@@ -108,6 +122,7 @@ double density_of_connection(const RandomPath& path, int s) {
   const auto is_delta = [&](int i) { return path.delta[static_cast<unsigned>(i)]; };
   if (s == 0 && !path.can_be_hit) return 0;
   if (s > 0 && !path.techniques.connects) return 0;
+  if (s <= k && !eye_path_reaches(path, s)) return 0;
   if ((s >= 2 && is_delta(s - 1)) || (s >= 1 && s <= k && is_delta(s))) return 0;
   // With merging alone the walk keeps what photons cannot bring.
   if (s == 0 && !path.techniques.connects)
@@ -121,6 +136,7 @@ double density_of_connection(const RandomPath& path, int s) {
 // Of a photon at x_m.
 double density_of_merge(const RandomPath& path, int m) {
   if (!path.merges[static_cast<unsigned>(m)] || (m == 1 && path.techniques.connects)) return 0;
+  if (!eye_path_reaches(path, m)) return 0;
   double product = static_cast<double>(path.techniques.merging);
   for (int i = 0; i <= m; ++i) product *= by_light(path, i);
   for (int i = m; i <= path.last(); ++i) product *= by_eye(path, i);
@@ -220,6 +236,15 @@ float volume_merging(const RandomPath& path, unsigned i) {
          path.techniques.volume.all(f(path.collision[i]), f(path.pass[i - 1]), f(path.pass[i]), f(path.sin[i]));
 }
 
+SubpathEnd eye_end(const RandomPath& path, const Recursion& r, unsigned i) {
+  return end_of_eye_path(r.eye[i], static_cast<float>(path.forward[i]),
+                         scatterings(path, static_cast<int>(i) + 1, path.last()) > 0);
+}
+SubpathEnd light_end(const RandomPath& path, const Recursion& r, unsigned i, float coherence) {
+  return end_of_light_path(r.light[i], static_cast<float>(path.reverse[i]),
+                           scatterings(path, 1, static_cast<int>(i) - 1) > 0, coherence);
+}
+
 float weight_of_connection(const RandomPath& path, const Recursion& r, int s) {
   const auto k = static_cast<unsigned>(path.last());
   const auto f = [](double x) { return static_cast<float>(x); };
@@ -233,32 +258,32 @@ float weight_of_connection(const RandomPath& path, const Recursion& r, int s) {
   if (s == 0) {
     const float emission =
         start(has_light_paths(r.eye[0], path.techniques), path.emission_area * path.emission_direction);
-    return sum_of_hit(r.eye[0], f(path.direct_area), emission, path.techniques).weight();
+    return sum_of_hit(r.eye[0], f(path.direct_area), emission, scatterings(path, 1, path.last()), path.techniques)
+        .weight(path.techniques);
   }
   if (s == 1) {
     const double direct = path.direct_area * path.distance2[0] / path.cos_n[0];  // per solid angle at x_1
     const double ratio =
         path.emission_area * path.emission_direction * path.cos_p[1] * flight(0, 1) / (direct * path.cos_n[0]);
-    ConnectedEnd at_eye{end_of_eye_path(r.eye[1], f(path.forward[1])), 0, merging(1), media(1)};
+    ConnectedEnd at_eye{eye_end(path, r, 1), 0, merging(1), media(1)};
     at_eye.arrival = start(at_eye.has_other_techniques(path.techniques), ratio);
     return sum_of_next_event(at_eye, f(direct), path.can_be_hit ? f(path.reverse[1] * path.pass[0]) : 0.0f,
                              path.techniques)
-        .weight();
+        .weight(path.techniques);
   }
   if (s == path.last() + 1)
-    return sum_of_lens({end_of_light_path(r.light[k], f(path.reverse[k]), f(path.coherence[k])),
+    return sum_of_lens({light_end(path, r, k, f(path.coherence[k])),
                         f(path.lens_density * path.cos_n[k] * flight(k, k)), merging(k), media(k)},
                        path.techniques)
-        .weight();
+        .weight(path.techniques);
   const auto i = static_cast<unsigned>(s);
   const double forward = path.reverse[i] * path.cos_n[i - 1] * flight(i - 1, i - 1) / path.distance2[i - 1];
   const double back = path.forward[i - 1] * path.cos_p[i] * flight(i - 1, i) / path.distance2[i - 1];
-  return path.techniques.connections *
-         sum_of_connection({end_of_eye_path(r.eye[i], f(path.forward[i])), f(back), merging(i), media(i)},
-                           {end_of_light_path(r.light[i - 1], f(path.reverse[i - 1]), f(coherence_before(path, s - 2))),
-                            f(forward), merging(i - 1), media(i - 1)},
-                           path.techniques)
-             .weight();
+  return path.techniques.connections * sum_of_connection({eye_end(path, r, i), f(back), merging(i), media(i)},
+                                                         {light_end(path, r, i - 1, f(coherence_before(path, s - 2))),
+                                                          f(forward), merging(i - 1), media(i - 1)},
+                                                         path.techniques)
+                                           .weight(path.techniques);
 }
 
 TEST(Mis, RecursiveWeightsAreRatiosOfDensities) {
@@ -289,12 +314,12 @@ TEST(Mis, RecursiveWeightsAreRatiosOfDensities) {
       const float before = f(coherence_before(path, m));
       const auto check = [&](double density, float own, float all) {
         if (density == 0) return;
-        const SubpathEnd at_eye = end_of_eye_path(r.eye[i], f(path.forward[i]));
-        const SubpathEnd at_light = end_of_light_path(r.light[i], f(path.reverse[i]), f(coherence_before(path, m - 1)));
+        const SubpathEnd at_eye = eye_end(path, r, i);
+        const SubpathEnd at_light = light_end(path, r, i, f(coherence_before(path, m - 1)));
         const auto weight =
             static_cast<double>((all > 0 ? sum_of_volume_merge(at_eye, at_light, own, all, path.techniques)
                                          : sum_of_merge(at_eye, at_light, path.techniques))
-                                    .weight());
+                                    .weight(path.techniques));
         ASSERT_NEAR(weight, density / total, 1e-4) << "path " << n << " of " << k << ", merged at " << m;
         sum += weight;
         in_media += path.in_medium[i] ? 1 : 0;
