@@ -1,19 +1,19 @@
 # SPDX-FileCopyrightText: 2026 The Lanthorn authors
 # SPDX-License-Identifier: Apache-2.0
-# What cmake --install puts in place. Each component is a package (LanthornPackages.cmake): program, mpi, development, doc.
+# What cmake --install puts in place, by components, of which LanthornPackages.cmake makes packages.
 include(CMakePackageConfigHelpers)
 set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME program)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/lanthorn)
 set(pkgconfig_dir ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 
 # All paths are relative to the file that asks, so that the folder can be moved. The second one is for a library in
-# glibc-hwcaps/x86-64-v3 (scripts/release).
+# glibc-hwcaps/x86-64-v3.
 cmake_path(RELATIVE_PATH CMAKE_INSTALL_FULL_LIBDIR BASE_DIRECTORY ${CMAKE_INSTALL_FULL_BINDIR} OUTPUT_VARIABLE bin_to_lib)
 set_target_properties(lanthorn_program PROPERTIES INSTALL_RPATH $ORIGIN/${bin_to_lib})
 set_target_properties(lanthorn PROPERTIES INSTALL_RPATH "$ORIGIN/lanthorn;$ORIGIN/../../lanthorn")
 
 install(TARGETS lanthorn_program)
-install(TARGETS lanthorn EXPORT lanthorn LIBRARY COMPONENT program NAMELINK_COMPONENT development)
+install(TARGETS lanthorn EXPORT lanthorn LIBRARY COMPONENT library NAMELINK_COMPONENT development)
 install(TARGETS lanthorn_openimageio LIBRARY DESTINATION ${LANTHORN_INSTALL_MODULE_DIR})
 if(LANTHORN_BUILD_MPI)
   install(TARGETS lanthorn_mpi LIBRARY DESTINATION ${LANTHORN_INSTALL_MODULE_DIR} COMPONENT mpi)
