@@ -265,7 +265,11 @@ TEST(Api, PhotonsAreArrays) {
   EXPECT_EQ(photons.light_paths, 2000u);
   ASSERT_GT(photons.size(), 1000u);
   EXPECT_EQ(photons.powers.size(), photons.size());
-  EXPECT_EQ(photons.caustic.size(), photons.size());
+  ASSERT_EQ(photons.depths.size(), photons.size());
+  ASSERT_EQ(photons.classes.size(), photons.size());
+  for (std::size_t i = 0; i < photons.size(); ++i)
+    ASSERT_EQ(photons.depths[i] == 1, photons.classes[i] == lanthorn::PhotonClass::direct);
+  EXPECT_GT(*std::max_element(photons.depths.begin(), photons.depths.end()), 2);
   for (const lanthorn::Direction& d : photons.directions) ASSERT_NEAR(glm::dot(d, d), 1, 1e-2f);
 }
 
