@@ -47,13 +47,17 @@ py::dict dict_of_description(const SceneDescription& description, const ViewDesc
 SeenScene edited(const SeenScene& scene, const py::dict& edits);
 EnvironmentChoice environment_of(py::handle data);
 
-/// `values` as a read-only array that shares the memory of `owner`, which holds them.
+/// `values` as an array that shares the memory of `owner`, which holds them.
 template <class Scalar, class T>
-py::array shared_array(const std::vector<T>& values, py::handle owner) {
+py::array writable_array(const std::vector<T>& values, py::handle owner) {
   constexpr auto count = static_cast<py::ssize_t>(sizeof(T) / sizeof(Scalar));
   std::vector<py::ssize_t> shape{static_cast<py::ssize_t>(values.size())};
   if (count > 1) shape.push_back(count);
-  py::array_t<Scalar> array(shape, reinterpret_cast<const Scalar*>(values.data()), owner);
+  return py::array_t<Scalar>(shape, reinterpret_cast<const Scalar*>(values.data()), owner);
+}
+template <class Scalar, class T>
+py::array shared_array(const std::vector<T>& values, py::handle owner) {
+  py::array array = writable_array<Scalar>(values, owner);
   array.attr("flags").attr("writeable") = false;
   return array;
 }

@@ -3,6 +3,8 @@
 // Rays, the light along them, and the scattering of surfaces, over arrays.
 #include "lanthorn/rays.h"
 
+#include <pybind11/stl.h>
+
 #include "bindings.h"
 #include "plain_data.h"
 
@@ -38,9 +40,7 @@ template <class Scalar, class T>
 py::array array_of(std::vector<T>&& values) {
   auto* const kept = new std::vector<T>(std::move(values));
   const py::capsule owner(kept, [](void* pointer) { delete static_cast<std::vector<T>*>(pointer); });
-  py::array array = shared_array<Scalar>(*kept, owner);
-  array.attr("flags").attr("writeable") = true;
-  return array;
+  return writable_array<Scalar>(*kept, owner);
 }
 
 py::array radiance(const SeenScene& scene, const py::object& origins, const py::object& directions,

@@ -59,8 +59,9 @@ class Loading(unittest.TestCase):
                 check=True,
             )
             program = lanthorn.load_image(path)
-        self.assertEqual(picture.channels, program.channels)
-        np.testing.assert_array_equal(picture.array, program.array)
+        # The program's files have the layers of noise, too.
+        columns = [program.channels.index(channel) for channel in picture.channels]
+        np.testing.assert_array_equal(picture.array, program.array[..., columns])
 
     def test_errors_have_a_place(self):
         with tempfile.TemporaryDirectory() as folder:
