@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The Lanthorn authors
 # SPDX-License-Identifier: Apache-2.0
-"""The caustic of a glass ball: path tracing hardly finds it, photons do. Both get the same time.
+"""The caustic of a glass ball: no path of path tracing hits a spot light, photons find it by themselves.
 
     python3 glass_caustic.py          # writes caustic_path.png, caustic_probppm.png
 """

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """A lens optimised for its caustic: scipy finds the radius of curvature that brings sunlight to a point on the floor.
 
-The paraxial answer is the lensmaker's: f = R / (n - 1). A lens with a wide aperture wants a slightly larger radius,
-because its rim bends light too much.
+The paraxial answer is the lensmaker's: f = R / (n - 1). A thick lens with a wide aperture wants a larger radius: its
+light starts to bend above the flat face, and its rim bends it too much.
 
     python3 lens.py                   # writes lens.png: the floor under the best lens
 """

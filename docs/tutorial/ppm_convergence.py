@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Convergence of progressive photon mapping, as in the lecture: noise and bias fall at different rates.
 
-Knaus & Zwicker 2011: with alpha = 2/3 the variance of the mean of n passes falls as n^(-2/3), the bias as n^(-2/3) too.
-Path tracing has no bias, and variance 1/n.
+Knaus & Zwicker 2011: with alpha = 2/3 the variance of the mean of n passes falls as n^(-2/3), the bias as
+n^(-1/3). The variance of path tracing falls as 1/n. What it calls bias here is the caustic of the spot light, which no
+path finds, however many there are.
 
     python3 ppm_convergence.py        # prints the table
 """

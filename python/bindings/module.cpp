@@ -8,6 +8,8 @@
 
 namespace lanthorn::python {
 
+void bind_integrator(py::module_& module);
+
 void bind_error(py::module_& module) {
   // NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): lives as long as the interpreter
   static py::handle type;
@@ -45,4 +47,5 @@ PYBIND11_MODULE(_lanthorn, module) {
   bind_photons(module);
   bind_rays(module);
   bind_tools(module);
+  bind_integrator(module);
 }

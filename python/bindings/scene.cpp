@@ -4,6 +4,8 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <map>
+#include <string>
 #include <utility>
 
 #include "bindings.h"
@@ -84,6 +86,34 @@ SeenScene look(const SeenScene& seen, const py::object& eye, const py::object& t
   return result;
 }
 
+void add_row(std::string& html, const std::string& name, const std::string& value) {
+  html += "<tr><th style='text-align:left'>" + name + "</th><td>" + value + "</td></tr>";
+}
+std::string counted(const std::map<std::string, int>& numbers) {
+  std::string text;
+  for (const auto& [kind, count] : numbers) text += (text.empty() ? "" : ", ") + std::to_string(count) + " " + kind;
+  return text.empty() ? "none" : text;
+}
+// Names of kinds and numbers alone, so that nothing of a file gets into the page.
+std::string html_of(const SeenScene& seen) {
+  const SceneSummary summary = summarize(*seen.scene);
+  const auto size = film_size(seen.view);
+  std::string html = "<table>";
+  add_row(html, "picture", std::to_string(size[0]) + " × " + std::to_string(size[1]) + " pixels");
+  add_row(html, "triangles", std::to_string(summary.triangles));
+  add_row(html, "other shapes", std::to_string(summary.patches + summary.quadrics + summary.curves));
+  add_row(html, "instances", std::to_string(summary.instances));
+  add_row(html, "lights", counted(summary.lights));
+  add_row(html, "materials", counted(summary.materials));
+  add_row(html, "warnings", std::to_string(warnings_of(*seen.scene, seen.view).size()));
+  return html + "</table>";
+}
+std::string text_of(const SeenScene& seen) {
+  const SceneSummary summary = summarize(*seen.scene);
+  return "<lanthorn.Scene " + std::to_string(summary.triangles) + " triangles, lights: " + counted(summary.lights) +
+         ">";
+}
+
 template <class Make>
 py::object matrix(const py::object& vector, const char* name, Make&& make) {
   Reader reader;
@@ -162,7 +192,9 @@ void bind_scene(py::module_& module) {
             const auto size = film_size(s.view);
             return py::make_tuple(size[0], size[1]);
           },
-          "(int, int): width and height in pixels, unless options name others.");
+          "(int, int): width and height in pixels, unless options name others.")
+      .def("_repr_html_", &html_of, "What notebooks show.")
+      .def("__repr__", &text_of);
   module.def(
       "load_file", &load_file, py::arg("path"), py::kw_only(), py::arg("environment") = py::none(),
       py::arg("camera") = "", py::arg("at") = py::none(), py::arg("sandbox") = false, py::arg("skip_missing") = false,

@@ -17,6 +17,7 @@ Units are metres, watts and degrees; colours are linear Rec.709; a picture's row
 file, a scene or an option raises `lanthorn.Error`, which says where. docs/python.md has the rest.
 """
 
+from . import _lanthorn
 from ._lanthorn import (
     Bsdf,
     Error,
@@ -67,6 +68,54 @@ def render(scene, *, denoise=False, **options):
         interrupt.picture = session.picture() if session.pass_count else None
         raise
     return session.denoised() if denoise else session.picture()
+
+
+class Rays:
+    """Rays of a tile: `origins` and `directions` (unit), both (n, 3) float32, metres, in the file's coordinates."""
+
+    def __init__(self, origins, directions):
+        """Keeps both arrays as they are."""
+        self.origins = origins
+        self.directions = directions
+
+    def __len__(self):
+        """Number of rays."""
+        return len(self.origins)
+
+
+class Integrator:
+    """A rendering method in Python, to learn and to try things: override `radiance`, then `add_integrator`.
+
+        class Normals(lanthorn.Integrator):
+            "shows normals as colours"
+
+            def radiance(self, rays, scene, sampler):
+                return lanthorn.intersect(scene, rays.origins, rays.directions)["normal"] / 2 + 0.5
+
+        lanthorn.add_integrator("normals", Normals())
+        lanthorn.render(scene, integrator="normals", passes=4)
+
+    Pixels, filters, passes, states and merging are those of every other method.
+    """
+
+    def radiance(self, rays, scene, sampler):
+        """Returns the radiance along `rays` (Rays), shape (n, 3), linear Rec.709: one sample for each.
+
+        scene: Scene. sampler: numpy.random.Generator; draw all random numbers from it, so that a render can be repeated.
+        """
+        raise NotImplementedError("an integrator needs a method radiance(self, rays, scene, sampler)")
+
+
+def add_integrator(name, integrator):
+    """Makes an Integrator a method of this name for `render` and Session; again: another one in its place."""
+
+    def radiance(scene, origins, directions, key):
+        import numpy
+
+        sampler = numpy.random.Generator(numpy.random.Philox(key=key))
+        return integrator.radiance(Rays(origins, directions), scene, sampler)
+
+    _lanthorn._add_integrator(name, (integrator.__doc__ or "").strip().split("\n")[0], radiance)
 
 
 __all__ = [name for name in dir() if not name.startswith("_")] + ["__version__"]

@@ -158,6 +158,9 @@ class Pictures(unittest.TestCase):
             self.picture["caustics"]
 
     def test_notebooks_show_them(self):
+        html = lanthorn.load_file(CORNELL)._repr_html_()
+        self.assertIn("triangles", html)
+        self.assertTrue(html.startswith("<table>") and html.endswith("</table>"))
         self.assertEqual(self.picture._repr_png_()[:8], b"\x89PNG\r\n\x1a\n")
         self.assertEqual(self.picture._repr_png_(), self.picture.png())
         self.assertNotEqual(self.picture.png(exposure=1), self.picture.png())
@@ -378,6 +381,49 @@ class Light(unittest.TestCase):
         np.testing.assert_allclose(maps["specular"][0][1]["color"], 1, rtol=1e-2)
         self.assertEqual(maps["sh"].shape, (9, 3))
         np.testing.assert_allclose(maps["sh"][1:], 0, atol=1e-2)
+
+    def test_an_integrator_in_python(self):
+        class Direct(lanthorn.Integrator):
+            """light of the lamp at (0, 2, 0) on a floor of reflectance (.2, .4, .8)"""
+
+            def radiance(self, rays, scene, sampler):
+                hits = lanthorn.intersect(scene, rays.origins, rays.directions)
+                way = [0, 2, 0] - hits["position"]
+                squared = (way**2).sum(1, keepdims=True)
+                cosine = np.abs((hits["normal"] * way).sum(1, keepdims=True)) / np.sqrt(squared)
+                light = 10 * cosine / squared * np.array([0.2, 0.4, 0.8]) / np.pi
+                return np.where(np.isfinite(hits["distance"])[:, None], light, 0)
+
+        class Noise(lanthorn.Integrator):
+            def radiance(self, rays, scene, sampler):
+                return sampler.random((len(rays), 3))
+
+        class Wrong(lanthorn.Integrator):
+            def radiance(self, rays, scene, sampler):
+                return np.zeros((3, 3))
+
+        scene = lanthorn.load_dict(floor_and_lamp())
+        lanthorn.add_integrator("direct", Direct())
+        options = {"resolution": (40, 40), "passes": 3}
+        own = lanthorn.render(scene, integrator="direct", **options)
+        path = lanthorn.render(scene, integrator="path", **options)
+        # RGB of lights is a spectrum of the same colour to a per cent.
+        np.testing.assert_allclose(own["color"].mean((0, 1)), path["color"].mean((0, 1)), rtol=0.02)
+
+        lanthorn.add_integrator("noise", Noise())
+        first = lanthorn.render(scene, integrator="noise", **options)
+        np.testing.assert_array_equal(first.array, lanthorn.render(scene, integrator="noise", **options).array)
+        self.assertFalse((first.array == lanthorn.render(scene, integrator="noise", seed=1, **options).array).all())
+        np.testing.assert_allclose(first["color"].mean(), 0.5, atol=0.02)
+
+        lanthorn.add_integrator("noise", Wrong())
+        with self.assertRaisesRegex(lanthorn.Error, r"noise.radiance: expected numbers of shape \(1280, 3\)"):
+            lanthorn.render(scene, integrator="noise", **options)
+        lanthorn.add_integrator("noise", lanthorn.Integrator())
+        with self.assertRaises(NotImplementedError):
+            lanthorn.render(scene, integrator="noise", **options)
+        with self.assertRaisesRegex(lanthorn.Error, "exists already"):
+            lanthorn.add_integrator("path", Noise())
 
     def test_converge(self):
         scene = lanthorn.load_dict(furnace())
