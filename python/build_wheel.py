@@ -76,6 +76,16 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
     return name
 
 
+def prepare_metadata_for_build_wheel(metadata_directory, config_settings=None):
+    """Writes the wheel's metadata without building it, and returns the folder's name."""
+    name = f"lanthorn-{_version()}.dist-info"
+    folder = pathlib.Path(metadata_directory) / name
+    folder.mkdir()
+    (folder / "METADATA").write_text(_metadata())
+    (folder / "WHEEL").write_text(_wheel())
+    return name
+
+
 def get_requires_for_build_wheel(config_settings=None):
     """Nothing that pip could bring."""
     return []

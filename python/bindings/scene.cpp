@@ -71,18 +71,32 @@ py::list names_of_materials(const SeenScene& seen) {
   return names;
 }
 
-SeenScene look(const SeenScene& seen, const py::object& eye, const py::object& target, const py::object& up) {
+LookAt look_of(const py::object& eye, const py::object& target, const py::object& up) {
   Reader reader;
   LookAt look;
   reader.at("eye", [&] { read(reader, eye, look.eye); });
   reader.at("target", [&] { read(reader, target, look.target); });
   reader.at("up", [&] { read(reader, up, look.up); });
+  constexpr double least_sine = 1e-6;
+  const DVec3 view = look.target - look.eye;
+  if (!(glm::length(glm::cross(view, look.up)) > least_sine * glm::length(view) * glm::length(look.up)))
+    throw Error("look_at: `eye`, `target` and `up` must not lie on one line");
+  return look;
+}
+
+// As `--look-at`: whether the picture is mirrored stays as it was, and so does the camera's own scale.
+SeenScene look(const SeenScene& seen, const py::object& eye, const py::object& target, const py::object& up) {
+  const LookAt look = look_of(eye, target, up);
   const DVec3 origin = description_of(*seen.scene).origin;
-  const Transform world_to_camera = lanthorn::look_at(look.eye - origin, look.target - origin, look.up);
-  if (world_to_camera.is_singular()) throw Error("look_at: `eye` is `target`, or `up` points along the view");
   SeenScene result = seen;
-  result.view.camera.camera_to_world = AnimatedTransform(world_to_camera.inverted());
-  result.view.camera.subject.reset();
+  description::Camera& camera = result.view.camera;
+  const Transform& before = camera.camera_to_world.start;
+  Vec3 factors{glm::length(before.vector({1, 0, 0})), glm::length(before.vector({0, 1, 0})),
+               glm::length(before.vector({0, 0, 1}))};
+  if (before.swaps_handedness()) factors.x = -factors.x;
+  const Transform to_world = lanthorn::look_at(look.eye - origin, look.target - origin, look.up).inverted();
+  camera.camera_to_world = AnimatedTransform(to_world * lanthorn::scale(factors));
+  camera.subject.reset();
   return result;
 }
 
@@ -141,19 +155,13 @@ void bind_transforms(py::module_& module) {
   module.def(
       "look_at",
       [](const py::object& eye, const py::object& target, const py::object& up) {
-        SeenScene none;
-        Reader reader;
-        LookAt look;
-        reader.at("eye", [&] { read(reader, eye, look.eye); });
-        reader.at("target", [&] { read(reader, target, look.target); });
-        reader.at("up", [&] { read(reader, up, look.up); });
-        const Transform map = lanthorn::look_at(look.eye, look.target, look.up);
-        if (map.is_singular()) throw Error("look_at: `eye` is `target`, or `up` points along the view");
-        return write(map.inverted());
+        const LookAt look = look_of(eye, target, up);
+        // Camera space is left-handed, as pbrt's; the mirror makes pictures of a right-handed world.
+        return write(lanthorn::look_at(look.eye, look.target, look.up).inverted() * lanthorn::scale({-1, 1, 1}));
       },
       py::arg("eye"), py::arg("target"), py::arg("up") = py::make_tuple(0, 1, 0),
       "The 4 x 4 matrix camera_to_world of a camera at `eye` that looks at `target`, with `up` upwards in the\n"
-      "picture. Each is (x, y, z) in metres.");
+      "picture. Each is (x, y, z) in metres, in right-handed coordinates: seen along -z, +x is to the right.");
 }
 
 }  // namespace

@@ -257,6 +257,18 @@ class Sessions(unittest.TestCase):
         with self.assertRaisesRegex(lanthorn.Error, "unknown key .lamps."):
             scene.edit(lamps={})
 
+    def test_pictures_are_not_mirrored(self):
+        data = floor_and_lamp()
+        data["camera"] = {"camera_to_world": lanthorn.look_at((0, 5, 0), (0, 0, 0), up=(0, 0, -1)), "fov": 40}
+        data["lights"][0].update({"from": [1, 0.5, 0.5]})
+        for scene in (lanthorn.load_dict(data), lanthorn.load_dict(data).look_at((0, 6, 0), (0, 0, 0), up=(0, 0, -1))):
+            light = lanthorn.render(scene, **SMALL)["color"].sum(-1)
+            y, x = np.unravel_index(light.argmax(), light.shape)
+            self.assertGreater(x, 16)  # +x is to the right, -z upwards
+            self.assertGreater(y, 16)
+        with self.assertRaisesRegex(lanthorn.Error, "on one line"):
+            lanthorn.look_at((0, 5, 0), (0, 0, 0), up=(0, 2, 0))
+
     def test_instances_move(self):
         data = floor_and_lamp()
         data["objects"] = [{"name": "ball", "shapes": [{"type": "sphere", "radius": 0.5}]}]
