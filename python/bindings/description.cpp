@@ -99,8 +99,7 @@ void read_edits(Reader& reader, const py::dict& edits, const char* table, const 
 
 SceneDescription description_of_dict(const py::dict& data) {
   Reader reader;
-  for (const char* table : {"materials", "media", "objects"})
-    reader.names[table] = names_in(data, table);
+  for (const char* table : {"materials", "media", "objects"}) reader.names[table] = names_in(data, table);
   SceneDescription scene;
   Keys known{"environment"};
   read_listed(reader, data, scene.view, view_members, known);
