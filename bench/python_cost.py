@@ -1,9 +1,11 @@
 # SPDX-FileCopyrightText: 2026 The Lanthorn authors
 # SPDX-License-Identifier: Apache-2.0
-"""What Python costs: PYTHONPATH=build/release/lib/python python3 bench/python_cost.py build/release/bin/lanthorn
+"""What Python costs: PYTHONPATH=build/release/lib/python python3 bench/python_cost.py build/release/bin/lanthorn [METHOD...]
 
 Prints the seconds from the start of `import lanthorn` to the array of a picture of 64 x 64 pixels, each in a process of its
-own, and the processor seconds of 32 passes by the program and through Session.passes, in turns.
+own. Then the processor milliseconds of a pass of 256 x 256 pixels by the program, by Session.render, and by Session.passes,
+which makes a picture after each: the difference of 80 and 16 passes, so that start and files do not count; the least of
+several runs, in turns.
 """
 
 import pathlib
@@ -29,7 +31,7 @@ session = lanthorn.Session(lanthorn.load_file({SCENE!r}), resolution=(256, 256),
 LOOP
 session.picture().save(FILE)
 """
-LOOPS = {"render": "session.render(passes=32)", "passes": "for picture in session.passes(32): pass"}
+LOOPS = {"render": "session.render(passes=COUNT)", "passes": "for picture in session.passes(COUNT): pass"}
 
 
 def processor_seconds(command):
@@ -39,28 +41,41 @@ def processor_seconds(command):
     return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
 
 
-def main(program, runs=5):
-    for method in ("path", "probppm"):
-        lines = [
-            subprocess.run([sys.executable, "-c", START.replace("METHOD", repr(method))], check=True, capture_output=True, text=True)
-            for _ in range(runs)
-        ]
-        wall, cpu = zip(*(map(float, line.stdout.split()) for line in lines))
-        print(f"{method}: import to array {statistics.median(wall):.3f} s (processor {statistics.median(cpu):.3f} s)")
+def commands(program, method, count, folder):
+    """{name: command} of so many passes."""
+    render = [program, "render", SCENE, "-r", "256x256", "-p", str(count), "-i", method, "-q", "--checkpoint", "none"]
+    all_ways = {"program": [*render, "-o", f"{folder}/a.exr"]}
+    for name, loop in LOOPS.items():
+        script = PASSES.replace("LOOP", loop).replace("COUNT", str(count))
+        script = script.replace("METHOD", repr(method)).replace("FILE", repr(f"{folder}/b.exr"))
+        all_ways[name] = [sys.executable, "-c", script]
+    return all_ways
+
+
+def print_start(method, runs):
+    command = [sys.executable, "-c", START.replace("METHOD", repr(method))]
+    lines = [subprocess.run(command, check=True, capture_output=True, text=True).stdout for _ in range(runs)]
+    wall, cpu = zip(*(map(float, line.split()) for line in lines))
+    print(f"{method}: import to array {statistics.median(wall):.3f} s (processor {statistics.median(cpu):.3f} s)", flush=True)
+
+
+def print_passes(program, method, runs):
+    few, many = 16, 80
     with tempfile.TemporaryDirectory() as folder:
-        for method in ("path", "probppm"):
-            commands = {"program": [program, "render", SCENE, "-r", "256x256", "-p", "32", "-i", method, "-q", "--checkpoint", "none",
-                                    "-o", f"{folder}/a.exr"]}
-            for name, loop in LOOPS.items():
-                script = PASSES.replace("METHOD", repr(method)).replace("LOOP", loop).replace("FILE", repr(f"{folder}/b.exr"))
-                commands[name] = [sys.executable, "-c", script]
-            seconds = {name: [] for name in commands}
-            for _ in range(runs):
-                for name, command in commands.items():
-                    seconds[name].append(processor_seconds(command))
-            for name, values in seconds.items():
-                print(f"{method}, 32 passes, {name}: processor seconds {statistics.median(values):.2f} (least {min(values):.2f})")
+        least = {}
+        for _ in range(runs):
+            for count in (few, many):
+                for name, command in commands(program, method, count, folder).items():
+                    least[name, count] = min(least.get((name, count), 1e9), processor_seconds(command))
+        for name in ("program", *LOOPS):
+            print(f"{method}, {name}: {1000 * (least[name, many] - least[name, few]) / (many - few):.1f} ms a pass", flush=True)
+
+
+def main(program, *methods):
+    for method in methods or ("path", "probppm"):
+        print_start(method, runs=5)
+        print_passes(program, method, runs=3)
 
 
 if __name__ == "__main__":
-    main(sys.argv[1])
+    main(*sys.argv[1:])
