@@ -12,7 +12,7 @@ else()
 endif()
 execute_process(COMMAND date --utc --rfc-email --date=${time} OUTPUT_VARIABLE date OUTPUT_STRIP_TRAILING_WHITESPACE)
 
-foreach(group IN ITEMS program mpi development doc)
+foreach(group IN ITEMS program mpi development doc python)
   string(TOUPPER ${group} key)
   set(root ${CPACK_TEMPORARY_DIRECTORY}/${group}/usr/share)
   if(NOT EXISTS ${CPACK_TEMPORARY_DIRECTORY}/${group})

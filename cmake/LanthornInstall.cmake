@@ -11,6 +11,9 @@ set(pkgconfig_dir ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 cmake_path(RELATIVE_PATH CMAKE_INSTALL_FULL_LIBDIR BASE_DIRECTORY ${CMAKE_INSTALL_FULL_BINDIR} OUTPUT_VARIABLE bin_to_lib)
 set_target_properties(lanthorn_program PROPERTIES INSTALL_RPATH $ORIGIN/${bin_to_lib})
 set_target_properties(lanthorn PROPERTIES INSTALL_RPATH "$ORIGIN/lanthorn;$ORIGIN/../../lanthorn")
+if(LANTHORN_WHEEL)  # in one folder with its modules, and without links, which wheels do not have
+  set_target_properties(lanthorn PROPERTIES INSTALL_RPATH $ORIGIN VERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+endif()
 
 install(TARGETS lanthorn_program)
 install(TARGETS lanthorn EXPORT lanthorn LIBRARY COMPONENT library NAMELINK_COMPONENT development)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The Lanthorn authors
 # SPDX-License-Identifier: Apache-2.0
-# Debian packages by cpack: lanthorn, lanthorn-mpi, liblanthorn-dev and lanthorn-doc. The first can have
+# Debian packages by cpack: lanthorn, lanthorn-mpi, liblanthorn-dev, lanthorn-doc and python3-lanthorn. The first can have
 # the library for several instruction sets, of which the dynamic linker takes the one that fits (glibc-hwcaps).
 set(LANTHORN_PACKAGE_LIBRARIES "" CACHE STRING "Build folders whose library goes into the package lanthorn, too")
 
@@ -54,8 +54,18 @@ lanthorn_package(doc lanthorn-doc doc
 set(CPACK_DEBIAN_DOC_PACKAGE_ARCHITECTURE all)
 set(CPACK_DEBIAN_DOC_PACKAGE_SHLIBDEPS OFF)
 
+set(packages program mpi development doc)
+if(LANTHORN_BUILD_PYTHON)
+  list(APPEND packages python)
+  lanthorn_package(python python3-lanthorn python
+"Scenes, renders, layers and photons as numpy arrays.")
+  # Built for one version of Python.
+  math(EXPR next_minor "${Python3_VERSION_MINOR} + 1")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "lanthorn (= ${PROJECT_VERSION}), python3-numpy, python3 (>= ${Python3_VERSION_MAJOR}.${Python3_VERSION_MINOR}), python3 (<< ${Python3_VERSION_MAJOR}.${next_minor}~)")
+endif()
+
 include(CPack)
-foreach(group IN ITEMS program mpi development doc)
+foreach(group IN LISTS packages)
   cpack_add_component_group(${group})
   cpack_add_component(${group} GROUP ${group})
 endforeach()

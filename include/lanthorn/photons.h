@@ -13,6 +13,13 @@
 
 namespace lanthorn {
 
+/// What lies between the light and a photon.
+enum class PhotonClass : std::uint8_t {
+  direct,   ///< nothing
+  caustic,  ///< mirrors and clear glass alone
+  indirect  ///< a surface or medium that scatters widely
+};
+
 /// Photons of one pass, by index.
 struct Photons {
   std::uint64_t light_paths = 0;
@@ -21,7 +28,8 @@ struct Photons {
   std::vector<Normal> normals{};        ///< of the surface; 0 in media
   std::vector<Direction> directions{};  ///< towards where the photon came from
   std::vector<Rgb> powers{};            ///< watts, linear Rec.709; negative where a wavelength's colour is
-  std::vector<bool> caustic{};          ///< only mirrors and clear glass before it
+  std::vector<std::int32_t> depths{};   ///< scattering events of the light path up to the photon's own; direct: 1
+  std::vector<PhotonClass> classes{};
 
   std::size_t size() const { return positions.size(); }
 };

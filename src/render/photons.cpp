@@ -37,20 +37,27 @@ std::array<unsigned char, 3> hue_of(const Rgb& power) {
   return {byte(shown.r), byte(shown.g), byte(shown.b)};
 }
 
-// `share`: of the light of these paths in that of all.
-void append_photons(Photons& photons, const PhotonTracer& tracer, const Wavelengths& w, float share,
+PhotonClass class_of(const PhotonFlags& flags) {
+  if (flags.direct) return PhotonClass::direct;
+  return flags.caustic ? PhotonClass::caustic : PhotonClass::indirect;
+}
+
+// `share`: of the light of these paths in that of all. `max_depth`: that of the tracer's rule.
+void append_photons(Photons& photons, const PhotonTracer& tracer, const Wavelengths& w, float share, int max_depth,
                     const Vec3& origin) {
   const std::size_t count = photons.positions.size() + tracer.stored();
   for (std::vector<Vec3>* const vectors : {&photons.positions, &photons.normals, &photons.directions})
     vectors->reserve(count);
   photons.powers.reserve(count);
-  photons.caustic.reserve(count);
+  photons.depths.reserve(count);
+  photons.classes.reserve(count);
   const auto add = [&](const Photon& photon, const Normal& normal) {
     photons.positions.push_back(photon.position + origin);
     photons.normals.push_back(normal);
     photons.directions.push_back(photon.wi);
     photons.powers.push_back(share * w.to_rgb(photon.flags.dispersed ? photon.power * w.dispersed : photon.power));
-    photons.caustic.push_back(photon.flags.caustic);
+    photons.depths.push_back(max_depth - photon.flags.eye_scatterings);
+    photons.classes.push_back(class_of(photon.flags));
   };
   for (const std::vector<Photon>& chunk : tracer.chunks())
     for (const Photon& photon : chunk) add(photon, photon.normal);
@@ -87,7 +94,8 @@ Photons trace_photons(const Scene& scene, const ViewDescription& view, const Ren
                   .first_medium_depth = direct ? 1 : 2},
                  draw, emission.get());
     photons.light_paths += tracer.emitted();
-    append_photons(photons, tracer, draw.w, 1 / static_cast<float>(settings.parts), Vec3(scene.description().origin));
+    append_photons(photons, tracer, draw.w, 1 / static_cast<float>(settings.parts), settings.max_depth,
+                   Vec3(scene.description().origin));
   }
   return photons;
 }
@@ -106,7 +114,7 @@ std::string encode_ply(const Photons& photons) {
     const Rgb& power = photons.powers[i];
     append(ply, std::array{power.r, power.g, power.b});
     for (const unsigned char byte : hue_of(power)) ply += static_cast<char>(byte);
-    ply += photons.caustic[i] ? '\1' : '\0';
+    ply += photons.classes[i] == PhotonClass::caustic ? '\1' : '\0';
   }
   return ply;
 }

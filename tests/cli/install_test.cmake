@@ -81,11 +81,31 @@ function(check_pkg_config)
   expect_render(${work}/by_pkg_config pkg-config.png)
 endfunction()
 
+# The module finds what it loads: images need lanthorn-openimageio.so.
+function(check_python)
+  if(NOT PYTHON)
+    return()
+  endif()
+  execute_process(COMMAND ${PYTHON} -c "import numpy" RESULT_VARIABLE without_numpy OUTPUT_QUIET ERROR_QUIET)
+  if(without_numpy)
+    message("*** SKIPPED: ${PYTHON} has no numpy; THE PYTHON MODULE IS NOT TESTED ***")
+    return()
+  endif()
+  file(WRITE ${work}/render.py "import lanthorn
+assert lanthorn.__file__.startswith('${prefix}'), lanthorn.__file__
+scene = lanthorn.load_file('${SOURCE_DIR}/tests/scenes/lamps-with-images.pbrt')
+lanthorn.render(scene, passes=1, resolution=(16, 16)).save('python.png')
+")
+  run(${CMAKE_COMMAND} -E env PYTHONPATH=${prefix}/${PYTHON_DIR} ${PYTHON} render.py)
+  require_file(${work}/python.png)
+endfunction()
+
 run(${CMAKE_COMMAND} --install ${BUILD_DIR} --prefix ${prefix})
 check_files()
 check_usage()
 check_find_package()
 check_pkg_config()
+check_python()
 # The folder can be moved: nothing in it knows where it is.
 file(RENAME ${prefix} ${work}/moved)
 run(${work}/moved/bin/lanthorn render ${work}/moved/share/lanthorn/scenes/ring.pbrt -r 16x16 -p 1 -o moved.exr)

@@ -3,18 +3,22 @@
 // The public headers alone, as an embedding program uses them.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <filesystem>
+#include <numbers>
 #include <numeric>
 #include <string>
 #include <thread>
 #include <utility>
 #include <variant>
+#include <vector>
 
 #include "lanthorn/error.h"
 #include "lanthorn/image.h"
 #include "lanthorn/photons.h"
+#include "lanthorn/rays.h"
 #include "lanthorn/scene.h"
 #include "lanthorn/session.h"
 #include "lanthorn/state.h"
@@ -265,8 +269,37 @@ TEST(Api, PhotonsAreArrays) {
   EXPECT_EQ(photons.light_paths, 2000u);
   ASSERT_GT(photons.size(), 1000u);
   EXPECT_EQ(photons.powers.size(), photons.size());
-  EXPECT_EQ(photons.caustic.size(), photons.size());
+  ASSERT_EQ(photons.depths.size(), photons.size());
+  ASSERT_EQ(photons.classes.size(), photons.size());
+  for (std::size_t i = 0; i < photons.size(); ++i)
+    ASSERT_EQ(photons.depths[i] == 1, photons.classes[i] == lanthorn::PhotonClass::direct);
+  EXPECT_GT(*std::max_element(photons.depths.begin(), photons.depths.end()), 2);
   for (const lanthorn::Direction& d : photons.directions) ASSERT_NEAR(glm::dot(d, d), 1, 1e-2f);
+}
+
+// A ball of one colour that glows inside: what rays meet, how it scatters, and L = E / (1 - rho).
+TEST(Api, RaysInAFurnace) {
+  const lanthorn::test::TemporaryDir dir;
+  const SharedScene scene =
+      load(dir.write("a.pbrt",
+                     "WorldBegin\nAttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [.5 .5 .5]\n"
+                     "Material \"diffuse\" \"rgb reflectance\" [.5 .5 .5]\nReverseOrientation\n"
+                     "Shape \"sphere\" \"float radius\" 2\nAttributeEnd\n"));
+  const std::vector<lanthorn::SceneRay> rays(64, {{0, 0, 0.5f}, {0, 0, 3}});
+  const std::vector<lanthorn::RayHit> hits = lanthorn::intersect(*scene, rays);
+  EXPECT_NEAR(hits.front().distance, 1.5f, 1e-5f);
+  EXPECT_NEAR(hits.front().position.z, 2, 1e-5f);
+  EXPECT_TRUE(hits.front().emits);
+  double sum = 0;
+  for (const lanthorn::Rgb& light : lanthorn::radiance_along(*scene, rays)) sum += static_cast<double>(light.g);
+  EXPECT_NEAR(sum / 64, 1, 0.03);  // 4096 paths; their standard deviation is about .3
+  const auto bsdf = lanthorn::bsdf_at(scene, rays.front());
+  ASSERT_TRUE(bsdf);
+  EXPECT_NEAR(bsdf->eval({0, 0, 1}, {0, 0.6f, 0.8f}).r, 0.5f / std::numbers::pi_v<float>, 1e-4f);
+  EXPECT_NEAR(bsdf->pdf({0, 0, 1}, {0, 0.6f, 0.8f}), 0.8f / std::numbers::pi_v<float>, 1e-4f);
+  const std::vector<lanthorn::SceneRay> nowhere{{{0, 0, 0}, {0, 0, 0}}};
+  EXPECT_THROW(lanthorn::intersect(*scene, nowhere), lanthorn::Error);
+  EXPECT_THROW(lanthorn::radiance_along(*scene, rays, {.samples = 0}), lanthorn::Error);
 }
 
 // A small view of a large plane: the guide of the method sends more photons there.

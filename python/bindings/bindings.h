@@ -1,0 +1,74 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// What the parts of the Python module share. Each file binds one theme.
+#pragma once
+
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lanthorn/error_estimate.h"
+#include "lanthorn/image.h"
+#include "lanthorn/image_file.h"
+#include "lanthorn/render_options.h"
+#include "lanthorn/scene.h"
+#include "lanthorn/state.h"
+
+namespace lanthorn::python {
+
+namespace py = pybind11;
+
+/// A scene and who looks at it. Python sees one value.
+struct SeenScene {
+  SharedScene scene;
+  ViewDescription view;
+};
+
+/// A picture with what a screen needs to show it.
+struct Picture {
+  Image image{};
+  std::optional<ErrorEstimate> error{};
+  bool measures_exposure = false, display_emission = false;
+};
+Picture picture_of_state(const RenderState& state, bool with_noise_layers);
+
+/// The options of a render from keyword arguments: members of RenderOptions by their names, all else parameters of the
+/// method. Throws Error for values of the wrong type.
+RenderOptions options_of(const py::dict& keywords);
+py::list texts_of(const std::vector<description::Warning>& warnings);
+
+SceneDescription description_of_dict(const py::dict& data);
+py::dict dict_of_description(const SceneDescription& description, const ViewDescription& view);
+/// The scene with the replacements of the keywords `camera`, `film`, `filter`, `materials`, `lights`, `area_lights`,
+/// `instances` and `environment`.
+SeenScene edited(const SeenScene& scene, const py::dict& edits);
+EnvironmentChoice environment_of(py::handle data);
+
+/// `values` as an array that shares the memory of `owner`, which holds them.
+template <class Scalar, class T>
+py::array writable_array(const std::vector<T>& values, py::handle owner) {
+  constexpr auto count = static_cast<py::ssize_t>(sizeof(T) / sizeof(Scalar));
+  std::vector<py::ssize_t> shape{static_cast<py::ssize_t>(values.size())};
+  if (count > 1) shape.push_back(count);
+  return py::array_t<Scalar>(shape, reinterpret_cast<const Scalar*>(values.data()), owner);
+}
+template <class Scalar, class T>
+py::array shared_array(const std::vector<T>& values, py::handle owner) {
+  py::array array = writable_array<Scalar>(values, owner);
+  array.attr("flags").attr("writeable") = false;
+  return array;
+}
+
+void bind_error(py::module_& module);
+void bind_picture(py::module_& module);
+void bind_scene(py::module_& module);
+void bind_session(py::module_& module);
+void bind_state(py::module_& module);
+void bind_photons(py::module_& module);
+void bind_rays(py::module_& module);
+void bind_tools(py::module_& module);
+
+}  // namespace lanthorn::python

@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// Methods that are written in Python.
+#include <algorithm>
+#include <map>
+
+#include "bindings.h"
+#include "lanthorn/own_method.h"
+#include "plain_data.h"
+
+namespace lanthorn::python {
+
+namespace {
+
+// What Python calls for a method of this name. Kept to the end of the process: the interpreter may be gone before.
+std::map<std::string, py::object>& functions() {
+  static auto* const all = new std::map<std::string, py::object>;
+  return *all;
+}
+
+void call(const std::string& name, const SharedScene& scene, const EyeRays& eye, std::span<Rgb> radiance) {
+  const py::gil_scoped_acquire acquire;
+  std::vector<Vec3> origins, directions;
+  for (const SceneRay& ray : eye.rays) {
+    origins.push_back(ray.origin);
+    directions.push_back(ray.direction);
+  }
+  const py::object answer = functions().at(name)(SeenScene{scene, description_of(*scene).view}, write(origins),
+                                                 write(directions), eye.random_key);
+  Reader reader;
+  const auto count = static_cast<py::ssize_t>(radiance.size());
+  const std::string expected = "numbers of shape (" + std::to_string(count) + ", 3)";
+  reader.at(name + ".radiance", [&] {
+    const py::array_t<float> values = number_array<float>(reader, answer, expected);
+    if (values.ndim() != 2 || values.shape(0) != count || values.shape(1) != 3)
+      reader.fail("expected " + expected + ", got shape " + py::str(values.attr("shape")).cast<std::string>());
+    std::memcpy(static_cast<void*>(radiance.data()), values.data(), radiance.size_bytes());
+  });
+}
+
+void add(const std::string& name, const std::string& summary, const py::object& function) {
+  // A method of this name that Python has added before has another function from now on: cells are run again.
+  if (!functions().contains(name))
+    add_method(name, summary, [name](const SharedScene& scene, const EyeRays& eye, std::span<Rgb> radiance) {
+      call(name, scene, eye, radiance);
+    });
+  functions()[name] = function;
+}
+
+}  // namespace
+
+void bind_integrator(py::module_& module) {
+  module.def("_add_integrator", &add, py::arg("name"), py::arg("summary"), py::arg("function"));
+}
+
+}  // namespace lanthorn::python

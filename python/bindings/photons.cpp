@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// Photons as arrays.
+#include "lanthorn/photons.h"
+
+#include "bindings.h"
+
+namespace lanthorn::python {
+
+namespace {
+
+Photons trace(const SeenScene& scene, std::uint32_t pass, bool direct, const py::kwargs& keywords) {
+  const RenderOptions options = options_of(keywords);
+  const py::gil_scoped_release release;
+  return trace_photons(*scene.scene, scene.view, options, pass, direct);
+}
+
+template <class Scalar, auto member>
+py::array column(const py::object& self) {
+  return shared_array<Scalar>(self.cast<const Photons&>().*member, self);
+}
+
+}  // namespace
+
+void bind_photons(py::module_& module) {
+  py::class_<Photons>(
+      module, "Photons",
+      "Photons of one pass as read-only arrays, which share their memory. n = len(photons).\n\n"
+      "Classes are DIRECT (0, straight from the light), CAUSTIC (1, after mirrors and clear glass alone)\n"
+      "and INDIRECT (2, all others).")
+      .def("__len__", &Photons::size, "Number of photons.")
+      .def_readonly("light_paths", &Photons::light_paths, "int: light paths that were emitted.")
+      .def_property_readonly("positions", &column<float, &Photons::positions>,
+                             "(n, 3) float32: metres, in the coordinates of the scene's file.")
+      .def_property_readonly("normals", &column<float, &Photons::normals>,
+                             "(n, 3) float32: of the surface; 0 in media.")
+      .def_property_readonly("directions", &column<float, &Photons::directions>,
+                             "(n, 3) float32: unit vectors towards where the photon came from.")
+      .def_property_readonly("powers", &column<float, &Photons::powers>,
+                             "(n, 3) float32: watts in linear Rec.709; negative where a wavelength's colour is.")
+      .def_property_readonly("depths", &column<std::int32_t, &Photons::depths>,
+                             "(n,) int32: scattering events up to the photon's own; 1: straight from the light.")
+      .def_property_readonly("classes", &column<std::uint8_t, &Photons::classes>,
+                             "(n,) uint8: DIRECT, CAUSTIC or INDIRECT.")
+      .def("__repr__",
+           [](const Photons& p) {
+             return "<lanthorn.Photons " + std::to_string(p.size()) + " of " + std::to_string(p.light_paths) +
+                    " light paths>";
+           })
+      .attr("DIRECT") = 0;
+  const py::object type = module.attr("Photons");
+  type.attr("CAUSTIC") = 1;
+  type.attr("INDIRECT") = 2;
+  module.def("trace_photons", &trace, py::arg("scene"), py::kw_only(), py::arg("pass_number") = 0,
+             py::arg("direct") = true,
+             "Traces the Photons of a pass; the same for any number of threads. direct: with those that come straight\n"
+             "from a light. Further keywords are options as of Session (integrator, photons, seed, max_depth ...).");
+}
+
+}  // namespace lanthorn::python

@@ -1,0 +1,205 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// Pictures as arrays.
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <algorithm>
+#include <array>
+
+#include "bindings.h"
+#include "lanthorn/error.h"
+#include "lanthorn/text.h"
+#include "plain_data.h"
+
+namespace lanthorn::python {
+
+template <>
+struct Names<ToneCurve> {
+  static constexpr std::array<std::pair<std::string_view, ToneCurve>, 3> list{
+      {{"none", ToneCurve::none}, {"filmic", ToneCurve::filmic}, {"agx", ToneCurve::agx}}};
+};
+
+Picture picture_of_state(const RenderState& state, bool with_noise_layers) {
+  MeasuredPicture measured = measured_picture_of(state);
+  const StateSummary summary = summarize(state);
+  Picture picture{.error = std::move(measured.error),
+                  .measures_exposure = summary.measures_exposure,
+                  .display_emission = summary.display_emission};
+  picture.image = with_noise_layers ? with_noise(state, measured.picture) : std::move(measured.picture);
+  picture.image.window = summary.window;
+  return picture;
+}
+
+namespace {
+
+// Channels of a layer; empty if there is none.
+std::vector<std::size_t> channels_of(const Image& image, const std::string& layer) {
+  std::vector<std::size_t> found;
+  const std::string prefix = layer == "color" ? "" : layer + ".";
+  for (const char* const names : {"RGB", "XYZ"}) {
+    for (const char* name = names; *name != '\0'; ++name)
+      if (const auto channel = image.find_channel(prefix + *name)) found.push_back(*channel);
+    if (!found.empty()) return found;
+  }
+  if (const auto channel = image.find_channel(layer)) return {*channel};
+  if (const auto channel = image.find_channel(prefix + "Y"); layer == "color" && channel) return {*channel};
+  return {};
+}
+
+// (height, width, channels), or (height, width) if it is one channel. Shares the picture's memory: the channels of a
+// layer lie at equal distances.
+py::array layer_array(const py::object& owner, const std::string& layer) {
+  const Image& image = owner.cast<const Picture&>().image;
+  const std::vector<std::size_t> channels = channels_of(image, layer);
+  if (channels.empty()) {
+    const std::vector<std::string> known = layer_names(image);
+    std::string all;
+    for (const std::string& name : known) all += (all.empty() ? "" : ", ") + name;
+    throw Error("the picture has no layer " + in_quotes(layer) + did_you_mean(layer, known) + " (it has " + all + ")");
+  }
+  const auto count = static_cast<py::ssize_t>(image.channel_count());
+  const auto bytes = static_cast<py::ssize_t>(sizeof(float));
+  std::vector<py::ssize_t> shape{image.height, image.width}, strides{image.width * count * bytes, count * bytes};
+  if (channels.size() > 1) {
+    const auto step = static_cast<py::ssize_t>(channels[1]) - static_cast<py::ssize_t>(channels[0]);
+    shape.push_back(static_cast<py::ssize_t>(channels.size()));
+    strides.push_back(step * bytes);
+    for (std::size_t i = 2; i < channels.size(); ++i)
+      if (static_cast<py::ssize_t>(channels[i]) - static_cast<py::ssize_t>(channels[i - 1]) != step)
+        throw Error("the channels of the layer " + in_quotes(layer) + " do not lie side by side");
+  }
+  py::array_t<float> array(shape, strides, image.pixels.data() + channels[0], owner);
+  array.attr("flags").attr("writeable") = false;
+  return array;
+}
+
+py::array whole_array(const py::object& owner) {
+  const Image& image = owner.cast<const Picture&>().image;
+  py::array_t<float> array(
+      std::vector<py::ssize_t>{image.height, image.width, static_cast<py::ssize_t>(image.channel_count())},
+      image.pixels.data(), owner);
+  array.attr("flags").attr("writeable") = false;
+  return array;
+}
+
+Picture picture_of_array(const py::object& data, const std::optional<std::vector<std::string>>& names) {
+  Reader reader;
+  const py::array_t<float> array = number_array<float>(reader, data, "numbers of shape (height, width, channels)");
+  if (array.ndim() != 2 && array.ndim() != 3)
+    reader.fail("expected numbers of shape (height, width, channels) or (height, width), got " +
+                std::to_string(array.ndim()) + " dimensions");
+  const py::ssize_t count = array.ndim() == 3 ? array.shape(2) : 1;
+  std::vector<std::string> channels = names.value_or(count == 3   ? std::vector<std::string>{"R", "G", "B"}
+                                                     : count == 1 ? std::vector<std::string>{"Y"}
+                                                                  : std::vector<std::string>{});
+  if (static_cast<py::ssize_t>(channels.size()) != count)
+    reader.fail("expected " + std::to_string(count) + " names in `channels`, got " + std::to_string(channels.size()));
+  Image image(static_cast<int>(array.shape(1)), static_cast<int>(array.shape(0)), std::move(channels));
+  std::copy_n(array.data(), array.size(), image.pixels.begin());
+  return {.image = std::move(image)};
+}
+
+DisplaySettings display_of(const Picture& picture, const std::optional<float>& exposure, const py::object& curve) {
+  DisplaySettings display;
+  Reader reader;
+  reader.at("curve", [&] { read(reader, curve, display.curve); });
+  display.exposure = exposure ? *exposure : picture.measures_exposure ? measured_exposure(picture.image) : 0;
+  display.display_emission = picture.display_emission;
+  return display;
+}
+
+py::bytes png_of(const Picture& picture, const std::optional<float>& exposure, const py::object& curve) {
+  const DisplaySettings display = display_of(picture, exposure, curve);
+  std::vector<unsigned char> bytes;
+  {
+    const py::gil_scoped_release release;
+    bytes = encode_png(picture.image, display);
+  }
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+void save(const Picture& picture, const std::filesystem::path& path, const std::optional<float>& exposure,
+          const py::object& curve) {
+  const DisplaySettings display = display_of(picture, exposure, curve);
+  const py::gil_scoped_release release;
+  write_image(path, picture.image, display);
+}
+
+void bind_error_estimate(py::module_& module) {
+  py::class_<ErrorEstimate>(module, "ErrorEstimate",
+                            "How far a picture is from the truth, as its own samples tell (docs/error.md).\n\n"
+                            "All numbers are relative: 0.02 is 2 % of each value.")
+      .def_readonly("noise", &ErrorEstimate::noise, "float: the part that falls with the number of passes alone.")
+      .def_readonly("bias", &ErrorEstimate::bias,
+                    "float: the part that falls with the radii of photons; 0 of methods without bias.")
+      .def_readonly("error", &ErrorEstimate::error, "float: both, sqrt(noise**2 + bias**2).")
+      .def_readonly("bound", &ErrorEstimate::bound, "float: the error is below it with a probability of 90 %.")
+      .def_readonly("doubt", &ErrorEstimate::doubt,
+                    "str: why the numbers are too small or not known; empty if they can be relied on.")
+      .def("__repr__", [](const ErrorEstimate& e) { return "<lanthorn.ErrorEstimate " + describe_error(e) + ">"; });
+}
+
+}  // namespace
+
+void bind_picture(py::module_& module) {
+  bind_error_estimate(module);
+  const py::object none_curve = py::str("none");
+  py::class_<Picture>(
+      module, "Picture",
+      "A picture of named float32 layers in linear Rec.709 colours, rows from the top.\n\n"
+      "numpy.asarray(picture) is the layer 'color' with shape (height, width, 3), and picture[name] any\n"
+      "other one. Arrays share the picture's memory and are read-only. Picture(array) copies an array of\n"
+      "shape (height, width, 3) or (height, width); other numbers of channels need names.")
+      .def(py::init(&picture_of_array), py::arg("array"), py::arg("channels") = py::none(),
+           "Copies numbers of shape (height, width, channels). `channels`: names such as 'R' or 'caustic.G'.")
+      .def(
+          "__getitem__", &layer_array, py::arg("layer"),
+          "The layer as a read-only array of float32 without a copy: shape (height, width, 3) of colours and vectors,\n"
+          "(height, width) of single channels. Raises Error for layers that the picture does not have.")
+      .def(
+          "__contains__",
+          [](const Picture& p, const std::string& layer) { return !channels_of(p.image, layer).empty(); },
+          py::arg("layer"), "Whether the picture has the layer.")
+      .def(
+          "__array__",
+          [](const py::object& self, const py::object& dtype) -> py::object {
+            const py::array array = layer_array(self, "color");
+            return dtype.is_none() ? py::object(array) : array.attr("astype")(dtype);
+          },
+          py::arg("dtype") = py::none(), "The layer 'color', for numpy.asarray(picture).")
+      .def_property_readonly("array", &whole_array,
+                             "All channels, shape (height, width, len(channels)), float32, read-only, without a copy.")
+      .def_property_readonly(
+          "channels", [](const Picture& p) { return p.image.channels; },
+          "list of str: names of the channels of `array`.")
+      .def_property_readonly(
+          "layers", [](const Picture& p) { return layer_names(p.image); }, "list of str: names for picture[name].")
+      .def_property_readonly(
+          "width", [](const Picture& p) { return p.image.width; }, "int: pixels.")
+      .def_property_readonly(
+          "height", [](const Picture& p) { return p.image.height; }, "int: pixels.")
+      .def_readonly("error", &Picture::error,
+                    "ErrorEstimate: how far the picture is from the truth; None for pictures that were not rendered.")
+      .def("save", &save, py::arg("path"), py::kw_only(), py::arg("exposure") = py::none(),
+           py::arg("curve") = none_curve,
+           "Writes .exr (all layers), .png, .jpg or .tif, whole or not at all. `exposure`: stops, None: measured if "
+           "the\n"
+           "scene's file has none. `curve`: 'none', 'filmic' or 'agx'. EXR files hold the values as they are.")
+      .def("png", &png_of, py::kw_only(), py::arg("exposure") = py::none(), py::arg("curve") = none_curve,
+           "The bytes of an 8-bit sRGB PNG file of the layer 'color'. Parameters as `save`.")
+      .def(
+          "_repr_png_", [none_curve](const Picture& p) { return png_of(p, {}, py::str("none")); },
+          "What notebooks show.")
+      .def("__repr__", [](const Picture& p) {
+        return "<lanthorn.Picture " + std::to_string(p.image.width) + " x " + std::to_string(p.image.height) + ", " +
+               std::to_string(layer_names(p.image).size()) + " layers>";
+      });
+  module.def(
+      "load_image", [](const std::filesystem::path& path) { return Picture{.image = read_image(path)}; },
+      py::arg("path"), py::call_guard<py::gil_scoped_release>(),
+      "Reads an image file (EXR with all layers, HDR, PNG, JPEG, TIFF ...) as a Picture with linear colours.\n"
+      "Raises Error if it cannot be read.");
+}
+
+}  // namespace lanthorn::python

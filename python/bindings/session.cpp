@@ -1,0 +1,204 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+// Renders under way.
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <atomic>
+#include <memory>
+#include <mutex>
+#include <utility>
+
+#include "bindings.h"
+#include "lanthorn/denoise.h"
+#include "lanthorn/session.h"
+
+namespace lanthorn::python {
+
+namespace {
+
+using std::uint64_t;
+
+// A session as Python's threads share it: one at a time renders, and the interpreter is free meanwhile.
+class PythonSession {
+ public:
+  PythonSession(const SeenScene& scene, const RenderOptions& options)
+      : scene_(scene), session_(scene.scene, scene.view, options) {}
+
+  /// Renders what the plan asks for, or these limits. Throws Python's KeyboardInterrupt after the running pass if the
+  /// user asks for that; the passes until then are kept.
+  void render(std::optional<uint64_t> passes, std::optional<double> seconds, std::optional<double> noise) {
+    const std::lock_guard lock = locked();
+    StopRule stop = session_.plan();
+    if (passes || seconds || noise) {
+      const uint64_t done = session_.pass_count();
+      stop.passes.end = passes ? stop.passes.begin + done + *passes : std::numeric_limits<uint64_t>::max();
+      stop.seconds = seconds;
+      stop.noise = noise;
+    }
+    run(stop);
+  }
+  void stop() { is_stopped_ = true; }
+
+  Picture picture(bool noise) {
+    const std::lock_guard lock = locked();
+    require_pass();
+    return picture_of_state(session_.state(), noise);
+  }
+  Picture denoised() {
+    Picture noisy = picture(true);
+    DenoisedPicture clean = denoise(noisy.image);
+    noisy.image = with_denoised_light(clean.picture);
+    noisy.error = clean.error;
+    return noisy;
+  }
+  uint64_t pass_count() const { return session_.pass_count(); }
+  std::vector<description::Warning> warnings() const { return session_.warnings(); }
+  const SeenScene& scene() const { return scene_; }
+  const RenderStatistics& statistics() const { return statistics_; }
+  uint64_t planned_passes() const { return session_.plan().passes.end - session_.plan().passes.begin; }
+
+  void set_scene(const SeenScene& scene) {
+    const std::lock_guard lock = locked();
+    if (scene.scene != scene_.scene) session_.set_scene(scene.scene);
+    session_.set_view(scene.view);
+    scene_ = scene;
+  }
+  void save(const std::filesystem::path& path) {
+    const std::lock_guard lock = locked();
+    require_pass();
+    save_state(session_.state(), path);
+  }
+  void resume(const std::filesystem::path& path) {
+    const std::lock_guard lock = locked();
+    session_.resume(open_state(path), path.string());
+  }
+
+ private:
+  // Never waits: whoever holds the lock may wait for the interpreter.
+  std::lock_guard<std::mutex> locked() {
+    if (!mutex_.try_lock()) throw Error("the session is rendering in another thread");
+    return {mutex_, std::adopt_lock};
+  }
+  void require_pass() const {
+    if (session_.pass_count() == 0) throw Error("there is no picture before the end of the first pass");
+  }
+  void run(StopRule& stop) {
+    std::optional<py::error_already_set> raised;
+    is_stopped_ = false;
+    stop.interrupted = &is_stopped_;
+    Observer observer;
+    observer.progress = [&](const RenderState&, const RenderStatistics&) {
+      const py::gil_scoped_acquire acquire;
+      if (raised || PyErr_CheckSignals() == 0) return;
+      raised.emplace();
+      is_stopped_ = true;
+    };
+    {
+      const py::gil_scoped_release release;
+      statistics_ = session_.render(stop, observer);
+    }
+    if (raised) throw py::error_already_set(std::move(*raised));
+  }
+
+  std::mutex mutex_;
+  std::atomic<bool> is_stopped_{false};
+  SeenScene scene_;
+  Session session_;
+  RenderStatistics statistics_;
+};
+
+using SharedSession = std::shared_ptr<PythonSession>;
+
+// for picture in session.passes(64)
+struct Passes {
+  SharedSession session;
+  uint64_t left;
+
+  Picture next() {
+    if (left == 0) throw py::stop_iteration();
+    --left;
+    session->render(1, {}, {});
+    const py::gil_scoped_release release;
+    return session->picture(false);
+  }
+};
+
+py::dict statistics_as_dict(const PythonSession& session) {
+  const RenderStatistics& s = session.statistics();
+  py::dict data;
+  data["passes"] = s.passes;
+  data["seconds"] = s.seconds;
+  data["prepare_seconds"] = s.prepare_seconds;
+  for (std::size_t i = 0; i < phase_count; ++i)
+    data[(std::string(phase_name(static_cast<Phase>(i))) + "_seconds").c_str()] = s.phase_seconds[i];
+  data["rays"] = s.rays.walk + s.rays.shadow;
+  data["light_paths"] = s.light_paths;
+  data["photons_stored"] = s.photons_stored;
+  data["radius"] = s.radius;
+  return data;
+}
+
+}  // namespace
+
+void bind_session(py::module_& module) {
+  py::class_<Passes>(module, "Passes", "The pictures of a session, pass by pass: see Session.passes.")
+      .def(
+          "__iter__", [](const py::object& self) { return self; }, "Itself.")
+      .def("__next__", &Passes::next, "Renders a pass and returns its Picture.");
+  py::class_<PythonSession, SharedSession>(
+      module, "Session",
+      "A render under way: as many passes as wanted, and the picture in between.\n\n"
+      "Keyword arguments are the options of `lanthorn render`: integrator, passes, seconds, noise (the error at which\n"
+      "to stop, 0.02 is 2 %), seed, resolution (width, height), crop (x0, y0, x1, y1), clamp, color ('rgb' or\n"
+      "'spectral'), photons (light paths per pass), max_depth, memory (bytes), pass_range (first, end). Other "
+      "keywords\n"
+      "are parameters of the method (see `methods`). Raises Error for what is unknown or does not fit.\n\n"
+      "Rendering does not hold the GIL. Ctrl-C raises KeyboardInterrupt after the running pass; the session keeps all\n"
+      "passes and can go on.")
+      .def(py::init([](const SeenScene& scene, const py::kwargs& options) {
+             const RenderOptions read = options_of(options);
+             const py::gil_scoped_release release;
+             return std::make_shared<PythonSession>(scene, read);
+           }),
+           py::arg("scene"), "Session(scene, **options): checks the options and prepares the film.")
+      .def(
+          "render",
+          [](PythonSession& self, std::optional<uint64_t> passes, std::optional<double> seconds,
+             std::optional<double> noise) {
+            self.render(passes, seconds, noise);
+            const py::gil_scoped_release release;
+            return self.picture(false);
+          },
+          py::kw_only(), py::arg("passes") = py::none(), py::arg("seconds") = py::none(), py::arg("noise") = py::none(),
+          "Renders what the options ask for; or `passes` more, or for `seconds`, or until the error is below `noise`.\n"
+          "Returns the Picture.")
+      .def(
+          "passes",
+          [](const SharedSession& self, uint64_t count) {
+            return Passes{self, count};
+          },
+          py::arg("count"),
+          "for picture in session.passes(64): renders a pass at a time and yields the Picture after each.")
+      .def("stop", &PythonSession::stop, "Ends `render`, called by another thread, after the running pass.")
+      .def("picture", &PythonSession::picture, py::kw_only(), py::arg("noise") = false,
+           py::call_guard<py::gil_scoped_release>(),
+           "The Picture of the passes done, with all layers. noise: with the layers that `denoise` needs, too.")
+      .def("denoised", &PythonSession::denoised, py::call_guard<py::gil_scoped_release>(),
+           "The Picture of the passes done without its noise, layer by layer.")
+      .def("save", &PythonSession::save, py::arg("path"), py::call_guard<py::gil_scoped_release>(),
+           "Saves the sums, whole or not at all, to be resumed or merged.")
+      .def("resume", &PythonSession::resume, py::arg("path"), py::call_guard<py::gil_scoped_release>(),
+           "Goes on from a saved state. Raises Error, naming the first difference, if it belongs to another render.")
+      .def_property("scene", &PythonSession::scene, &PythonSession::set_scene,
+                    "Scene: what is rendered. Another one, such as scene.edit(...), starts anew with the same options.")
+      .def_property_readonly("pass_count", &PythonSession::pass_count, "int: passes done.")
+      .def_property_readonly("planned_passes", &PythonSession::planned_passes, "int: passes that the options ask for.")
+      .def_property_readonly(
+          "warnings", [](const PythonSession& s) { return texts_of(s.warnings()); },
+          "list of str: what the scene does not get, and light that the method leaves out.")
+      .def_property_readonly("statistics", &statistics_as_dict,
+                             "dict: passes, seconds, rays, photons ... of the last call of `render`.");
+}
+
+}  // namespace lanthorn::python

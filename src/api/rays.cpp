@@ -1,0 +1,140 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "lanthorn/rays.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <utility>
+
+#include "base/parallel.h"
+#include "lanthorn/error.h"
+#include "path/path_draw.h"
+#include "path/radiance_along.h"
+#include "scene/medium_around.h"
+#include "scene/scene.h"
+#include "surface/bsdf.h"
+
+namespace lanthorn {
+
+namespace {
+
+// Where nothing disperses, the wavelength changes nothing in RGB.
+const Wavelengths middle_wavelength = Wavelengths::rgb(0.5f);
+
+Ray ray_in_scene(const Scene& scene, const SceneRay& ray, std::size_t index) {
+  const float length = glm::length(ray.direction);
+  const Point origin = Point(DVec3(ray.origin) - scene.description().origin);
+  const bool is_usable = std::isfinite(length) && length > 0 && std::isfinite(glm::dot(origin, Vec3(1)));
+  if (!is_usable)
+    throw Error(fmt::format(
+        "ray {}: expected finite numbers and a direction that is not 0, got origin ({}, {}, {}) "
+        "and direction ({}, {}, {})",
+        index, ray.origin.x, ray.origin.y, ray.origin.z, ray.direction.x, ray.direction.y, ray.direction.z));
+  const description::Camera& camera = scene.description().view.camera;
+  return {origin, ray.direction / length, infinity, camera.shutter_open};
+}
+
+std::vector<Ray> rays_in_scene(const Scene& scene, std::span<const SceneRay> rays) {
+  std::vector<Ray> all;
+  all.reserve(rays.size());
+  for (const SceneRay& ray : rays) all.push_back(ray_in_scene(scene, ray, all.size()));
+  return all;
+}
+
+// The nearest surface that is one, and not only an interface of media.
+std::optional<SurfacePoint> nearest_surface(const Scene& scene, Ray ray) {
+  for (;;) {
+    std::optional<SurfacePoint> at = scene.intersect(ray, middle_wavelength);
+    if (!at || !at->is_interface) return at;
+    leave_surface(*at, ray.direction, ray);
+  }
+}
+
+RayHit hit_of(const Scene& scene, const Ray& ray) {
+  const std::optional<SurfacePoint> at = nearest_surface(scene, ray);
+  if (!at) return {};
+  return {.distance = glm::distance(at->position, ray.origin),
+          .position = Point(DVec3(at->position) + scene.description().origin),
+          .normal = at->normal,
+          .shading_normal = at->shading.n,
+          .uv = at->uv,
+          .emits = at->light.has_value()};
+}
+
+// Mean over the paths of a ray.
+class LightOfRays {
+ public:
+  LightOfRays(const Scene& scene, const RayLightSettings& settings)
+      : scene_(scene), settings_(settings), media_(scene) {}
+
+  Rgb along(const Ray& ray, std::uint32_t index) const {
+    const MediumId medium = media_.around(ray.origin, ray.time).value_or(MediumId::vacuum);
+    Rgb sum;
+    for (std::uint32_t n = 0; n < settings_.samples; ++n) {
+      stop_point();
+      Sampler sampler = Sampler::for_pixel(settings_.seed, stream_of("rays"), index, n);
+      sampler.seek(1);
+      const Wavelengths w = Wavelengths::rgb(sampler.next());
+      RayCounts counts;
+      LightLayers layers(w);
+      radiance_along(PathContext{scene_, w, sampler, counts, {settings_.max_depth}}, {ray}, medium, layers);
+      const PixelSample sample = layers.sample(1, {});
+      for (std::size_t c = 0; c < path_class_count; ++c) sum += sample.light[c];
+    }
+    return 1 / static_cast<float>(settings_.samples) * sum;
+  }
+
+ private:
+  const Scene& scene_;
+  const RayLightSettings& settings_;
+  MediumFinder media_;
+};
+
+}  // namespace
+
+std::vector<RayHit> intersect(const Scene& scene, std::span<const SceneRay> rays) {
+  const std::vector<Ray> all = rays_in_scene(scene, rays);
+  std::vector<RayHit> hits(all.size());
+  parallel_for(std::size_t{0}, all.size(), [&](std::size_t i) { hits[i] = hit_of(scene, all[i]); });
+  return hits;
+}
+
+std::vector<Rgb> radiance_along(const Scene& scene, std::span<const SceneRay> rays, const RayLightSettings& settings) {
+  if (settings.samples < 1) throw Error("radiance along rays: expected at least 1 sample");
+  if (settings.max_depth < 1) throw Error("radiance along rays: expected a maximum depth of at least 1");
+  const std::vector<Ray> all = rays_in_scene(scene, rays);
+  const LightOfRays light(scene, settings);
+  std::vector<Rgb> radiance(all.size());
+  parallel_for(std::size_t{0}, all.size(),
+               [&](std::size_t i) { radiance[i] = light.along(all[i], static_cast<std::uint32_t>(i)); });
+  return radiance;
+}
+
+struct SurfaceBsdf::At {
+  SharedScene scene;  ///< has the closure
+  SurfacePoint point;
+};
+
+SurfaceBsdf::SurfaceBsdf(std::shared_ptr<const At> at) : at_(std::move(at)) {}
+
+Rgb SurfaceBsdf::eval(const Direction& wi, const Direction& wo) const {
+  return middle_wavelength.to_rgb(lanthorn::eval(at_->point.bsdf, wi, wo, Transport::radiance));
+}
+float SurfaceBsdf::pdf(const Direction& wi, const Direction& wo) const {
+  return lanthorn::pdf(at_->point.bsdf, wi, wo, Transport::radiance);
+}
+SurfaceBsdf::Sample SurfaceBsdf::sample(const Direction& wi, const Vec3& u) const {
+  const std::optional<BsdfSample> sample =
+      lanthorn::sample(at_->point.bsdf, wi, u.x, Vec2(u.y, u.z), Transport::radiance);
+  if (!sample) return {};
+  return {sample->wo, middle_wavelength.to_rgb(sample->weight), sample->pdf, sample->delta, sample->transmission};
+}
+
+std::optional<SurfaceBsdf> bsdf_at(SharedScene scene, const SceneRay& ray) {
+  std::optional<SurfacePoint> point = nearest_surface(*scene, ray_in_scene(*scene, ray, 0));
+  if (!point) return std::nullopt;
+  return SurfaceBsdf(std::make_shared<const SurfaceBsdf::At>(SurfaceBsdf::At{std::move(scene), *point}));
+}
+
+}  // namespace lanthorn

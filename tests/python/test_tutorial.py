@@ -1,0 +1,75 @@
+# SPDX-FileCopyrightText: 2026 The Lanthorn authors
+# SPDX-License-Identifier: Apache-2.0
+"""The scripts of docs/tutorial, small, and what each of them shows."""
+
+import importlib
+import os
+import pathlib
+import sys
+import tempfile
+import unittest
+
+import numpy as np
+
+import lanthorn
+
+TUTORIAL = pathlib.Path(__file__).resolve().parents[2] / "docs/tutorial"
+
+
+class Tutorial(unittest.TestCase):
+    def setUp(self):
+        sys.path.insert(0, str(TUTORIAL))
+        self.before = os.getcwd()
+        self.folder = tempfile.TemporaryDirectory()
+        os.chdir(self.folder.name)
+
+    def tearDown(self):
+        os.chdir(self.before)
+        self.folder.cleanup()
+        sys.path.remove(str(TUTORIAL))
+
+    def run_script(self, name):
+        return importlib.import_module(name).main(small=True)
+
+    def test_all_scripts_are_tested(self):
+        tested = {name.removeprefix("test_") for name in dir(self) if name.startswith("test_")}
+        self.assertLessEqual({path.stem for path in TUTORIAL.glob("*.py")}, tested)
+
+    def test_first_picture(self):
+        shares = self.run_script("first_picture")
+        self.assertAlmostEqual(sum(shares.values()), 1, places=3)
+        self.assertGreater(shares["caustic"], 0.005)
+        self.assertTrue(pathlib.Path("first_picture.png").exists())
+
+    def test_glass_caustic(self):
+        errors = self.run_script("glass_caustic")
+        self.assertLess(errors["probppm"], errors["path"])
+
+    def test_photons(self):
+        irradiance, power = self.run_script("photons")
+        # What falls outside of the grid is little.
+        landed = irradiance.sum((0, 1)) * (3 / 40) ** 2
+        self.assertTrue((landed <= power * 1.001).all() and (landed > 0.5 * power).all())
+
+    def test_ppm_convergence(self):
+        slopes = self.run_script("ppm_convergence")
+        self.assertLess(slopes["probppm"] if slopes["probppm"] is not None else -1, 0)
+
+    def test_lens(self):
+        radius, spot = self.run_script("lens")
+        self.assertGreater(radius, 0.45)  # the lensmaker's 0.5 m, and more for the rim
+        self.assertLess(radius, 0.65)
+        self.assertLess(spot, 0.03)
+
+    def test_environment(self):
+        environment, maps = self.run_script("environment")
+        # Light is kept: the mean of the irradiance over pi is that of the environment over the sphere.
+        height = environment.height
+        weight = np.sin(np.pi * (np.arange(height) + 0.5) / height)[:, None, None]
+        mean = (environment["color"] * weight).sum((0, 1)) / (weight.sum() * environment.width)
+        np.testing.assert_allclose(maps["mean"], mean, rtol=0.02)
+        np.testing.assert_allclose(maps["sh"][0] * 0.282095, mean, rtol=0.02)
+
+
+if __name__ == "__main__":
+    unittest.main()
