@@ -50,8 +50,10 @@ void print_table(const Scene& scene, const SceneSummary& s) {
         s.quadrics, s.curves, s.instances);
   if (!s.bounds.empty())
     print("bounds     ({:.4g}, {:.4g}, {:.4g}) to ({:.4g}, {:.4g}, {:.4g}) m\n", lo.x, lo.y, lo.z, hi.x, hi.y, hi.z);
-  print("memory     geometry {}, BVH {}{}, textures {}\n", mebibytes(s.geometry_bytes), mebibytes(s.bvh_bytes),
-        per_triangle(s), mebibytes(s.texture_bytes));
+  print(
+      "memory     geometry {}, BVH {}{}, textures {}{}\n", mebibytes(s.geometry_bytes), mebibytes(s.bvh_bytes),
+      per_triangle(s), mebibytes(s.texture_bytes),
+      s.texture_disk_bytes > 0 ? fmt::format(" (with {} more in tiles on disk)", mebibytes(s.texture_disk_bytes)) : "");
   print("lights     {}\n", list_counts(s.lights));
   print("materials  {}\n", list_counts(s.materials));
   print("textures   {}\n", s.textures);

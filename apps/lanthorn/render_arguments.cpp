@@ -44,6 +44,12 @@ OptionTable read_options(ReadOptions& o) {
            .brief = "For untrusted scenes: read only files in the scene's folder and below it",
            .details = "This holds whatever names and links say. Messages show no content of files."},
           max_pixels_option(o.max_pixels),
+          {.names = "--texture-memory",
+           .value = into(o.texture_memory, bytes_type()),
+           .brief = "Limit for the textures in memory, such as 4G",
+           .details = "The largest of those that do not fit are kept in tiles in a temporary file and read as they are "
+                      "looked at. The image does not depend on it.",
+           .otherwise = "half of the free memory"},
           {.names = "--missing",
            .value = into(o.skip_missing, choice_type<bool>({{"error", false}, {"skip", true}})),
            .brief = "What to do about missing files that the scene names",

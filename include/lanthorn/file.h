@@ -3,8 +3,10 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdio>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -62,6 +64,13 @@ struct OpenedFile {
 };
 /// Like `read_file`, and also returns the real path at the moment of opening.
 OpenedFile read_opened_file(const std::filesystem::path& path);
+
+struct OpenedStream {
+  std::shared_ptr<std::FILE> file;
+  std::filesystem::path real_path;  ///< of the opened file, links followed
+};
+/// Opens a file that is too large to be read as a whole. Throws `lanthorn::Error` as `read_file` does.
+OpenedStream open_stream(const std::filesystem::path& path);
 
 /// Returns the bytes of a file that a scene names. Throws Error if it cannot be read.
 using FileReader = std::function<std::string(const std::filesystem::path&)>;

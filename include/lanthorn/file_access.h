@@ -3,7 +3,10 @@
 #pragma once
 
 #include <cstdint>
+#include <cstdio>
 #include <filesystem>
+#include <memory>
+#include <optional>
 #include <string>
 
 namespace lanthorn {
@@ -20,6 +23,7 @@ struct FileAccess {
   std::filesystem::path sandbox;
   std::uint64_t max_pixels = default_max_pixels;  ///< per image
   bool skip_missing = false;                      ///< see ReadOptions
+  std::optional<std::uint64_t> texture_memory{};  ///< see ReadOptions
 
   bool is_sandboxed() const { return !sandbox.empty(); }
   /// The name by which to open the file, for libraries that open files themselves. Throws Error, naming `path`, unless
@@ -35,6 +39,8 @@ struct FileAccess {
   std::filesystem::path find(const std::filesystem::path& folder, const std::filesystem::path& name) const;
   /// Reads the whole file. Throws Error as `checked` does.
   std::string read(const std::filesystem::path& path) const;
+  /// Opens the file for reading. Throws Error as `checked` does.
+  std::shared_ptr<std::FILE> open(const std::filesystem::path& path) const;
 };
 
 }  // namespace lanthorn

@@ -29,6 +29,9 @@ struct ReadOptions {
   /// (colours are grey, emission and transmission 0, metalness and roughness as their factors say), measured materials
   /// are grey, spectra 1, included files empty, lenses of 50 mm; a warning names each.
   bool skip_missing = false;
+  /// Bytes for the textures' images; half of the free memory if not given. What does not fit is kept in tiles on disk
+  /// and read as it is looked at. The picture is the same.
+  std::optional<std::uint64_t> texture_memory{};
   bool window_glass = false;        ///< calls `replace_window_glass`
   std::optional<double> at{};       ///< seconds into the first animation of a glTF file; none: everything is at rest
   std::string camera{};             ///< of a glTF file: name, or number from 1 on; empty: the first one
@@ -194,6 +197,8 @@ struct SceneSummary {
   std::map<std::string, int> lights, materials;  ///< numbers by kind
   Bounds bounds;                                 ///< in the coordinates of the file
   std::uint64_t geometry_bytes = 0, bvh_bytes = 0, texture_bytes = 0;
+  std::uint64_t texture_disk_bytes = 0;  ///< of textures that do not fit into memory
+  std::uint64_t texture_tiles_read = 0;  ///< of these, so far
   double build_seconds = 0;
   bool has_dispersion = false;        ///< an index of refraction depends on the wavelength
   bool has_measured_spectra = false;  ///< materials other than metals have tabulated spectra

@@ -96,6 +96,8 @@ class OpenFile {
   int sync() const { return ::fsync(descriptor_) == 0 ? 0 : errno; }
   int close() { return ::close(std::exchange(descriptor_, -1)) == 0 ? 0 : errno; }
   void keep() { remove_.clear(); }
+  /// The descriptor is somebody else's from now on.
+  void release() { descriptor_ = -1; }
 
  private:
   int descriptor_;
@@ -283,7 +285,15 @@ std::vector<std::string> file_names_beside(const fs::path& path) {
   return names;
 }
 
-OpenedFile read_opened_file(const fs::path& path) {
+namespace {
+
+// A regular file, open for reading, and its size.
+struct ReadableFile {
+  OpenFile file;
+  std::size_t size;
+};
+
+ReadableFile open_regular(const fs::path& path) {
   const SourceLocation place{path.string()};
   std::error_code code;
   if (!fs::exists(path, code))
@@ -291,17 +301,33 @@ OpenedFile read_opened_file(const fs::path& path) {
   // Checked before opening, because opening some devices triggers an action; checked again on the descriptor, because
   // the name may lead elsewhere by then.
   if (!fs::is_regular_file(path, code)) throw Error(place, "not a regular file");
-  const OpenFile file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY), {});
+  OpenFile file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY), {});
   if (file.descriptor() < 0) throw Error(place, "cannot be read; check its permissions");
   struct stat status {};
   if (::fstat(file.descriptor(), &status) != 0 || !S_ISREG(status.st_mode)) throw Error(place, "not a regular file");
-  const auto size = static_cast<std::size_t>(status.st_size);
+  return {std::move(file), static_cast<std::size_t>(status.st_size)};
+}
+
+}  // namespace
+
+OpenedFile read_opened_file(const fs::path& path) {
+  const SourceLocation place{path.string()};
+  const auto [file, size] = open_regular(path);
   require_memory(static_cast<double>(size), place, "the file");
   OpenedFile result{std::string(size, '\0'), real_path_of(file.descriptor(), path)};
   if (file.read(result.bytes) != size) throw Error(place, "cannot be read to its end");
   // Kernel files (/proc, /sys) report size 0.
   if (!file.is_at_end()) throw Error(place, "not an ordinary file, or one that grows while it is read");
   return result;
+}
+
+OpenedStream open_stream(const fs::path& path) {
+  ReadableFile opened = open_regular(path);
+  fs::path real = real_path_of(opened.file.descriptor(), path);
+  std::FILE* const stream = ::fdopen(opened.file.descriptor(), "rb");
+  if (stream == nullptr) throw Error({path.string()}, "cannot be read");
+  opened.file.release();
+  return {{stream, [](std::FILE* file) { std::fclose(file); }}, std::move(real)};
 }
 
 std::string read_file(const fs::path& path) { return read_opened_file(path).bytes; }

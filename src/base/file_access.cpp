@@ -153,4 +153,10 @@ std::string FileAccess::read(const fs::path& path) const {
   return std::move(file.bytes);
 }
 
+std::shared_ptr<std::FILE> FileAccess::open(const fs::path& path) const {
+  OpenedStream stream = open_stream(checked(path));
+  if (is_sandboxed() && !lies_in(stream.real_path, sandbox)) throw no_such_file(path);
+  return std::move(stream.file);
+}
+
 }  // namespace lanthorn

@@ -153,7 +153,30 @@ CameraRay Camera::sample_ray(const Vec2& raster, const Vec2& u_lens, float time)
   result.ray.origin = Point(map.point(local.origin));
   result.ray.direction = Vec3(glm::normalize(map.vector(local.direction)));
   result.ray.time = time;
+  set_footprint(local.direction, result.ray);
   return result;
+}
+
+// The footprint of a pixel for one point of the lens: the shorter of its extents. A realistic camera has none.
+void Camera::set_footprint(const DVec3& direction, Ray& ray) const {
+  const double pixel = std::fmin(std::fabs(pixel_step_.x), std::fabs(pixel_step_.y));
+  switch (kind_) {
+    case Kind::perspective:
+      ray.spread = static_cast<float>(pixel * sqr(direction.z) / glm::dot(direction, direction));
+      break;
+    case Kind::orthographic:
+      ray.width = static_cast<float>(pixel);
+      break;
+    case Kind::equirectangular:
+      ray.spread = static_cast<float>(
+          std::fmin(double_pi / height_, 2 * double_pi / width_ * std::hypot(direction.x, direction.z)));
+      break;
+    case Kind::equal_area:  // its pixels are squares in the mean, and at most twice as long as wide
+      ray.spread = static_cast<float>(0.7 * std::sqrt(4 * double_pi / (1.0 * width_ * height_)));
+      break;
+    case Kind::realistic:
+      break;
+  }
 }
 
 // Density per solid angle of directions at an angle to the axis, for film positions uniform over the whole film. The

@@ -14,7 +14,7 @@
 
 namespace lanthorn {
 
-/// A camera ray for a film position.
+/// A camera ray for a film position. Its footprint is that of a pixel.
 struct CameraRay {
   Ray ray;
   /// Pixel value = radiance along the ray × this weight. 1 for cameras that measure radiance. A realistic camera
@@ -81,6 +81,7 @@ class Camera {
     DVec3 direction{0.0, 0.0, 1.0};  // of any length
   };
   LocalRay local_ray(const Vec2& raster, const Vec2& u_lens) const;
+  void set_footprint(const DVec3& direction, Ray& ray) const;
   struct WeightedRay {
     LocalRay ray;
     double weight = 0;

@@ -3,8 +3,12 @@
 // What decodes image files: a module that alone links OpenImageIO, and is loaded when it is first asked for.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <cstdio>
 #include <functional>
+#include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -31,14 +35,18 @@ struct ImageHeader {
   SampleType samples = SampleType::float32;
   std::uint64_t pixel_bytes = 0;  ///< of a pixel in memory, as the file stores it
   bool deep = false;              ///< any number of samples a pixel
+  int row_step = 1;               ///< rows that are decoded together: the height of its tiles or strips
   std::vector<ImageAttribute> attributes;
 };
 
-/// An image file in memory whose header has been read.
+/// An image file whose header has been read.
 struct OpenImage {
   ImageHeader header;
   /// Reads the first `channels` of all pixels, interleaved, as float32, or as uint8 if the file has these.
   std::function<void(int channels, SampleType as, void* pixels)> read;
+  /// The same for the rows from `first` to before `end`. Rows must be read in order, and `first` must be a multiple of
+  /// `ImageHeader::row_step`, as must `end` unless it is the height. Empty for formats that are read as a whole.
+  std::function<void(int first, int end, int channels, SampleType as, void* pixels)> read_rows;
 };
 
 /// Colours of a picture, interleaved R, G, B, rows from the top.
@@ -48,10 +56,40 @@ struct CodecColors {
   const void* pixels = nullptr;
 };
 
+/// An image in tiles of `tile_side` x `tile_side` texels, with coarser levels: each has half of the columns and rows of
+/// the one before it, rounded up. Tiles at the right and lower edges are filled up.
+inline constexpr int tile_side = 64;
+struct TiledImage {
+  int width = 0, height = 0, channels = 0, levels = 1;
+  SampleType samples = SampleType::uint8;  ///< or float32
+  /// Reads the tile in column x and row y of the tiles of a level. False if it cannot be read.
+  std::function<bool(int level, int x, int y, void* texels)> read_tile;
+
+  std::size_t texel_bytes() const {
+    return static_cast<std::size_t>(channels) * (samples == SampleType::uint8 ? 1 : sizeof(float));
+  }
+  std::size_t tile_bytes() const { return texel_bytes() * tile_side * tile_side; }
+};
+/// Columns or rows of a level of an image that has `size` of them.
+constexpr int level_size(int size, int level) {
+  return static_cast<int>(((std::int64_t{1} << level) + size - 1) >> level);
+}
+
+struct TexelPlace {
+  int column = 0, row = 0;  ///< within the level
+};
+
+/// What a cache of tiles has done so far.
+struct TileCacheCounts {
+  std::uint64_t tiles_read = 0, bytes_read = 0;
+};
+
 /// `format` is OpenImageIO's name of a format ("openexr"). What fails throws a std::exception that says why.
 struct ImageCodec {
   /// `bytes` must outlive what is returned.
   OpenImage (*open)(std::string_view bytes, const char* format);
+  /// The same for a file on disk.
+  OpenImage (*open_file)(std::shared_ptr<std::FILE> file, const char* format);
   /// A file with a text for its attribute ImageDescription.
   std::vector<unsigned char> (*encode)(const char* format, const CodecColors& colors, const std::string& text);
   /// Linear Rec.709 to display values, in place: by a view of the OpenColorIO configuration in the file `config`; empty
@@ -62,6 +100,14 @@ struct ImageCodec {
   void (*use_one_thread)();
   /// Version of OpenImageIO, such as "2.4.7".
   std::string (*version)();
+
+  /// OpenImageIO's cache of tiles, which holds `bytes` of them. May be used by several threads.
+  std::shared_ptr<void> (*make_tile_cache)(std::uint64_t bytes);
+  /// Adds an image, which must outlive the cache; returns its handle.
+  void* (*add_image)(void* cache, const TiledImage& image);
+  /// Copies texels of a level one behind the other. False if some tile cannot be read.
+  bool (*read_texels)(void* cache, void* image, int level, std::span<const TexelPlace> places, void* texels);
+  TileCacheCounts (*count_tiles)(void* cache);
 };
 
 /// The function of the module that returns its codec.

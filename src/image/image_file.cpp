@@ -105,14 +105,37 @@ std::string one_line(std::string text) {
 
 ImageFile::ImageFile(std::string_view bytes, std::string what, SourceLocation where, std::uint64_t max_pixels)
     : file_size_(bytes.size()), what_(std::move(what)), where_(std::move(where)) {
-  const char* const format = format_of(bytes);
+  open(bytes, max_pixels,
+       [&] { return format_ == "hdr" ? open_radiance_picture(bytes) : image_codec().open(bytes, format_.data()); });
+}
+
+ImageFile::ImageFile(const std::shared_ptr<std::FILE>& file, std::string what, SourceLocation where,
+                     std::uint64_t max_pixels)
+    : what_(std::move(what)), where_(std::move(where)) {
+  constexpr std::size_t enough_for_headers = 64;
+  std::string first(enough_for_headers, '\0');
+  first.resize(std::fread(first.data(), 1, first.size(), file.get()));
+  if (std::fseek(file.get(), 0, SEEK_END) == 0)
+    file_size_ = static_cast<std::size_t>(std::max(0L, std::ftell(file.get())));
+  std::rewind(file.get());
+  open(first, max_pixels, [&] {
+    if (format_ != "hdr") return image_codec().open_file(file, format_.data());
+    require_memory(static_cast<double>(file_size_), where_, "the file");
+    bytes_.resize(file_size_);
+    bytes_.resize(std::fread(bytes_.data(), 1, bytes_.size(), file.get()));
+    return open_radiance_picture(bytes_);
+  });
+}
+
+void ImageFile::open(std::string_view first_bytes, std::uint64_t max_pixels, const std::function<OpenImage()>& open) {
+  const char* const format = format_of(first_bytes);
   if (format == nullptr)
     fail(
         "is no image of a kind that is read (EXR, PNG, JPEG, HDR, PFM, PNM, TIFF, TGA, WebP, BMP, GIF, DDS, DPX, IFF, "
         "PSD)");
   format_ = format;
-  if (const auto pixels = announced_pixels(bytes, format)) check_pixels(*pixels, 4, max_pixels);
-  guarded([&] { image_ = format_ == "hdr" ? open_radiance_picture(bytes) : image_codec().open(bytes, format); });
+  if (const auto pixels = announced_pixels(first_bytes, format)) check_pixels(*pixels, 4, max_pixels);
+  guarded([&] { image_ = open(); });
   check_header(max_pixels);
 }
 
@@ -135,6 +158,10 @@ void ImageFile::check_header(std::uint64_t max_pixels) const {
 
 void ImageFile::read(int channels, SampleType as, void* pixels) {
   guarded([&] { image_.read(channels, as, pixels); });
+}
+
+void ImageFile::read_rows(int first, int end, int channels, SampleType as, void* pixels) {
+  guarded([&] { image_.read_rows(first, end, channels, as, pixels); });
 }
 
 void ImageFile::guarded(const std::function<void()>& body) const {

@@ -5,7 +5,9 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <cstdio>
 #include <functional>
+#include <memory>
 #include <string>
 #include <string_view>
 
@@ -14,7 +16,7 @@
 
 namespace lanthorn {
 
-/// An image file in memory, open for reading its first part. Its first bytes determine the format, not its name, and
+/// An image file, open for reading its first part. Its first bytes determine the format, not its name, and
 /// only image formats are accepted: OpenImageIO would also open films, which may refer to other files, and raw data.
 class ImageFile {
  public:
@@ -22,6 +24,8 @@ class ImageFile {
   /// Error with `where` if the format is unknown, if the file is damaged, deep or a volume, if it has more than
   /// `max_pixels`, or if it announces more data than 256 MiB plus 4096 times its size.
   ImageFile(std::string_view bytes, std::string what, SourceLocation where, std::uint64_t max_pixels);
+  /// The same for a file on disk, at its beginning, which is not read into memory as a whole (Radiance pictures are).
+  ImageFile(const std::shared_ptr<std::FILE>& file, std::string what, SourceLocation where, std::uint64_t max_pixels);
 
   const ImageHeader& header() const { return image_.header; }
   /// OpenImageIO's name of the format.
@@ -29,8 +33,12 @@ class ImageFile {
   /// Reads the first `channels` of all pixels. Throws Error if the file is damaged.
   void read(int channels, std::uint8_t* pixels) { read(channels, SampleType::uint8, pixels); }
   void read(int channels, float* pixels) { read(channels, SampleType::float32, pixels); }
+  /// As `OpenImage::read_rows`, as uint8 or float32.
+  void read_rows(int first, int end, int channels, SampleType as, void* pixels);
+  bool has_rows() const { return image_.read_rows != nullptr; }
 
  private:
+  void open(std::string_view first_bytes, std::uint64_t max_pixels, const std::function<OpenImage()>& open);
   void check_pixels(std::uint64_t pixels, std::uint64_t pixel_bytes, std::uint64_t max_pixels) const;
   void check_header(std::uint64_t max_pixels) const;
   void read(int channels, SampleType as, void* pixels);
@@ -38,7 +46,8 @@ class ImageFile {
   void guarded(const std::function<void()>& body) const;
   [[noreturn]] void fail(const std::string& problem) const;
 
-  std::size_t file_size_;
+  std::size_t file_size_ = 0;
+  std::string bytes_;  // of a file on disk that is read as a whole
   std::string what_;
   SourceLocation where_;
   std::string_view format_;

@@ -16,6 +16,7 @@
 #include <string>
 
 #include "image/image_codec.h"
+#include "image/openimageio_tiles.h"
 
 // As png.h declares them.
 struct png_struct_def;
@@ -69,6 +70,11 @@ SampleType samples_of(const OIIO::TypeDesc& type) {
 }
 OIIO::TypeDesc type_of(SampleType samples) { return samples == SampleType::uint8 ? OIIO::TypeUInt8 : OIIO::TypeFloat; }
 
+int rows_decoded_together(const OIIO::ImageSpec& spec) {
+  const int rows = spec.tile_width > 0 ? spec.tile_height : spec.get_int_attribute("tiff:RowsPerStrip", 1);
+  return std::clamp(rows, 1, std::max(1, spec.height));
+}
+
 ImageHeader header_of(const OIIO::ImageSpec& spec) {
   ImageHeader header{.width = spec.width,
                      .height = spec.height,
@@ -80,6 +86,7 @@ ImageHeader header_of(const OIIO::ImageSpec& spec) {
                      .samples = samples_of(spec.format),
                      .pixel_bytes = spec.pixel_bytes(true),
                      .deep = spec.deep,
+                     .row_step = rows_decoded_together(spec),
                      .attributes = {}};
   for (const OIIO::ParamValue& attribute : spec.extra_attribs) {
     ImageAttribute& own = header.attributes.emplace_back(ImageAttribute{attribute.name().string(), 0});
@@ -94,11 +101,20 @@ ImageHeader header_of(const OIIO::ImageSpec& spec) {
 }
 
 /// A file in memory that OpenImageIO reads.
-struct Input {
-  OIIO::Filesystem::IOMemReader memory;
+struct MemoryInput {
+  OIIO::Filesystem::IOMemReader source;
   std::unique_ptr<OIIO::ImageInput> file;
 
-  explicit Input(std::string_view bytes) : memory(const_cast<char*>(bytes.data()), bytes.size()) {}
+  explicit MemoryInput(std::string_view bytes) : source(const_cast<char*>(bytes.data()), bytes.size()) {}
+};
+/// A file on disk.
+struct DiskInput {
+  std::shared_ptr<std::FILE> stream;
+  OIIO::Filesystem::IOFile source;
+  std::unique_ptr<OIIO::ImageInput> file;
+
+  explicit DiskInput(std::shared_ptr<std::FILE> from)
+      : stream(std::move(from)), source(stream.get(), OIIO::Filesystem::IOProxy::Read) {}
 };
 
 // OpenImageIO 2.4 looks up the names in ICC profiles by a map that all threads share, and each unknown name is added to
@@ -106,22 +122,43 @@ struct Input {
 // Profiles are read with the header; pixels may be read at the same time.
 std::mutex opening;
 
-OpenImage open(std::string_view bytes, const char* format) {
+void read_rows(OIIO::ImageInput& file, int first, int end, int channels, const OIIO::TypeDesc& type, void* pixels) {
+  const OIIO::ImageSpec& spec = file.spec();
+  const bool is_read = spec.tile_width > 0
+                           ? file.read_tiles(0, 0, spec.x, spec.x + spec.width, spec.y + first, spec.y + end, 0, 1, 0,
+                                             channels, type, pixels)
+                           : file.read_scanlines(0, 0, spec.y + first, spec.y + end, 0, 0, channels, type, pixels);
+  if (!is_read) fail(file);
+}
+
+template <class Input>
+OpenImage open_input(const std::shared_ptr<Input>& input, const char* format) {
   const std::scoped_lock lock(opening);
-  auto input = std::make_shared<Input>(bytes);
   input->file = OIIO::ImageInput::create(format);
   OIIO::ImageSpec config, spec;
   // Colours as the file stores them: premultiplied by alpha, they would be decoded wrongly.
   config["oiio:UnassociatedAlpha"] = 1;
-  OIIO::Filesystem::IOProxy* proxy = &input->memory;
+  OIIO::Filesystem::IOProxy* proxy = &input->source;
   config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
   if (!input->file || !input->file->supports("ioproxy"))
     throw std::runtime_error(std::string("OpenImageIO was built without ") + format);
   OIIO::ImageInput& file = *input->file;
   if (!file.open(std::string("image.") + format, spec, config)) fail(file);
-  return {header_of(file.spec()), [input](int channels, SampleType as, void* pixels) {
+  return {header_of(file.spec()),
+          [input](int channels, SampleType as, void* pixels) {
             if (!input->file->read_image(0, 0, 0, channels, type_of(as), pixels)) fail(*input->file);
+          },
+          [input](int first, int end, int channels, SampleType as, void* pixels) {
+            read_rows(*input->file, first, end, channels, type_of(as), pixels);
           }};
+}
+
+OpenImage open(std::string_view bytes, const char* format) {
+  return open_input(std::make_shared<MemoryInput>(bytes), format);
+}
+
+OpenImage open_file(std::shared_ptr<std::FILE> file, const char* format) {
+  return open_input(std::make_shared<DiskInput>(std::move(file)), format);
 }
 
 std::vector<unsigned char> encode(const char* format, const CodecColors& colors, const std::string& text) {
@@ -193,7 +230,8 @@ std::string version() {
 }  // namespace
 
 extern "C" const ImageCodec* lanthorn_image_codec() {
-  static constexpr ImageCodec codec{open, encode, apply_view, use_one_thread, version};
+  static constexpr ImageCodec codec{open,    open_file,       encode,    apply_view,  use_one_thread,
+                                    version, make_tile_cache, add_image, read_texels, count_tiles};
   return &codec;
 }
 

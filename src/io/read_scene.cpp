@@ -87,7 +87,7 @@ FileReader decompressing_reader(const FileAccess& access) {
 }
 
 FileAccess access_for(const std::filesystem::path& folder, const ReadOptions& options) {
-  FileAccess access{{}, options.max_pixels, options.skip_missing};
+  FileAccess access{{}, options.max_pixels, options.skip_missing, options.texture_memory};
   if (options.sandbox) access.sandbox = std::filesystem::canonical(folder.empty() ? "." : folder);
   return access;
 }

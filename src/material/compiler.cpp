@@ -19,6 +19,13 @@ SpectrumAt MaterialCompiler::spectrum(const description::SpectrumParameter& p, S
   return at;
 }
 
+FilteredSpectrumAt MaterialCompiler::filtered_albedo(const description::SpectrumParameter& p) {
+  const FilteredSpectrumAt at{albedo(p)};
+  textures_.want_levels(at.input);
+  filtered.push_back(at.input);
+  return at;
+}
+
 SpectrumCurve MaterialCompiler::curve(const description::SpectrumValue& value) {
   return spectra_.curve(value, SpectrumRole::unbounded, description_.color_space, location_);
 }

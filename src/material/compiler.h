@@ -5,6 +5,7 @@
 #include <array>
 #include <map>
 #include <memory>
+#include <vector>
 
 #include "lanthorn/scene_description.h"
 #include "material/material.h"
@@ -32,6 +33,15 @@ struct SpectrumAt {
   Spectrum operator()(const TexturePoint& at, const Wavelengths& w) const { return textures->evaluate(input, at, w); }
 };
 
+/// A spectrum parameter at a point, averaged over its footprint (`TextureGraph::evaluate_filtered`). For parameters in
+/// which the closure is linear and on which its sampling does not depend: then neither the mean of a picture nor MIS
+/// weights depend on how far the average goes.
+struct FilteredSpectrumAt : SpectrumAt {
+  Spectrum operator()(const TexturePoint& at, const Wavelengths& w) const {
+    return textures->evaluate_filtered(input, at, w);
+  }
+};
+
 /// Data that closures point to. Shared by the materials of a scene and by edited scenes.
 struct MaterialStore {
   struct LoadedBrdf {
@@ -53,6 +63,7 @@ class MaterialCompiler {
   FloatAt number(const description::FloatParameter& p);
   SpectrumAt spectrum(const description::SpectrumParameter& p, description::SpectrumRole role);
   SpectrumAt albedo(const description::SpectrumParameter& p) { return spectrum(p, description::SpectrumRole::albedo); }
+  FilteredSpectrumAt filtered_albedo(const description::SpectrumParameter& p);
   /// A spectrum that does not depend on the place, and of which no trait follows.
   SpectrumCurve curve(const description::SpectrumValue& value);
   /// An index of refraction whose variation disperses light.
@@ -63,8 +74,9 @@ class MaterialCompiler {
 
   const SourceLocation& location() const { return location_; }
 
-  MaterialTraits traits;    ///< those that follow from the parameters compiled so far
-  bool is_constant = true;  ///< the closure depends on neither place nor, in RGB mode, wavelength
+  std::vector<SpectrumInput> filtered;  ///< parameters that may be averaged
+  MaterialTraits traits;                ///< those that follow from the parameters compiled so far
+  bool is_constant = true;              ///< the closure depends on neither place nor, in RGB mode, wavelength
 
  private:
   const SceneDescription& description_;

@@ -8,7 +8,7 @@
 namespace lanthorn {
 
 static ClosureAt closure_of(const description::DiffuseMaterial& m, MaterialCompiler& c) {
-  return [reflectance = c.albedo(m.reflectance)](const TexturePoint& at, const Wavelengths& w) -> Bsdf {
+  return [reflectance = c.filtered_albedo(m.reflectance)](const TexturePoint& at, const Wavelengths& w) -> Bsdf {
     return Diffuse{clamped_albedo(reflectance(at, w))};
   };
 }

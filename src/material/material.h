@@ -32,6 +32,7 @@ struct MaterialTraits {
   bool is_dispersive = false;                  ///< an index of refraction varies with wavelength
   bool has_tables = false;                     ///< some spectrum is tabulated, other than a metal's (see metal_rgb.h)
   bool varies = false;                         ///< depends on the place
+  bool has_levels = false;                     ///< some texture may be averaged over footprints
   bool has_relief = false;                     ///< a normal map or a displacement modifies shading normals
   bool may_be_specular = false;                ///< has delta lobes at least in some places
   bool is_hair = false;                        ///< scatters as a hair, whose width faces every ray

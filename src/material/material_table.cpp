@@ -71,10 +71,20 @@ MaterialTable::MaterialTable(const SceneDescription& description, TextureGraph& 
     materials_.push_back(make(source, compiler, textures, warnings));
   }
   textures.load_images();
+  note_levels();
   for (Relief& relief : reliefs_) {
     if (relief.normal_map && relief.displacement.node && !relief.normal_map->image.image->has_colours_of_normals())
       relief.normal_map.reset();
     relief.detail = textures.detail(relief.displacement);
+  }
+}
+
+void MaterialTable::note_levels() {
+  for (Material& m : materials_) {
+    const auto has_levels = [&](std::uint32_t part) { return materials_[part].traits.has_levels; };
+    m.traits.has_levels = std::any_of(m.filtered.begin(), m.filtered.end(),
+                                      [&](const SpectrumInput& input) { return textures_->has_levels(input); }) ||
+                          (m.mix && std::any_of(m.mix->materials.begin(), m.mix->materials.end(), has_levels));
   }
 }
 
@@ -83,6 +93,7 @@ MaterialTable::Material MaterialTable::make(const description::Material& source,
   Material material;
   material.closure = std::visit(ClosureMaker{compiler}, source.node);
   material.traits = compiler.traits;
+  material.filtered = std::move(compiler.filtered);
   material.traits.interior = source.interior;
   if (const auto* mix = std::get_if<description::MixMaterial>(&source.node)) {
     material.mix = Mix{mix->materials, compiler.number(mix->amount)};

@@ -80,10 +80,13 @@ class MaterialTable {
     ClosureAt closure;  ///< none for mixes, interfaces and materials that no shape uses
     std::optional<Mix> mix;
     std::optional<std::uint32_t> relief;  ///< into reliefs_
+    std::vector<SpectrumInput> filtered;  ///< parameters that may be averaged over footprints
     std::optional<Bsdf> constant_rgb;     ///< the closure, if it depends on neither place nor wavelength in RGB mode
     MaterialTraits traits;
   };
 
+  /// Finds out which materials have textures with coarser levels, once the images are loaded.
+  void note_levels();
   Material make(const description::Material& source, MaterialCompiler& compiler, TextureGraph& textures,
                 std::vector<description::Warning>& warnings);
   /// Traits of a mix of materials compiled before it. Removes interfaces from the mix, with a warning, and parts that

@@ -13,6 +13,9 @@ struct Ray {
   Direction direction{0, 0, 1};  ///< unit length
   float t_max = infinity;        ///< metres
   float time = 0;                ///< in the camera's shutter interval
+  /// The footprint of an eye path: at distance t it is width + t · spread metres wide across the ray. 0 if the path
+  /// must see everything in full detail.
+  float width = 0, spread = 0;
 };
 
 }  // namespace lanthorn

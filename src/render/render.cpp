@@ -131,6 +131,7 @@ bool prepare(RenderPlan& plan, const RenderJob& job, const StopRule& stop, const
   state.film.set_window(job.view.window, job.view.camera.width());
   observer.can_drop(stop.drop != nullptr);
   if (!run_unless_stopped(stop.drop, [&] { plan.integrator->prepare(job); })) return false;
+  job.scene.require_textures();
   load_integrator_state(plan);
   plan.is_prepared = true;
   keep_findings(*plan.integrator, state);
@@ -278,8 +279,10 @@ bool PassLoop::render(const Batch& batch) {
   const std::atomic<bool>* const flag = can_drop ? drop : member_ ? member_->discard() : nullptr;
   const Clock::time_point batch_start = Clock::now();
   BatchReport report;
-  if (!run_pass(flag, can_undo && stop_.undo != Undo::never, statistics_.out_of_memory,
-                [&] { report = render_batch(job_, plan_, batch); })) {
+  if (!run_pass(flag, can_undo && stop_.undo != Undo::never, statistics_.out_of_memory, [&] {
+        report = render_batch(job_, plan_, batch);
+        job_.scene.require_textures();
+      })) {
     if (is_discarded())
       state = empty_like(state);
     else

@@ -526,7 +526,7 @@ SurfaceGeometry Geometry::evaluate_other(const GeometryHit& hit, const Ray& ray)
   s.normal = unit(map.normal(DVec3(s.normal)));
   s.shading_normal = unit(map.normal(DVec3(s.shading_normal)));
   if (dot(s.normal, s.shading_normal) < 0) s.shading_normal = -s.shading_normal;
-  if (hit.record->wants_tangents)
+  if (hit.record->wants_derivatives())
     for (Vec3* v : {&s.tangent, &s.dpdu, &s.dpdv}) *v = Vec3(map.vector(DVec3(*v)));
   return s;
 }

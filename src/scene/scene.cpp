@@ -25,6 +25,12 @@ bool is_finite(const SurfaceGeometry& s) {
   return std::isfinite(sum.x + sum.y + sum.z) && std::isfinite(s.uv.x + s.uv.y);
 }
 
+// What of the surface a footprint of `width` metres across the ray covers at least.
+Footprint footprint_of(const SurfaceGeometry& s, float width) {
+  const float u = std::sqrt(length_squared(s.dpdu)), v = std::sqrt(length_squared(s.dpdv));
+  return u > 0 && v > 0 ? Footprint{{width / u, width / v}} : Footprint{};
+}
+
 }  // namespace
 
 Scene::Scene(SceneDescription description) : data_(build(std::move(description))) {}
@@ -44,7 +50,8 @@ std::optional<SurfacePoint> Scene::intersect(const Ray& ray, const Wavelengths& 
   p.media = record.media;
   p.is_interface = record.is_interface;
   if (!record.is_interface) {
-    const TexturePoint at{surface.position, surface.normal, surface.uv, surface.color};
+    TexturePoint at{surface.position, surface.normal, surface.uv, surface.color};
+    if (record.wants_footprint) at.footprint = footprint_of(surface, ray.width + ray.spread * hit->t);
     const std::uint32_t material = data_->materials.resolve(record.material, at, -ray.direction);
     const Frame shading =
         record.wants_tangents ? data_->materials.shading_frame(material, surface, at) : Frame(surface.shading_normal);
@@ -112,6 +119,8 @@ std::optional<SourceLocation> Scene::locate(const Ray& ray) const {
   return hit ? std::optional(data_->geometry.location(*hit)) : std::nullopt;
 }
 const SourceLocation& Scene::light_location(std::uint32_t light) const { return data_->light_location(light); }
+void Scene::require_textures() const { data_->textures.require_readable(); }
+TileCacheCounts Scene::texture_reads() const { return data_->textures.reads(); }
 const SceneStatistics& Scene::statistics() const { return data_->statistics; }
 const std::vector<description::Warning>& Scene::warnings() const { return data_->description.warnings; }
 const SceneDescription& Scene::description() const { return data_->description; }

@@ -27,6 +27,7 @@ struct SceneStatistics {
   std::uint64_t instances = 0;
   std::uint64_t materials = 0, textures = 0, lights = 0;
   std::uint64_t geometry_bytes = 0, bvh_bytes = 0, texture_bytes = 0;
+  std::uint64_t texture_disk_bytes = 0;  ///< of tiles of textures that do not fit into memory
   double build_seconds = 0;
 };
 
@@ -100,6 +101,10 @@ class Scene {
   /// surfaces are small.
   std::vector<Obstacle> obstacles() const;
   const SceneStatistics& statistics() const;
+  /// Throws Error if a texture on disk could not be read since the scene was built: then pictures are wrong.
+  void require_textures() const;
+  /// What has been read of textures on disk since the scene was built.
+  TileCacheCounts texture_reads() const;
   /// Location in the scene file of the nearest surface along the ray; nullopt if there is none.
   std::optional<SourceLocation> locate(const Ray& ray) const;
   /// Location in the scene file of the light with this index.

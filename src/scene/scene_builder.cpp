@@ -93,7 +93,6 @@ class SceneBuilder {
 void SceneBuilder::build() {
   const auto started = std::chrono::steady_clock::now();
   check_displacements();
-  require_geometry_memory(data_.description);
   load_textures_of_shapes();
   data_.media = std::make_shared<const std::vector<Medium>>(make_media(data_.description, *data_.spectra));
   data_.has_emissive =
@@ -105,6 +104,7 @@ void SceneBuilder::build() {
   data_.geometry.commit();
   data_.sphere = bounding_sphere(data_.geometry.bounds());
   add_lights();
+  data_.textures.require_readable();
   count();
   data_.statistics.build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
 }
@@ -136,6 +136,7 @@ std::unique_ptr<ShapeStore> SceneBuilder::store(description::Shape& shape, const
     curves->kind = description::CurveKind::flat;
   std::unique_ptr<ShapeStore> stored = make_shape_store(shape, to_space);
   stored->record.wants_tangents = traits.is_anisotropic || traits.has_relief;
+  stored->record.wants_footprint = traits.has_levels;
   stored->record.is_interface = traits.is_interface;
   const std::optional<description::Index>& interior = traits.interior;
   stored->record.media = {medium_id(interior ? interior : shape.inside_medium), medium_id(shape.outside_medium)};
@@ -410,6 +411,7 @@ void SceneBuilder::count() {
   data_.statistics.geometry_bytes = data_.geometry.bytes();
   data_.statistics.bvh_bytes = data_.geometry.bvh_bytes();
   data_.statistics.texture_bytes = data_.textures.bytes();
+  data_.statistics.texture_disk_bytes = data_.textures.disk_bytes();
 }
 
 }  // namespace
@@ -422,6 +424,7 @@ SceneData::SceneData(SceneDescription&& source, const SceneData* loaded, Geometr
       geometry(std::move(own_geometry)) {}
 
 std::shared_ptr<const SceneData> build(SceneDescription&& description, const SceneData* like) {
+  require_scene_memory(description);  // before images are read
   const description::Camera& camera = description.view.camera;
   Geometry geometry(camera.shutter_open, camera.shutter_close);
   const auto data = std::make_shared<SceneData>(std::move(description), like, std::move(geometry));

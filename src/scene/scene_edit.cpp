@@ -79,6 +79,7 @@ class SceneEditor {
     update_lights();
     data_->statistics = base_->statistics;
     data_->statistics.texture_bytes = data_->textures.bytes();
+    data_->statistics.texture_disk_bytes = data_->textures.disk_bytes();
     data_->statistics.bvh_bytes = data_->geometry.bvh_bytes();
     data_->statistics.build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
     return data_;
@@ -109,6 +110,7 @@ class SceneEditor {
                     "this edit would change where surfaces and media are (an interface, a medium inside, or hair): "
                     "build the scene again");
       record.wants_tangents = now.is_anisotropic || now.has_relief;
+      record.wants_footprint = now.has_levels;
       record.wants_uv = record.wants_uv || now.varies || now.has_relief;
       data_->has_measured_spectra = data_->has_measured_spectra || now.has_tables || now.is_dispersive;
       data_->has_dispersion = data_->has_dispersion || now.is_dispersive;

@@ -8,19 +8,25 @@
 
 namespace lanthorn {
 
-/// What the meshes of a scene will take.
+/// What the shapes of a scene will take.
 struct SceneMemory {
   std::uint64_t triangles = 0;  ///< patches count as two
-  double geometry = 0;          ///< bytes of meshes as rays use them
+  std::uint64_t curves = 0;     ///< segments, each of the pieces that ribbons are cut into
+  double geometry = 0;          ///< bytes of shapes as rays use them
   double trees = 0;             ///< bytes of Embree's trees
   double building = 0;          ///< bytes beside these while the largest tree is built
 };
 
-/// Counts meshes as they are described: what displacement and subdivision add is not known before they are made. An
-/// object counts once, however many instances it has.
+/// Counts meshes and curves as they are described: what displacement and subdivision add is not known before they are
+/// made. An object counts once, however many instances it has.
 SceneMemory expected_memory(const SceneDescription& scene);
 
-/// Throws Error, with the bytes needed and those available, if the scene's geometry does not fit into memory.
-void require_geometry_memory(const SceneDescription& scene);
+/// Bytes of the images of all textures, by the headers of their files. Images that cannot be read count nothing.
+std::uint64_t expected_texture_memory(const SceneDescription& scene);
+
+/// Throws Error, with the bytes needed and those available, if the scene's geometry and its textures, of which no more
+/// than `scene.access.texture_memory` are in memory, do not fit. If that is not given, sets it to half of what the
+/// geometry leaves. To be called before any image is read.
+void require_scene_memory(SceneDescription& scene);
 
 }  // namespace lanthorn

@@ -60,6 +60,8 @@ SceneSummary summarize(const Scene& scene) {
                        .geometry_bytes = s.geometry_bytes,
                        .bvh_bytes = s.bvh_bytes,
                        .texture_bytes = s.texture_bytes,
+                       .texture_disk_bytes = s.texture_disk_bytes,
+                       .texture_tiles_read = scene.texture_reads().tiles_read,
                        .build_seconds = s.build_seconds,
                        .has_dispersion = scene.has_dispersion(),
                        .has_measured_spectra = scene.has_measured_spectra(),

@@ -8,6 +8,7 @@
 
 #include "scene/geometry.h"
 #include "shape/curves.h"
+#include "shape/triangle_memory.h"
 
 namespace lanthorn {
 
@@ -167,7 +168,6 @@ void take(ShapeStore& store, description::Curves& curves, const Transform& t, bo
   check_curves(curves, location);
   store.curves = transformed(std::move(curves), t);
   // Embree connects a ribbon's edges from its ends; over a long turn they come too close to each other.
-  constexpr std::uint32_t ribbon_pieces = 4;
   if (store.curves.kind == description::CurveKind::ribbon) store.curves = cut(store.curves, ribbon_pieces);
   for (const glm::vec4& p : store.curves.points)
     if (!std::isfinite(p.x + p.y + p.z + p.w)) throw Error(location, "the curve has a point that is not finite");
@@ -196,7 +196,7 @@ SurfaceGeometry evaluate_quadric(const GeometryRecord& record, const DVec3& near
   s.normal = Normal(record.flip_normal ? -q.normal : q.normal);
   s.shading_normal = s.normal;
   if (record.wants_uv) s.uv = evaluate_uv(*record.quadric, near);
-  if (record.wants_tangents) {
+  if (record.wants_derivatives()) {
     const QuadricTangents t = evaluate_tangents(*record.quadric, near);
     s.tangent = Vec3(t.around);
     s.dpdu = Vec3(t.dpdu);
@@ -213,7 +213,7 @@ SurfaceGeometry evaluate_curve(const GeometryRecord& record, const PrimitiveHit&
   s.error += static_cast<float>(c.error) * abs(s.normal);
   s.shading_normal = s.normal;
   s.uv = c.uv;
-  if (record.wants_tangents) {
+  if (record.wants_derivatives()) {
     s.dpdu = Vec3(c.dpdu);
     s.dpdv = Vec3(c.dpdv);
     s.tangent = s.dpdu;
@@ -269,7 +269,7 @@ SurfaceGeometry evaluate_patch(const GeometryRecord& record, std::uint32_t primi
     }
   }
   s.uv = record.has_uvs ? bilinear(at_corners(&Vertex::uv), u, v) : Vec2(u, v);
-  if (record.wants_tangents) {
+  if (record.wants_derivatives()) {
     if (record.has_uvs) {
       set_derivatives(s, dpdu, dpdv, at_corners(&Vertex::uv), u, v);
     } else {

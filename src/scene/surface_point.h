@@ -83,6 +83,7 @@ inline void leave_surface(const SurfacePoint& at, const Direction& direction, Ra
   ray.direction = direction;
   ray.t_max = infinity;
   ray.time = at.time;
+  ray.width = ray.spread = 0;
 }
 /// A ray that leaves the surface.
 inline Ray spawn_ray(const SurfacePoint& at, const Direction& direction) {

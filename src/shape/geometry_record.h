@@ -54,8 +54,9 @@ struct alignas(64) GeometryRecord {
   Kind kind = Kind::triangles;
   bool flip_normal = false;  ///< outside is opposite to the normal of the winding or the parametrisation
   bool emits = false;
-  bool wants_tangents = false;  ///< the material is anisotropic or has a relief
-  bool wants_uv = false;        ///< something depends on the place; cheap texture coordinates are there anyway
+  bool wants_tangents = false;   ///< the material is anisotropic or has a relief
+  bool wants_footprint = false;  ///< the material averages textures over footprints
+  bool wants_uv = false;         ///< something depends on the place; cheap texture coordinates are there anyway
   bool has_normals = false;
   bool has_uvs = false;
   bool has_colors = false;
@@ -64,6 +65,7 @@ struct alignas(64) GeometryRecord {
   bool is_interface = false;  ///< no surface, only an interface between media
   MediumInterface media;
 
+  bool wants_derivatives() const { return wants_tangents || wants_footprint; }
   bool has_vertices() const { return has_normals || has_uvs; }
   const Point& position(std::uint32_t corner) const {
     return has_vertices() ? vertices[corner].position : positions[corner];
@@ -79,7 +81,7 @@ struct SurfaceGeometry {
   Normal shading_normal{0};
   Vec2 uv{0};          ///< of quadrics only if the record wants them
   glm::vec4 color{1};  ///< of the mesh's vertices
-  // 0 unless the record wants tangents.
+  // 0 unless the record wants derivatives.
   Vec3 tangent{0};        ///< desired direction of the shading frame's s: the mesh's tangent, or dp/du
   Vec3 dpdu{0}, dpdv{0};  ///< 0 where the parametrisation is degenerate
 };

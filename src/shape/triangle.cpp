@@ -52,7 +52,7 @@ SurfaceGeometry evaluate_attributed_triangle(const GeometryRecord& record, std::
   s.uv = record.has_uvs ? b0 * record.vertices[corners[0]].uv + u * record.vertices[corners[1]].uv +
                               v * record.vertices[corners[2]].uv
                         : detail::default_uv(record, primitive, u, v);
-  if (record.wants_tangents) {
+  if (record.wants_derivatives()) {
     const std::array<Point, 3> p = corners_of(record, primitive);
     set_derivatives(s, p[1] - p[0], p[2] - p[0], triangle_uvs(record, primitive, corners));
     s.tangent = record.tangents != nullptr ? b0 * record.tangents[corners[0]] + u * record.tangents[corners[1]] +

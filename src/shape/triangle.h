@@ -85,12 +85,12 @@ inline SurfaceGeometry evaluate_plain(const GeometryRecord& record, std::uint32_
 
 }  // namespace detail
 
-/// Of meshes with something at their corners, or whose tangents are wanted.
+/// Of meshes with something at their corners, or whose derivatives are wanted.
 SurfaceGeometry evaluate_attributed_triangle(const GeometryRecord& record, std::uint32_t primitive, float u, float v);
 
 /// u and v are the barycentric weights of the second and third corner.
 inline SurfaceGeometry evaluate_triangle(const GeometryRecord& record, std::uint32_t primitive, float u, float v) {
-  if (record.has_vertices() || record.has_colors || record.wants_tangents)
+  if (record.has_vertices() || record.has_colors || record.wants_derivatives())
     return evaluate_attributed_triangle(record, primitive, u, v);
   return detail::evaluate_plain(record, primitive, u, v);
 }

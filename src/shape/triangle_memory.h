@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Memory that triangles of a scene take, known before it is allocated.
+// Memory that triangles and curves of a scene take, known before it is allocated.
 #pragma once
 
 #include <cstdint>
@@ -13,6 +13,11 @@ namespace lanthorn {
 /// Bytes of Embree's tree for each triangle, and bytes beside them while it is built. Measured on height fields of one
 /// and four million triangles with Embree 3.13 (docs/performance.md, "Memory of geometry").
 constexpr double tree_bytes_per_triangle = 66, building_bytes_per_triangle = 44;
+
+/// The same of curves: for each segment, of ribbons for each of the pieces that a segment is cut into (200,000 curves
+/// of each kind).
+constexpr double tree_bytes_per_curve = 116, tree_bytes_per_ribbon_piece = 47, building_bytes_per_curve = 45;
+constexpr std::uint32_t ribbon_pieces = 4;
 
 /// Bytes of a mesh as rays use it, without its tree. Meshes without normals and uvs keep positions and the triangles
 /// themselves, others keep vertices with all attributes.

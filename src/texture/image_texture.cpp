@@ -4,36 +4,21 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string_view>
+#include <cstring>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "base/memory.h"
-#include "film/display.h"
-#include "image/image_file.h"
-#include "lanthorn/text.h"
-#include "spectrum/curve.h"
 
 namespace lanthorn {
 
 namespace {
 
-using description::Encoding;
 using description::ImageFilter;
 using description::Wrap;
 
-float decode(float x, Encoding encoding, float gamma) {
-  switch (encoding) {
-    case Encoding::srgb:
-      return linear_from_srgb(x);
-    case Encoding::gamma:
-      return std::pow(x, gamma);
-    default:
-      return x;
-  }
-}
-
-struct Texel {
+struct WrappedTexel {
   bool inside = true;
   int column = 0, row = 0;
 };
@@ -50,7 +35,7 @@ int mirrored(int i, int size) {
 
 // Wraps texel indices of an octahedral map. The square folds along its edges: a texel beyond an edge is the texel of
 // the other half of the same edge (Clarberg 2008).
-Texel octahedral_texel(int column, int row, int width, int height) {
+WrappedTexel octahedral_texel(int column, int row, int width, int height) {
   int x = modulo(column, 2 * width), y = row;
   if (x >= width) {
     x = 2 * width - 1 - x;
@@ -81,7 +66,7 @@ TexelIndex wrapped(int i, int size, Wrap wrap) {
   }
 }
 
-Texel wrapped(int column, int row, int width, int height, const WrapModes& wrap) {
+WrappedTexel wrapped(int column, int row, int width, int height, const WrapModes& wrap) {
   if (wrap.s == Wrap::octahedral_sphere) return octahedral_texel(column, row, width, height);
   const TexelIndex x = wrapped(column, width, wrap.s), y = wrapped(row, height, wrap.t);
   return {x.inside && y.inside, x.at, y.at};
@@ -95,54 +80,111 @@ float tame(float x, int size, Wrap wrap) {
   return std::clamp(x, -1.0f, 2.0f) * static_cast<float>(size);
 }
 
-// 8-bit files, and PNG of any depth, hold sRGB values; all other files are linear.
-Encoding automatic_encoding(bool is_8_bit, bool is_integer, std::string_view format) {
-  return is_8_bit || (is_integer && format == "png") ? Encoding::srgb : Encoding::linear;
+// The levels that an image gets.
+int levels_for(const TextureFormat& format, const ImageWish& wish) {
+  const std::size_t texels = static_cast<std::size_t>(format.width) * static_cast<std::size_t>(format.height);
+  return wish.levels && texels >= least_texels_with_levels ? all_levels_of(format) : 1;
+}
+
+bool is_opaque_row(const TextureFormat& format, const std::byte* row) {
+  const auto width = static_cast<std::size_t>(format.width);
+  for (std::size_t x = 0; x < width; ++x) {
+    float alpha = 1;
+    if (format.is_8_bit)
+      alpha = static_cast<float>(row[4 * x + 3]) / 255.0f;
+    else
+      std::memcpy(&alpha, row + (4 * x + 3) * sizeof alpha, sizeof alpha);
+    if (alpha != 1.0f) return false;
+  }
+  return true;
+}
+
+template <class Texel>
+Rgb colour_of(const Texel& texel, int channels) {
+  const float first = texel[0];
+  if (channels == 1) return {first, first, first};
+  return {first, texel[1], texel[2]};
+}
+
+template <class Texel>
+float scalar_of(const Texel& texel, int channels, std::optional<int> channel) {
+  if (channel == alpha_channel) return channels == 4 ? texel[3] : 1.0f;
+  if (channel) return texel[channels == 1 ? 0 : *channel];
+  switch (channels) {
+    case 1:
+      return texel[0];
+    case 3:
+      return (texel[0] + texel[1] + texel[2]) / 3.0f;
+    default:
+      return texel[3];
+  }
 }
 
 }  // namespace
 
-TextureImage::TextureImage(const ImageSource& source, const FileAccess& access, Encoding encoding, float gamma,
-                           ColorSpace space, const SourceLocation& location) {
-  const std::string what = "image \"" + printable(source.name()) + "\"";
-  std::string read;
-  try {
-    if (source.bytes() == nullptr) read = access.read(source.name());
-  } catch (const Error& problem) {
-    throw Error(location, "cannot read " + what + ": " + problem.message);
-  }
-  const std::string& bytes = source.bytes() != nullptr ? *source.bytes() : read;
-  ImageFile file(bytes, what, location, access.max_pixels);
-  const ImageHeader& header = file.header();
-  width_ = header.width;
-  height_ = header.height;
-  channels_ = header.channels.size() >= 4 ? 4 : header.channels.size() >= 3 ? 3 : 1;
-  const bool is_8_bit = header.samples == SampleType::uint8;
-  const bool is_integer = is_8_bit || header.samples == SampleType::uint16;
-  if (encoding == Encoding::automatic) encoding = automatic_encoding(is_8_bit, is_integer, file.format());
-
-  const std::size_t count =
-      static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_) * static_cast<std::size_t>(channels_);
-  require_memory(static_cast<double>(count) * (is_8_bit ? sizeof(std::uint8_t) : sizeof(float)), location, what);
-  if (is_8_bit) {
-    bytes_.resize(count);
-    for (unsigned i = 0; i < 256; ++i) decode_[i] = decode(static_cast<float>(i) / 255.0f, encoding, gamma);
-    file.read(channels_, bytes_.data());
-  } else {
-    floats_.resize(count);
-    file.read(channels_, floats_.data());
-    if (is_integer)
-      for (std::size_t i = 0; i < count; ++i)
-        if (channels_ < 4 || i % 4 != 3) floats_[i] = decode(floats_[i], encoding, gamma);
-  }
-  if (channels_ == 4) drop_opaque_alpha();
-  if (space != ColorSpace::srgb && channels_ >= 3) convert_from(space);
+TextureImage::TextureImage(const Rgb& color) : channels_(3), floats_{color.r, color.g, color.b} {
+  format_.width = format_.height = 1;
+  format_.channels = 3;
 }
 
-void TextureImage::drop_opaque_alpha() {
-  const std::size_t texels = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
-  for (std::size_t i = 0; i < texels; ++i)
-    if (value(i, 3) != 1.0f) return;
+TextureImage::Need TextureImage::need(const ImageSource& source, const FileAccess& access, const ImageWish& wish,
+                                      const SourceLocation& location) {
+  const TextureFormat format = TexelReader(source, access, wish.colours, false, location).format();
+  const int levels = levels_for(format, wish);
+  return {texels_of_levels(format.width, format.height, levels) * format.texel_bytes(),
+          TextureCache::disk_bytes(format, levels)};
+}
+
+TextureImage::TextureImage(const ImageSource& source, const FileAccess& access, const ImageWish& wish,
+                           const SourceLocation& location) {
+  TexelReader reader(source, access, wish.colours, true, location);
+  format_ = reader.format();
+  channels_ = format_.channels;
+  const auto stride = static_cast<std::size_t>(channels_);
+  const int levels = levels_for(format_, wish);
+  const std::size_t all = texels_of_levels(width(), height(), levels) * stride,
+                    count = texels_of_levels(width(), height(), 1) * stride;
+  require_memory(static_cast<double>(all) * (format_.is_8_bit ? 1 : sizeof(float)), location, reader.what());
+  if (format_.is_8_bit) {
+    bytes_.reserve(all);
+    bytes_.resize(count);
+    reader.read(reinterpret_cast<std::byte*>(bytes_.data()));
+  } else {
+    floats_.reserve(all);
+    floats_.resize(count);
+    reader.read(reinterpret_cast<std::byte*>(floats_.data()));
+  }
+  if (channels_ == 4 && is_opaque()) drop_alpha();
+  levels_ = levels;
+  if (levels_ > 1) make_levels();
+}
+
+TextureImage::TextureImage(const ImageSource& source, const FileAccess& access, const ImageWish& wish,
+                           const SourceLocation& location, std::shared_ptr<TextureCache> cache)
+    : cache_(std::move(cache)) {
+  TexelReader reader(source, access, wish.colours, false, location);
+  format_ = reader.format();
+  levels_ = levels_for(format_, wish);
+  bool is_opaque = true;
+  cached_ = &cache_->add(
+      reader, levels_,
+      [&](const std::byte* row) {
+        if (format_.channels == 4) is_opaque = is_opaque && is_opaque_row(format_, row);
+      },
+      location);
+  channels_ = format_.channels == 4 && is_opaque ? 3 : format_.channels;
+}
+
+bool TextureImage::is_opaque() const {
+  const auto* const texels = format_.is_8_bit ? reinterpret_cast<const std::byte*>(bytes_.data())
+                                              : reinterpret_cast<const std::byte*>(floats_.data());
+  for (int y = 0; y < height(); ++y)
+    if (!is_opaque_row(format_, texels + static_cast<std::size_t>(y) * format_.row_bytes())) return false;
+  return true;
+}
+
+void TextureImage::drop_alpha() {
+  const std::size_t texels = static_cast<std::size_t>(width()) * static_cast<std::size_t>(height());
   const auto drop = [&](auto& values) {
     if (values.empty()) return;
     for (std::size_t i = 0; i < texels; ++i)
@@ -152,65 +194,101 @@ void TextureImage::drop_opaque_alpha() {
   };
   drop(bytes_);
   drop(floats_);
-  channels_ = 3;
+  channels_ = format_.channels = 3;
 }
 
-void TextureImage::convert_from(ColorSpace space) {
-  const std::size_t texels = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
+void TextureImage::make_levels() {
   const auto stride = static_cast<std::size_t>(channels_);
-  std::vector<float> converted(texels * stride);
-  for (std::size_t i = 0; i < texels; ++i) {
-    const Rgb there{std::fmax(0.0f, value(i, 0)), std::fmax(0.0f, value(i, 1)), std::fmax(0.0f, value(i, 2))};
-    const Rgb here = SpectrumCurve::unbounded(there, space).rgb;
-    converted[i * stride] = here.r;
-    converted[i * stride + 1] = here.g;
-    converted[i * stride + 2] = here.b;
-    if (channels_ == 4) converted[i * stride + 3] = value(i, 3);
+  std::size_t texels = 0;
+  for (int level = 0; level < levels_; ++level) {
+    level_begins_.push_back(texels);
+    texels +=
+        static_cast<std::size_t>(level_size(width(), level)) * static_cast<std::size_t>(level_size(height(), level));
   }
-  floats_ = std::move(converted);
-  bytes_.clear();
-  bytes_.shrink_to_fit();
+  const auto make = [&](auto& values) {
+    values.resize(texels * stride);
+    auto* const all = reinterpret_cast<std::byte*>(values.data());
+    LevelMaker maker(format_, levels_, [&](int level, int y, const std::byte* row) {
+      if (level > 0)
+        std::memcpy(all + index_of({0, y}, level) * format_.texel_bytes(), row,
+                    static_cast<std::size_t>(level_size(width(), level)) * format_.texel_bytes());
+    });
+    for (int y = 0; y < height(); ++y) maker.add(all + static_cast<std::size_t>(y) * format_.row_bytes());
+  };
+  if (format_.is_8_bit)
+    make(bytes_);
+  else
+    make(floats_);
 }
 
-TextureImage::Taps TextureImage::taps(const Vec2& st, const WrapModes& wrap, ImageFilter filter) const {
-  // Texel centres lie at half-integers; t runs upwards, rows downwards.
-  const float x = tame(st.x, width_, wrap.s) - 0.5f;
-  const float y = tame(1 - st.y, height_, wrap.t) - 0.5f;
-  const auto tap = [&](int column, int row, float weight, std::size_t& texel) {
-    const Texel t = wrapped(column, row, width_, height_, wrap);
-    texel = static_cast<std::size_t>(t.row) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(t.column);
+TextureImage::Taps TextureImage::taps(const Vec2& st, const WrapModes& wrap, ImageFilter filter, int level) const {
+  // Texel centres lie at half-integers; t runs upwards, rows downwards. A texel of a level covers 2^level texels of the
+  // image along each axis.
+  const float scale = std::ldexp(1.0f, -level);
+  const float x = scale * tame(st.x, width(), wrap.s) - 0.5f;
+  const float y = scale * tame(1 - st.y, height(), wrap.t) - 0.5f;
+  const int columns = level_size(width(), level), rows = level_size(height(), level);
+  const auto tap = [&](int column, int row, float weight, TexelPlace& place) {
+    const WrappedTexel t = wrapped(column, row, columns, rows, wrap);
+    place = {t.column, t.row};
     return t.inside ? weight : 0.0f;
   };
   Taps taps;
   if (filter == ImageFilter::point) {
     const auto column = static_cast<int>(std::floor(x + 0.5f)), row = static_cast<int>(std::floor(y + 0.5f));
-    taps.weight[0] = tap(column, row, 1.0f, taps.texel[0]);
+    taps.weight[0] = tap(column, row, 1.0f, taps.place[0]);
     return taps;
   }
   const float left = std::floor(x), top = std::floor(y);
   const float dx = x - left, dy = y - top;
   const int column = static_cast<int>(left), row = static_cast<int>(top);
-  taps.weight[0] = tap(column, row, (1 - dx) * (1 - dy), taps.texel[0]);
-  taps.weight[1] = tap(column + 1, row, dx * (1 - dy), taps.texel[1]);
-  taps.weight[2] = tap(column, row + 1, (1 - dx) * dy, taps.texel[2]);
-  taps.weight[3] = tap(column + 1, row + 1, dx * dy, taps.texel[3]);
+  taps.weight[0] = tap(column, row, (1 - dx) * (1 - dy), taps.place[0]);
+  taps.weight[1] = tap(column + 1, row, dx * (1 - dy), taps.place[1]);
+  taps.weight[2] = tap(column, row + 1, (1 - dx) * dy, taps.place[2]);
+  taps.weight[3] = tap(column + 1, row + 1, dx * dy, taps.place[3]);
   return taps;
 }
 
-Rgb TextureImage::colour(std::size_t texel) const {
-  const float first = value(texel, 0);
-  if (channels_ == 1) return {first, first, first};
-  return {first, value(texel, 1), value(texel, 2)};
+template <class Sum, class Value>
+Sum TextureImage::interpolated(const Taps& taps, int level, const Value& value) const {
+  Sum sum{};
+  const auto add = [&](const auto* samples, const auto& sample_of) {
+    for (unsigned i = 0; i < 4; ++i)
+      if (taps.weight[i] != 0)
+        sum += taps.weight[i] * value(Texel<std::decay_t<decltype(*samples)>>{samples + sample_of(i), *this});
+  };
+  const auto stride = static_cast<std::size_t>(format_.channels);
+  const auto in_memory = [&](unsigned i) { return index_of(taps.place[i], level) * stride; };
+  if (cached_ == nullptr) {
+    if (!floats_.empty())
+      add(floats_.data(), in_memory);
+    else
+      add(bytes_.data(), in_memory);
+    return sum;
+  }
+  alignas(float) std::array<std::byte, 4 * 4 * sizeof(float)> texels;
+  const std::size_t count = taps.weight[1] == 0 && taps.weight[2] == 0 && taps.weight[3] == 0 ? 1 : 4;
+  cache_->read(*cached_, level, {taps.place.data(), count}, texels.data());
+  const auto copied = [&](unsigned i) { return i * stride; };
+  if (format_.is_8_bit)
+    add(reinterpret_cast<const std::uint8_t*>(texels.data()), copied);
+  else
+    add(reinterpret_cast<const float*>(texels.data()), copied);
+  return sum;
 }
 
 Rgb TextureImage::texel(int x, int y) const {
-  return colour(static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x));
+  Taps one;
+  one.place[0] = {x, y};
+  one.weight[0] = 1;
+  return interpolated<Rgb>(one, 0, [this](const auto& texel) { return colour_of(texel, channels_); });
 }
 
 LightTexels TextureImage::take_colours() && {
-  if (floats_.empty()) return {std::move(bytes_), static_cast<std::size_t>(channels_), decode_};
+  if (floats_.empty()) return {std::move(bytes_), static_cast<std::size_t>(channels_), format_.decode};
   std::vector<Rgb> colours(floats_.size() / static_cast<std::size_t>(channels_));
-  for (std::size_t i = 0; i < colours.size(); ++i) colours[i] = colour(i);
+  for (std::size_t i = 0; i < colours.size(); ++i)
+    colours[i] = colour_of(Texel<float>{floats_.data() + i * static_cast<std::size_t>(channels_), *this}, channels_);
   floats_ = {};
   return colours;
 }
@@ -220,40 +298,21 @@ bool TextureImage::has_colours_of_normals() const {
   constexpr int samples = 64;
   Rgb mean;
   for (int i = 0; i < samples; ++i)
-    for (int k = 0; k < samples; ++k) mean += texel(i * width_ / samples, k * height_ / samples);
+    for (int k = 0; k < samples; ++k) mean += texel(i * width() / samples, k * height() / samples);
   mean = (1.0f / sqr(samples)) * mean;
   const auto is_middle = [](float x) { return x > 0.35f && x < 0.65f; };
   return is_middle(mean.r) && is_middle(mean.g) && mean.b > std::max(mean.r, mean.g) + 0.1f;
 }
 
-Rgb TextureImage::rgb(const Vec2& st, const WrapModes& wrap, ImageFilter filter) const {
-  const Taps t = taps(st, wrap, filter);
-  Rgb sum;
-  for (unsigned i = 0; i < 4; ++i)
-    if (t.weight[i] != 0) sum += t.weight[i] * colour(t.texel[i]);
-  return sum;
-}
-
-float TextureImage::scalar(std::size_t texel, std::optional<int> channel) const {
-  if (channel == alpha_channel) return has_alpha() ? value(texel, 3) : 1.0f;
-  if (channel) return value(texel, channels_ == 1 ? 0 : *channel);
-  switch (channels_) {
-    case 1:
-      return value(texel, 0);
-    case 3:
-      return (value(texel, 0) + value(texel, 1) + value(texel, 2)) / 3.0f;
-    default:
-      return value(texel, 3);
-  }
+Rgb TextureImage::rgb(const Vec2& st, const WrapModes& wrap, ImageFilter filter, int level) const {
+  return interpolated<Rgb>(taps(st, wrap, filter, level), level,
+                           [this](const auto& texel) { return colour_of(texel, channels_); });
 }
 
 float TextureImage::scalar(const Vec2& st, const WrapModes& wrap, ImageFilter filter,
                            std::optional<int> channel) const {
-  const Taps t = taps(st, wrap, filter);
-  float sum = 0;
-  for (unsigned i = 0; i < 4; ++i)
-    if (t.weight[i] != 0) sum += t.weight[i] * scalar(t.texel[i], channel);
-  return sum;
+  return interpolated<float>(taps(st, wrap, filter, 0), 0,
+                             [this, channel](const auto& texel) { return scalar_of(texel, channels_, channel); });
 }
 
 }  // namespace lanthorn

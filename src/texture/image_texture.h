@@ -5,8 +5,9 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
-#include <string>
+#include <type_traits>
 #include <vector>
 
 #include "lanthorn/error.h"
@@ -15,23 +16,11 @@
 #include "light/light_texels.h"
 #include "math/vec.h"
 #include "spectrum/spectrum.h"
+#include "texture/texel_reader.h"
+#include "texture/texture_cache.h"
+#include "texture/texture_format.h"
 
 namespace lanthorn {
-
-/// Location of an image file's bytes: on disk, or embedded in the scene file. Refers to its argument.
-class ImageSource {
- public:
-  ImageSource(const std::string& filename) : name_(&filename) {}
-  ImageSource(const description::EmbeddedImage& image) : name_(&image.name), bytes_(&image.bytes) {}
-
-  const std::string& name() const { return *name_; }
-  /// Null for a file on disk.
-  const std::string* bytes() const { return bytes_; }
-
- private:
-  const std::string* name_;
-  const std::string* bytes_ = nullptr;
-};
 
 /// How texture coordinates beyond the image are taken back into it. octahedral_sphere concerns both axes.
 struct WrapModes {
@@ -44,19 +33,40 @@ struct WrapModes {
 
 inline constexpr int alpha_channel = 3;
 
-/// Texels of an image file, decoded once: 8-bit files stay bytes with a look-up table; all others become linear floats.
+/// What of an image is wanted.
+struct ImageWish {
+  TexelColours colours;
+  bool levels = false;  ///< coarser ones, if the image is large
+};
+
+/// Images of at least this many texels have coarser levels where they are wanted: smaller ones fit into memory, and
+/// mostly into the processor's caches, as they are.
+inline constexpr std::size_t least_texels_with_levels = std::size_t{1} << 22;
+
+/// Texels of an image file: 8-bit files stay bytes with a look-up table; all others become linear floats. They are in
+/// memory, or in tiles on disk; values are the same.
 class TextureImage {
  public:
   /// Without texels: must not be looked up.
   TextureImage() = default;
   /// One texel of three channels, in place of a file that is missing.
-  explicit TextureImage(const Rgb& color) : width_(1), height_(1), channels_(3), floats_{color.r, color.g, color.b} {}
-  /// Reads the file, subject to `access`. Throws Error with `location` on failure.
-  TextureImage(const ImageSource& source, const FileAccess& access, description::Encoding encoding, float gamma,
-               ColorSpace space, const SourceLocation& location);
+  explicit TextureImage(const Rgb& color);
+  /// Reads the file into memory, subject to `access`. Throws Error with `location` on failure.
+  TextureImage(const ImageSource& source, const FileAccess& access, const ImageWish& wish,
+               const SourceLocation& location);
+  /// The same, into tiles of `cache`.
+  TextureImage(const ImageSource& source, const FileAccess& access, const ImageWish& wish,
+               const SourceLocation& location, std::shared_ptr<TextureCache> cache);
 
-  /// Value at texture coordinates (s, t), t upwards: the nearest texel, or bilinear interpolation of four.
-  Rgb rgb(const Vec2& st, const WrapModes& wrap, description::ImageFilter filter) const;
+  /// What an image takes, from the header of its file.
+  struct Need {
+    std::uint64_t memory = 0, disk = 0;  ///< bytes, if kept in memory, or in tiles
+  };
+  static Need need(const ImageSource& source, const FileAccess& access, const ImageWish& wish,
+                   const SourceLocation& location);
+
+  /// Value at texture coordinates (s, t), t upwards: the nearest texel of a level, or bilinear interpolation of four.
+  Rgb rgb(const Vec2& st, const WrapModes& wrap, description::ImageFilter filter, int level = 0) const;
   /// Scalar value: `channel` (see description::ImageTexture) if given; else the only channel, the alpha channel if it
   /// is not 1 everywhere, or the mean of three channels.
   float scalar(const Vec2& st, const WrapModes& wrap, description::ImageFilter filter,
@@ -65,37 +75,59 @@ class TextureImage {
   /// Colour of one texel; row 0 is the top.
   Rgb texel(int x, int y) const;
 
-  /// The colours of all texels. Nothing is left.
+  /// The colours of all texels, which are in memory. Nothing is left.
   LightTexels take_colours() &&;
 
-  int width() const { return width_; }
-  int height() const { return height_; }
+  int width() const { return format_.width; }
+  int height() const { return format_.height; }
+  int levels() const { return levels_; }
   bool has_colour() const { return channels_ >= 3; }
   bool has_alpha() const { return channels_ == 4; }  ///< other than 1 somewhere
+  bool is_cached() const { return cached_ != nullptr; }
   /// True for colours as normal maps have them: red and green about .5 in the mean, blue above them.
   bool has_colours_of_normals() const;
+  /// In memory.
   std::size_t bytes() const { return bytes_.size() + floats_.size() * sizeof(float); }
 
  private:
   struct Taps {
-    std::array<std::size_t, 4> texel{};
+    std::array<TexelPlace, 4> place{};
     std::array<float, 4> weight{};  // 0 for texels outside with Wrap::black
   };
-  Taps taps(const Vec2& st, const WrapModes& wrap, description::ImageFilter filter) const;
-  float value(std::size_t texel, int channel) const {
-    const std::size_t i = texel * static_cast<std::size_t>(channels_) + static_cast<std::size_t>(channel);
-    if (!floats_.empty()) return floats_[i];
-    return channel == 3 ? static_cast<float>(bytes_[i]) / 255.0f : decode_[bytes_[i]];
+  /// A texel's stored samples.
+  template <class Sample>
+  struct Texel {
+    const Sample* samples;
+    const TextureImage& image;
+    float operator[](int channel) const {
+      if constexpr (std::is_same_v<Sample, float>)
+        return samples[channel];
+      else
+        return image.format_.value_8_bit(samples[channel], channel);
+    }
+  };
+  Taps taps(const Vec2& st, const WrapModes& wrap, description::ImageFilter filter, int level) const;
+  // The sum over the taps of weight * value(texel).
+  template <class Sum, class Value>
+  Sum interpolated(const Taps& taps, int level, const Value& value) const;
+  std::size_t index_of(const TexelPlace& place, int level) const {
+    return level_begin(level) +
+           static_cast<std::size_t>(place.row) * static_cast<std::size_t>(level_size(width(), level)) +
+           static_cast<std::size_t>(place.column);
   }
-  Rgb colour(std::size_t texel) const;
-  float scalar(std::size_t texel, std::optional<int> channel) const;
-  void drop_opaque_alpha();
-  void convert_from(ColorSpace space);
+  std::size_t level_begin(int level) const { return level == 0 ? 0 : level_begins_[static_cast<std::size_t>(level)]; }
+  bool is_opaque() const;
+  void drop_alpha();
+  void make_levels();
 
-  int width_ = 0, height_ = 0, channels_ = 1;  // 1, 3 or 4
-  std::array<float, 256> decode_{};
+  TextureFormat format_;
+  int channels_ = 1;  // 1, 3 or 4; fewer than stored ones if a cached image is opaque
+  int levels_ = 1;
+  std::vector<std::size_t> level_begins_;  // texels
   std::vector<std::uint8_t> bytes_;
   std::vector<float> floats_;
+  std::shared_ptr<TextureCache> cache_;
+  const TextureCache::Image* cached_ = nullptr;
 };
 
 }  // namespace lanthorn

@@ -76,6 +76,18 @@ Point solid_point(const SolidMapping& mapping, const TexturePoint& at) {
   return mapping.world_to_texture.point(at.position);
 }
 
+float multiples_within(const Footprint& footprint, const description::TextureMapping& mapping, const Vec2& st) {
+  const auto* uv = std::get_if<UvMapping>(&mapping);
+  if (uv == nullptr) return 0;
+  // The rectangle's sides in (u, v), by the inverse of the map.
+  const auto& m = uv->linear;
+  const float determinant = std::fabs(m[0].x * m[1].y - m[1].x * m[0].y);
+  const Vec2 along_s = st.x * abs(Vec2(m[1].y, m[0].y)), along_t = st.y * abs(Vec2(m[1].x, m[0].x));
+  const Vec2 sides = max(along_s, along_t);
+  const float n = determinant * std::fmin(footprint.uv.x / sides.x, footprint.uv.y / sides.y);
+  return std::isfinite(n) ? n : 0.0f;
+}
+
 TextureDetail detail_of(const description::TextureMapping& mapping, const Vec2& st) {
   return std::visit([&](const auto& m) { return detail_at(m, st); }, mapping);
 }

@@ -7,12 +7,19 @@
 
 namespace lanthorn {
 
+/// The part of a surface over which the value of a texture may be averaged: a parallelogram of sides along u and v. 0:
+/// no part.
+struct Footprint {
+  Vec2 uv{0};
+};
+
 /// Point of a texture look-up.
 struct TexturePoint {
   Point position{0};       ///< world space
   Normal normal{0, 0, 1};  ///< geometric, unit, world space
   Vec2 uv{0};
   glm::vec4 color{1};  ///< of the mesh's vertices
+  Footprint footprint{};
 };
 
 /// Texture coordinates (s, t) of a surface point.
@@ -31,6 +38,9 @@ struct TextureDetail {
     metres = std::min(metres, other.metres);
   }
 };
+/// Largest n such that a rectangle of n · `st` in texture coordinates lies within the footprint; 0 unless the mapping
+/// is one of texture coordinates, u and v.
+float multiples_within(const Footprint& footprint, const description::TextureMapping& mapping, const Vec2& st);
 /// Detail of a texture whose features have size `st` in texture coordinates. An estimate if the mapping is not linear.
 TextureDetail detail_of(const description::TextureMapping& mapping, const Vec2& st);
 /// Detail of a texture whose features have size `size` in texture space.

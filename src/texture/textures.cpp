@@ -123,9 +123,17 @@ auto combined(const DotsTexture<Input>& t, const TexturePoint& at, const Get& ge
 
 }  // namespace
 
-Rgb ImageInput::rgb(const TexturePoint& at) const {
-  const Rgb c = scale * tint * image->rgb(plane_point(mapping, at), wrap, filter);
+Rgb ImageInput::rgb(const TexturePoint& at, int level) const {
+  const Rgb c = scale * tint * image->rgb(plane_point(mapping, at), wrap, filter, level);
   return invert ? Rgb{1, 1, 1} + -1.0f * c : c;
+}
+
+int ImageInput::level(const Footprint& footprint) const {
+  if (image->levels() == 1 || !(footprint.uv.x > 0)) return 0;
+  constexpr float texels_in_footprint = 4;
+  const float texels = multiples_within(footprint, mapping, 1.0f / Vec2(image->width(), image->height()));
+  if (!(texels >= 2 * texels_in_footprint)) return 0;
+  return std::min(image->levels() - 1, std::ilogb(texels / texels_in_footprint));
 }
 
 // Compilation of a texture, which compiles those that it names. Descriptions that programs make may have cycles.
@@ -242,7 +250,12 @@ struct TextureGraph::Compiler {
 std::size_t TextureGraph::bytes() const {
   std::size_t sum = 0;
   for (const ImageFile& image : images_) sum += image.texels->bytes();
-  return sum;
+  return sum + (cache() != nullptr ? cache()->bytes() : 0);
+}
+
+void TextureGraph::require_readable() const {
+  if (cache() == nullptr) return;
+  if (const std::optional<Error> problem = cache()->problem()) throw Error(*problem);
 }
 
 FloatInput TextureGraph::compile(const FloatParameter& parameter) {
@@ -306,23 +319,43 @@ FloatInput TextureGraph::without_opaque_image(const FloatInput& alpha) const {
   return evaluate(alpha, {}) >= 1 ? FloatInput{1, {}} : alpha;
 }
 
+bool TextureGraph::is_left_out(const ImageFile& file) const {
+  const FileAccess& access = description_->access;
+  return file.embedded == nullptr && access.skip_missing && access.is_missing(file.filename);
+}
+
+// Which of the images from `first` on go through the cache. Images that cannot be read count nothing here.
+std::vector<bool> TextureGraph::plan_memory(std::size_t first) const {
+  std::vector<TextureImage::Need> needs(images_.size() - first);
+  parallel_for(std::size_t{0}, needs.size(), [&](std::size_t i) {
+    const ImageFile& file = images_[first + i];
+    if (file.is_loaded || is_left_out(file)) return;
+    try {
+      needs[i] = TextureImage::need(file.source(), description_->access, file.wish(), file.location);
+    } catch (const Error&) {  // thrown again when it is read
+    }
+  });
+  return memory_->plan(needs);
+}
+
 void TextureGraph::load_images() {
   const std::size_t first = loaded_, count = images_.size() - first;
   loaded_ = images_.size();
+  const std::vector<bool> is_cached = plan_memory(first);
   std::vector<std::exception_ptr> problems(count);
   parallel_for(std::size_t{0}, count, [&](std::size_t i) {
     ImageFile& file = images_[first + i];
     try {
-      const ImageSource source = file.embedded ? ImageSource(*file.embedded) : ImageSource(file.filename);
       const FileAccess& access = description_->access;
-      const bool is_left_out = !file.embedded && access.skip_missing && access.is_missing(file.filename);
-      if (is_left_out)  // grey, or no relief
+      if (is_left_out(file))  // grey, or no relief
         *file.texels = TextureImage(file.needs_colour ? Rgb{0.5f, 0.5f, 1} : Rgb{0.5f, 0.5f, 0.5f});
+      else if (!file.is_loaded && is_cached[i])
+        *file.texels = TextureImage(file.source(), access, file.wish(), file.location, memory_->cache());
       else if (!file.is_loaded)
-        *file.texels = TextureImage(source, description_->access, file.encoding, file.gamma, file.space, file.location);
+        *file.texels = TextureImage(file.source(), access, file.wish(), file.location);
       file.is_loaded = true;
       if (file.needs_colour && !file.texels->has_colour())
-        throw Error(file.location, "the normal map " + in_quotes(source.name()) + " must have three channels");
+        throw Error(file.location, "the normal map " + in_quotes(file.source().name()) + " must have three channels");
     } catch (...) {
       problems[i] = std::current_exception();
     }
@@ -400,6 +433,68 @@ struct TextureGraph::SpectrumLookup {
 Spectrum TextureGraph::evaluate_spectrum(std::uint32_t node, const TexturePoint& at, const Wavelengths& w) const {
   const SpectrumLookup lookup{*this, at, w};
   return std::visit([&](const auto& n) { return lookup.value(n); }, spectrum_nodes_[node]);
+}
+
+struct TextureGraph::FilteredLookup : SpectrumLookup {
+  Spectrum operator()(const SpectrumInput& input) const {
+    if (!input.node) return input.curve.evaluate(w);
+    return std::visit([&](const auto& n) { return filtered(n); }, graph.spectrum_nodes_[*input.node]);
+  }
+
+  Spectrum filtered(const ImageInput& t) const { return spectrum_of(t.rgb(at, t.level(at.footprint)), t.role, w); }
+  Spectrum filtered(const Scale<SpectrumInput>& t) const {
+    return t.scale.node ? value(t) : (*this)(t.tex) * t.scale.value;
+  }
+  Spectrum filtered(const Mix<SpectrumInput>& t) const {
+    return t.amount.node ? value(t) : mixed(t.tex1, t.tex2, t.amount.value, *this);
+  }
+  template <class Node>
+  Spectrum filtered(const Node& t) const {
+    return value(t);
+  }
+};
+
+Spectrum TextureGraph::evaluate_filtered(const SpectrumInput& input, const TexturePoint& at,
+                                         const Wavelengths& w) const {
+  return FilteredLookup{{*this, at, w}}(input);
+}
+
+template <class Graph, class Visit>
+void TextureGraph::for_filtered_images(Graph& graph, const SpectrumInput& input, const Visit& visit) {
+  if (!input.node) return;
+  auto& node = graph.spectrum_nodes_[*input.node];
+  if (auto* image = std::get_if<ImageInput>(&node)) visit(*image);
+  if (auto* scaled = std::get_if<Scale<SpectrumInput>>(&node); scaled && !scaled->scale.node)
+    for_filtered_images(graph, scaled->tex, visit);
+  if (auto* mix = std::get_if<Mix<SpectrumInput>>(&node); mix && !mix->amount.node) {
+    for_filtered_images(graph, mix->tex1, visit);
+    for_filtered_images(graph, mix->tex2, visit);
+  }
+}
+
+void TextureGraph::want_levels(const SpectrumInput& input) {
+  for_filtered_images(*this, input, [this](ImageInput& input_image) {
+    for (ImageFile& file : images_) {
+      if (file.texels.get() != input_image.image) continue;
+      file.wants_levels = true;
+      // Another graph's image may have been read without them. It stays for those who look it up already.
+      const bool lacks_levels =
+          file.is_loaded && file.texels->levels() == 1 &&
+          static_cast<std::size_t>(file.texels->width()) * static_cast<std::size_t>(file.texels->height()) >=
+              least_texels_with_levels;
+      if (!lacks_levels) return;
+      file.texels = std::make_shared<TextureImage>();
+      file.is_loaded = false;
+      input_image.image = file.texels.get();
+      return;
+    }
+  });
+}
+
+bool TextureGraph::has_levels(const SpectrumInput& input) const {
+  bool any = false;
+  for_filtered_images(*this, input, [&](const ImageInput& image) { any = any || image.image->levels() > 1; });
+  return any;
 }
 
 Normal TextureGraph::evaluate(const NormalMapInput& map, const TexturePoint& at) {

@@ -24,6 +24,7 @@
 #include "texture/image_texture.h"
 #include "texture/spectrum_store.h"
 #include "texture/texture_mapping.h"
+#include "texture/texture_memory.h"
 
 namespace lanthorn {
 
@@ -52,7 +53,9 @@ struct ImageInput {
   std::optional<float> threshold;
 
   /// Colour times `scale` and `tint`, then inverted if requested.
-  Rgb rgb(const TexturePoint& at) const;
+  Rgb rgb(const TexturePoint& at, int level = 0) const;
+  /// The coarsest level of which four texels lie side by side in the footprint: finer than a picture can show.
+  int level(const Footprint& footprint) const;
 };
 struct NormalMapInput {
   ImageInput image;
@@ -63,7 +66,10 @@ class TextureGraph {
  public:
   /// `spectra` stores the tables of constant spectra. `loaded`: shares its images, so that they are not read again.
   TextureGraph(const SceneDescription& description, SpectrumStore& spectra, const TextureGraph* loaded = nullptr)
-      : description_(&description), spectra_(&spectra) {
+      : description_(&description),
+        spectra_(&spectra),
+        memory_(loaded != nullptr ? loaded->memory_
+                                  : std::make_shared<TextureMemory>(description.access.texture_memory)) {
     if (loaded != nullptr) shared_images_ = loaded->all_images();
   }
 
@@ -83,6 +89,13 @@ class TextureGraph {
   Spectrum evaluate(const SpectrumInput& input, const TexturePoint& at, const Wavelengths& w) const {
     return input.node ? evaluate_spectrum(*input.node, at, w) : input.curve.evaluate(w);
   }
+  /// The same, averaged over a part of the footprint where the input is an image, or a multiple or constant mix of
+  /// images: of other inputs a mean may differ from the value of the images' means. For uses in which light is linear.
+  Spectrum evaluate_filtered(const SpectrumInput& input, const TexturePoint& at, const Wavelengths& w) const;
+  /// Before `load_images`: the images that `evaluate_filtered` averages are to have coarser levels.
+  void want_levels(const SpectrumInput& input);
+  /// After it: true if some of them have.
+  bool has_levels(const SpectrumInput& input) const;
   /// The mapped normal in the frame of dp/du, dp/dv and the smooth normal; unit.
   static Normal evaluate(const NormalMapInput& map, const TexturePoint& at);
   /// 1 if `alpha` is the alpha of an image that has none: then rays need not ask for it. Else `alpha`.
@@ -100,8 +113,13 @@ class TextureGraph {
   Cost cost(const FloatInput& input) const { return input.node ? float_costs_[*input.node] : Cost{}; }
   Cost cost(const SpectrumInput& input) const { return input.node ? spectrum_costs_[*input.node] : Cost{}; }
 
-  /// Memory of texture images, bytes.
+  /// Memory of texture images, bytes: those in memory, and the tiles that the cache may hold.
   std::size_t bytes() const;
+  /// Of the tiles of images that do not fit into memory.
+  std::uint64_t disk_bytes() const { return cache() != nullptr ? cache()->bytes_on_disk() : 0; }
+  /// Throws Error if a tile could not be read since then.
+  void require_readable() const;
+  TileCacheCounts reads() const { return cache() != nullptr ? cache()->counts() : TileCacheCounts{}; }
   std::size_t image_count() const { return images_.size(); }
 
  private:
@@ -133,9 +151,12 @@ class TextureGraph {
     float gamma = 1;
     ColorSpace space{};
     SourceLocation location;
-    bool needs_colour = false;
+    bool needs_colour = false, wants_levels = false;
     std::shared_ptr<TextureImage> texels;
     bool is_loaded = false;
+
+    ImageSource source() const { return embedded != nullptr ? ImageSource(*embedded) : ImageSource(filename); }
+    ImageWish wish() const { return {{encoding, gamma, space}, wants_levels}; }
   };
   using ImageKey = std::tuple<std::string, std::optional<description::Index>, description::Encoding, float, ColorSpace>;
   using Images = std::map<ImageKey, std::shared_ptr<TextureImage>>;
@@ -144,6 +165,7 @@ class TextureGraph {
   class Descent;
   struct FloatLookup;
   struct SpectrumLookup;
+  struct FilteredLookup;
   struct DetailLookup;
 
   FloatInput compile_float_texture(description::Index index);
@@ -151,6 +173,13 @@ class TextureGraph {
   ImageInput compile_image(const description::ImageTexture& texture, const SourceLocation& location,
                            description::SpectrumRole role);
   ImageFile& image_file(const description::ImageTexture& texture, const SourceLocation& location);
+  // Calls `visit(ImageInput&)` for the images that `evaluate_filtered` averages.
+  template <class Graph, class Visit>
+  static void for_filtered_images(Graph& graph, const SpectrumInput& input, const Visit& visit);
+  // Null if all images are in memory.
+  const TextureCache* cache() const { return memory_->cache().get(); }
+  bool is_left_out(const ImageFile& file) const;
+  std::vector<bool> plan_memory(std::size_t first) const;
   // The images of this graph, and those of others that it shares.
   Images all_images() const;
   float evaluate_float(std::uint32_t node, const TexturePoint& at) const;
@@ -158,6 +187,7 @@ class TextureGraph {
 
   const SceneDescription* description_;
   SpectrumStore* spectra_;
+  std::shared_ptr<TextureMemory> memory_;
   std::vector<FloatNode> float_nodes_;
   std::vector<SpectrumNode> spectrum_nodes_;
   std::vector<Cost> float_costs_, spectrum_costs_;  // of the nodes

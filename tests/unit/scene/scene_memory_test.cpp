@@ -5,9 +5,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
+#include <string>
 #include <utility>
 
 #include "lanthorn/scene.h"
+#include "math/hash.h"
+#include "support/temporary_dir.h"
 
 namespace lanthorn::scene_memory_test {
 namespace {
@@ -47,6 +51,48 @@ TEST(SceneMemory, IsKnownBeforeTheSceneIsBuilt) {
     EXPECT_NEAR(expected.geometry / static_cast<double>(actual.geometry_bytes), 1, .01) << has_normals;
     EXPECT_NEAR(expected.trees / static_cast<double>(actual.bvh_bytes), 1, .2) << has_normals;
   }
+}
+
+TEST(SceneMemory, CountsCurves) {
+  for (const auto kind : {description::CurveKind::flat, description::CurveKind::ribbon}) {
+    description::Curves curves;
+    curves.kind = kind;
+    HashRng rng(1);
+    for (std::uint32_t i = 0; i < 20'000; ++i) {
+      curves.segments.push_back(static_cast<std::uint32_t>(curves.points.size()));
+      for (int k = 0; k < 4; ++k) {
+        const float x = rng.next(), y = rng.next();
+        curves.points.emplace_back(x, y, .1f * static_cast<float>(k), .001f);
+        if (kind == description::CurveKind::ribbon) curves.normals.emplace_back(0, 1, 0);
+      }
+    }
+    SceneDescription scene;
+    scene.materials.emplace_back();
+    scene.shapes.emplace_back().geometry = curves;
+    const SceneMemory expected = expected_memory(scene);
+    const SceneSummary actual = summarize(*build_scene(std::move(scene)));
+    EXPECT_NEAR(expected.geometry / static_cast<double>(actual.geometry_bytes), 1, .02);
+    EXPECT_NEAR(expected.trees / static_cast<double>(actual.bvh_bytes), 1, .3);
+  }
+}
+
+TEST(SceneMemory, ImagesOfTexturesByTheirHeaders) {
+  const test::TemporaryDir folder;
+  const std::string path = (folder.path() / "a.ppm").string();
+  std::ofstream(path) << "P6\n30 20\n255\n" << std::string(30 * 20 * 3, 'x');
+  SceneDescription scene = scene_of(field(false));
+  description::ImageTexture image;
+  for (const char* name : {"a.ppm", "a.ppm", "missing.ppm"}) {
+    image.filename = (folder.path() / name).string();
+    scene.spectrum_textures.push_back({image, {}});
+  }
+  EXPECT_EQ(expected_texture_memory(scene), 30u * 20 * 3);  // once, and the missing one counts nothing
+  scene.access.texture_memory = std::uint64_t{1} << 50;     // which is not there, but the image is small
+  require_scene_memory(scene);
+  scene.access.texture_memory.reset();
+  require_scene_memory(scene);
+  ASSERT_TRUE(scene.access.texture_memory);
+  EXPECT_GT(*scene.access.texture_memory, 0u);
 }
 
 TEST(SceneMemory, ObjectsCountOnceAndTheLargestTreeIsBuiltBesideTheOthers) {

@@ -251,7 +251,7 @@ class ImageTextures : public ::testing::Test {
 // Clamped along s and mirrored along t: texels 0 1 over 2 3.
 TEST_F(ImageTextures, AxesWrapByThemselves) {
   const std::string path = write("w.exr", 2, 2, 1, {0, 1, 2, 3});
-  const TextureImage image(path, FileAccess{}, description::Encoding::linear, 1, ColorSpace::srgb, {});
+  const TextureImage image(path, FileAccess{}, {{description::Encoding::linear, 1, ColorSpace::srgb}}, {});
   const auto at = [&](float s, float t) {
     return image.scalar({s, t}, {description::Wrap::clamp, description::Wrap::mirror}, description::ImageFilter::point);
   };
