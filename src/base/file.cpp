@@ -96,6 +96,8 @@ class OpenFile {
   int sync() const { return ::fsync(descriptor_) == 0 ? 0 : errno; }
   int close() { return ::close(std::exchange(descriptor_, -1)) == 0 ? 0 : errno; }
   void keep() { remove_.clear(); }
+  /// Leaves it to the caller to close the file.
+  int release() { return std::exchange(descriptor_, -1); }
 
  private:
   int descriptor_;
@@ -283,7 +285,14 @@ std::vector<std::string> file_names_beside(const fs::path& path) {
   return names;
 }
 
-OpenedFile read_opened_file(const fs::path& path) {
+namespace {
+
+struct RegularFile {
+  OpenFile file;
+  std::uint64_t size;
+};
+
+RegularFile open_regular_file(const fs::path& path) {
   const SourceLocation place{path.string()};
   std::error_code code;
   if (!fs::exists(path, code))
@@ -291,17 +300,42 @@ OpenedFile read_opened_file(const fs::path& path) {
   // Checked before opening, because opening some devices triggers an action; checked again on the descriptor, because
   // the name may lead elsewhere by then.
   if (!fs::is_regular_file(path, code)) throw Error(place, "not a regular file");
-  const OpenFile file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY), {});
+  OpenFile file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY), {});
   if (file.descriptor() < 0) throw Error(place, "cannot be read; check its permissions");
   struct stat status {};
   if (::fstat(file.descriptor(), &status) != 0 || !S_ISREG(status.st_mode)) throw Error(place, "not a regular file");
-  const auto size = static_cast<std::size_t>(status.st_size);
-  require_memory(static_cast<double>(size), place, "the file");
-  OpenedFile result{std::string(size, '\0'), real_path_of(file.descriptor(), path)};
-  if (file.read(result.bytes) != size) throw Error(place, "cannot be read to its end");
+  return {std::move(file), static_cast<std::uint64_t>(status.st_size)};
+}
+
+}  // namespace
+
+OpenedFile read_opened_file(const fs::path& path) {
+  const SourceLocation place{path.string()};
+  const RegularFile opened = open_regular_file(path);
+  require_memory(static_cast<double>(opened.size), place, "the file");
+  OpenedFile result{std::string(opened.size, '\0'), real_path_of(opened.file.descriptor(), path)};
+  if (opened.file.read(result.bytes) != opened.size) throw Error(place, "cannot be read to its end");
   // Kernel files (/proc, /sys) report size 0.
-  if (!file.is_at_end()) throw Error(place, "not an ordinary file, or one that grows while it is read");
+  if (!opened.file.is_at_end()) throw Error(place, "not an ordinary file, or one that grows while it is read");
   return result;
+}
+
+PartlyReadFile::PartlyReadFile(const fs::path& path) : path_(path) {
+  RegularFile opened = open_regular_file(path);
+  descriptor_ = opened.file.release();
+  size_ = opened.size;
+}
+
+PartlyReadFile::~PartlyReadFile() { ::close(descriptor_); }
+
+void PartlyReadFile::read(std::uint64_t offset, std::span<std::byte> out) const {
+  while (!out.empty()) {
+    const ssize_t count = ::pread(descriptor_, out.data(), out.size(), static_cast<off_t>(offset));
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) throw Error({path_.string()}, "cannot be read to its end");
+    out = out.subspan(static_cast<std::size_t>(count));
+    offset += static_cast<std::uint64_t>(count);
+  }
 }
 
 std::string read_file(const fs::path& path) { return read_opened_file(path).bytes; }
