@@ -12,7 +12,8 @@ namespace {
 class Mpi : public Cli {
  protected:
   static Words launched(int processes, const Words& words) {
-    return Words{"--oversubscribe",         "--allow-run-as-root", "--bind-to", "none", "-n",
+    constexpr const char* limit = "120";  // seconds, of processes that wait for each other for ever
+    return Words{"--oversubscribe",         "--allow-run-as-root", "--timeout", limit, "--bind-to", "none", "-n",
                  std::to_string(processes), LANTHORN_PROGRAM} +
            words;
   }
@@ -92,6 +93,25 @@ TEST_F(Mpi, ASignalEndsAllProcessesAndSaves) {
   const std::string passes = std::to_string(passes_of("b.state"));
   succeed(render({"-i", "path", "-p", passes, "-o", "alone.state"}));
   expect_equal_files("b.state", "alone.state");
+}
+
+TEST_F(Mpi, FramesAreRenderedOneAfterTheOther) {
+  const Words command = render({"-i", "path", "-p", "5", "--turntable", "3"});
+  succeed(command + Words{"-o", "alone.#.state"});
+  render_shared(3, command + Words{"-o", "shared.#.state", "--json", "shared.#.json"});
+  for (const std::string frame : {"0", "1", "2"}) {
+    expect_equal_files("shared." + frame + ".state", "alone." + frame + ".state");
+    EXPECT_EQ(nlohmann::json::parse(bytes("shared." + frame + ".json"))["passes"], 5);
+  }
+}
+
+TEST_F(Mpi, TheReportCountsTheWorkOfAllProcesses) {
+  const Words command = render({"-i", "probppm", "-p", "12", "-o", "a.exr", "--force"});
+  succeed(command + Words{"--json", "alone.json"});
+  render_shared(3, command + Words{"--json", "shared.json"});
+  const auto alone = nlohmann::json::parse(bytes("alone.json")), shared = nlohmann::json::parse(bytes("shared.json"));
+  for (const std::string count : {"passes", "rays", "photons_emitted", "photons_stored"})
+    EXPECT_EQ(shared[count], alone[count]) << count;
 }
 
 TEST_F(Mpi, ErrorsAreSaidOnce) {
