@@ -28,19 +28,19 @@ struct MergeCommand {
   OutputSettings settings;
 };
 
-// Adds one state after the other: two are in memory.
+// Adds one state after the other. Memory has the sum and some blocks of pixels.
 class Merger {
  public:
   void add(const std::string& input) {
-    const std::shared_ptr<RenderState> next = open_state(input);
-    if (!sum_ || !identity_difference(*sum_, *next))
-      for (const PassRange& range : summarize(*next).passes) passes_.push_back(range);
+    const SavedState next(input);
+    if (!sum_ || !next.identity_difference(*sum_))
+      passes_.insert(passes_.end(), next.passes().begin(), next.passes().end());
     if (!sum_) {
-      sum_ = next;
+      sum_ = next.load();
       return;
     }
     try {
-      merge_into(*sum_, *next);
+      next.merge_into(*sum_);
     } catch (const Error& e) {
       throw Error({input}, e.message);
     }

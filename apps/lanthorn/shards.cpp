@@ -11,6 +11,8 @@
 #include "commands.h"
 #include "console.h"
 #include "lanthorn/error.h"
+#include "lanthorn/methods.h"
+#include "lanthorn/scene.h"
 #include "lanthorn/shell.h"
 #include "options.h"
 #include "render_arguments.h"
@@ -111,12 +113,19 @@ JOB
       a.threads == 0 ? " --threads ${SLURM_CPUS_PER_TASK:-0}" : ""));
 }
 
+// That of the options or else of the scene file, which is read for it.
+std::string method_of(const ShardsCommand& a) {
+  if (a.options.integrator) return *a.options.integrator;
+  return default_method(read_scene(a.scene, a.reading).hints.integrator).name;
+}
+
 void run(const ShardsCommand& a) {
   if (a.shards > a.passes)
     throw Error(fmt::format("--shards {}: expected at most one shard for each of the {} passes", a.shards, a.passes));
   const std::string extension = fs::path(a.output).extension().string();
   if (extension != ".exr" && extension != ".png" && extension != ".state")
     throw Error(fmt::format("-o {}: expected a name that ends in .exr, .png or .state", a.output));
+  if (a.shards > 1) require_independent_passes("--shards", method_of(a));
   if (a.format == Format::shell) return print_shell(a);
   if (a.format == Format::json) return print_json(a);
   print_slurm(a);

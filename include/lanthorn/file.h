@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <functional>
@@ -71,6 +72,25 @@ struct OpenedStream {
 };
 /// Opens a file that is too large to be read as a whole. Throws `lanthorn::Error` as `read_file` does.
 OpenedStream open_stream(const std::filesystem::path& path);
+
+/// A regular file of which parts are read, by any number of threads at once.
+class PartlyReadFile {
+ public:
+  /// Throws Error as `read_file`.
+  explicit PartlyReadFile(const std::filesystem::path& path);
+  PartlyReadFile(const PartlyReadFile&) = delete;
+  PartlyReadFile& operator=(const PartlyReadFile&) = delete;
+  ~PartlyReadFile();
+
+  std::uint64_t size() const { return size_; }
+  /// Fills `out` with the bytes from `offset` on. Throws Error unless the file has all of them.
+  void read(std::uint64_t offset, std::span<std::byte> out) const;
+
+ private:
+  std::filesystem::path path_;
+  int descriptor_;
+  std::uint64_t size_;
+};
 
 /// Returns the bytes of a file that a scene names. Throws Error if it cannot be read.
 using FileReader = std::function<std::string(const std::filesystem::path&)>;

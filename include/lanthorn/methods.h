@@ -26,6 +26,9 @@ struct MethodInfo {
 std::vector<MethodInfo> methods();
 /// Throws Error, naming the known ones, if there is none of this name.
 const MethodInfo& find_method(const std::string& name);
+/// Throws Error, which begins with `option`, if passes of this method depend on earlier ones, so that parts of a render
+/// cannot be rendered apart.
+void require_independent_passes(const std::string& option, const std::string& method);
 
 /// The method of renders whose options name none.
 struct DefaultMethod {

@@ -82,6 +82,33 @@ struct MeasuredPicture {
 };
 MeasuredPicture measured_picture_of(const RenderState& state);
 
+class StateReader;  // internal
+
+/// A saved state whose sums stay in the file until they are added up, block by block: merging many states takes no more
+/// memory than one.
+class SavedState {
+ public:
+  /// Reads the file but for the sums. Throws Error as `open_state`.
+  explicit SavedState(const std::filesystem::path& path);
+  ~SavedState();
+  SavedState(SavedState&&) noexcept;
+  SavedState& operator=(SavedState&&) noexcept;
+
+  /// Sorted and disjoint.
+  const std::vector<PassRange>& passes() const;
+  /// As `lanthorn::identity_difference`.
+  std::optional<std::string> identity_difference(const RenderState& other) const;
+
+  /// The whole state.
+  std::shared_ptr<RenderState> load() const;
+  /// As `lanthorn::merge_into`. If the Error says that the file is damaged or cannot be read, which the constructor has
+  /// not noticed because somebody forged the checksum or the medium fails, `sum` keeps its passes, but not its sums.
+  void merge_into(RenderState& sum) const;
+
+ private:
+  std::unique_ptr<StateReader> reader_;
+};
+
 /// Reads a saved state. Throws Error if the file cannot be read, is truncated, damaged, or of another version.
 std::shared_ptr<RenderState> open_state(const std::filesystem::path& path);
 

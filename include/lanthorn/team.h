@@ -4,7 +4,7 @@
 //
 // Each process makes a `Session` of the same scene and options and calls `Session::render` with the team in its stop
 // rule. The process of rank 0 deals out the passes one by one, obeys the stop rule, and has all sums at the end; its
-// picture is that of one process alone, to the bit. The sessions of the others end with nothing that is of use.
+// picture has the same bits as that of one process alone. The other processes discard their sessions.
 #pragma once
 
 #include <cstddef>
@@ -17,39 +17,42 @@
 namespace lanthorn {
 
 struct TeamMessage {
-  int from = 0;  ///< rank
+  int from = 0;  ///< rank of the sender
   std::vector<std::byte> bytes;
 };
 
-/// How the processes of a team reach each other. Messages from one process to another arrive in their order. One thread
-/// at a time calls these functions, not always the same one.
+/// How the processes of a team reach each other. Two messages from one process to another arrive in the order in which
+/// they were sent. Only one thread at a time calls these functions, but not always the same thread.
 struct TeamLink {
   int rank = 0, size = 1;
-  /// Returns at once.
+  /// Starts to send a message and returns at once.
   std::function<void(int to, std::vector<std::byte> bytes)> send;
-  /// The next message; nothing if none has come. Also moves on what is being sent, so call it often.
+  /// Returns the next message, or nullopt if none has come. Messages are sent during this call, too, so call it often.
   std::function<std::optional<TeamMessage>()> receive;
-  /// Whether everything has left this process.
+  /// Returns true if this process has sent all its messages.
   std::function<bool()> all_sent;
 };
 
 struct Team {
   TeamLink link;
-  /// Of rank 0: gather the sums at this interval, for checkpoints. None: at the end alone.
+  /// Rank 0 gathers the sums at this interval, for checkpoints. If it is not set, rank 0 gathers them at the end alone.
   std::optional<double> gather_seconds{};
-  /// Of rank 0: also gather them at times that double from this one on, for pictures of the running render.
+  /// Rank 0 also gathers the sums after this time, and each time that the time has doubled, for pictures of the running
+  /// render.
   std::optional<double> preview_seconds{};
-  std::uint64_t rounds = 0;  ///< how often sums have been gathered, over all renders; kept by `Session::render`
+  /// The number of gatherings over all renders of this team. `Session::render` counts them.
+  std::uint64_t rounds = 0;
 };
 
-/// For a process other than rank 0 that cannot render: tells rank 0 why, which throws this as an Error when it renders.
+/// Tells rank 0 why this process, which has another rank, cannot render. Rank 0 throws the message as an Error from
+/// `Session::render`.
 void report_failure(const TeamLink& link, const std::string& message);
 
 /// Joins the processes that one MPI launcher (mpirun, srun) has started. Returns nullopt if this process is alone.
-/// Loads MPI only if the launcher's environment variables show other processes. Call it once. Throws Error if MPI
-/// cannot be loaded or does not find the others.
+/// This function loads MPI only if the launcher's environment variables show other processes. Call it once. Throws
+/// Error if MPI cannot be loaded or does not find the other processes.
 std::optional<TeamLink> join_mpi();
-/// Ends the use of MPI, after all processes have come here.
+/// Waits until all processes have called this function, then ends the use of MPI.
 void leave_mpi();
 /// Ends all processes of the team at once.
 [[noreturn]] void abort_mpi(int exit_code);

@@ -96,8 +96,8 @@ class OpenFile {
   int sync() const { return ::fsync(descriptor_) == 0 ? 0 : errno; }
   int close() { return ::close(std::exchange(descriptor_, -1)) == 0 ? 0 : errno; }
   void keep() { remove_.clear(); }
-  /// The descriptor is somebody else's from now on.
-  void release() { descriptor_ = -1; }
+  /// Leaves it to the caller to close the file.
+  int release() { return std::exchange(descriptor_, -1); }
 
  private:
   int descriptor_;
@@ -287,13 +287,12 @@ std::vector<std::string> file_names_beside(const fs::path& path) {
 
 namespace {
 
-// A regular file, open for reading, and its size.
-struct ReadableFile {
+struct RegularFile {
   OpenFile file;
-  std::size_t size;
+  std::uint64_t size;
 };
 
-ReadableFile open_regular(const fs::path& path) {
+RegularFile open_regular_file(const fs::path& path) {
   const SourceLocation place{path.string()};
   std::error_code code;
   if (!fs::exists(path, code))
@@ -305,29 +304,47 @@ ReadableFile open_regular(const fs::path& path) {
   if (file.descriptor() < 0) throw Error(place, "cannot be read; check its permissions");
   struct stat status {};
   if (::fstat(file.descriptor(), &status) != 0 || !S_ISREG(status.st_mode)) throw Error(place, "not a regular file");
-  return {std::move(file), static_cast<std::size_t>(status.st_size)};
+  return {std::move(file), static_cast<std::uint64_t>(status.st_size)};
 }
 
 }  // namespace
 
 OpenedFile read_opened_file(const fs::path& path) {
   const SourceLocation place{path.string()};
-  const auto [file, size] = open_regular(path);
-  require_memory(static_cast<double>(size), place, "the file");
-  OpenedFile result{std::string(size, '\0'), real_path_of(file.descriptor(), path)};
-  if (file.read(result.bytes) != size) throw Error(place, "cannot be read to its end");
+  const RegularFile opened = open_regular_file(path);
+  require_memory(static_cast<double>(opened.size), place, "the file");
+  OpenedFile result{std::string(opened.size, '\0'), real_path_of(opened.file.descriptor(), path)};
+  if (opened.file.read(result.bytes) != opened.size) throw Error(place, "cannot be read to its end");
   // Kernel files (/proc, /sys) report size 0.
-  if (!file.is_at_end()) throw Error(place, "not an ordinary file, or one that grows while it is read");
+  if (!opened.file.is_at_end()) throw Error(place, "not an ordinary file, or one that grows while it is read");
   return result;
 }
 
 OpenedStream open_stream(const fs::path& path) {
-  ReadableFile opened = open_regular(path);
+  RegularFile opened = open_regular_file(path);
   fs::path real = real_path_of(opened.file.descriptor(), path);
   std::FILE* const stream = ::fdopen(opened.file.descriptor(), "rb");
   if (stream == nullptr) throw Error({path.string()}, "cannot be read");
   opened.file.release();
   return {{stream, [](std::FILE* file) { std::fclose(file); }}, std::move(real)};
+}
+
+PartlyReadFile::PartlyReadFile(const fs::path& path) : path_(path) {
+  RegularFile opened = open_regular_file(path);
+  descriptor_ = opened.file.release();
+  size_ = opened.size;
+}
+
+PartlyReadFile::~PartlyReadFile() { ::close(descriptor_); }
+
+void PartlyReadFile::read(std::uint64_t offset, std::span<std::byte> out) const {
+  while (!out.empty()) {
+    const ssize_t count = ::pread(descriptor_, out.data(), out.size(), static_cast<off_t>(offset));
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) throw Error({path_.string()}, "cannot be read to its end");
+    out = out.subspan(static_cast<std::size_t>(count));
+    offset += static_cast<std::uint64_t>(count);
+  }
 }
 
 std::string read_file(const fs::path& path) { return read_opened_file(path).bytes; }

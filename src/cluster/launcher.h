@@ -9,12 +9,12 @@
 namespace lanthorn {
 
 struct Launcher {
-  std::string variable;  ///< of the environment, that told of it
-  int size = 1;          ///< processes that it has started
+  std::string variable;  ///< the environment variable that shows the launcher
+  int size = 1;          ///< number of processes that the launcher has started
 };
 
-/// The launcher of MPI that has started this process, by its environment; nothing if there is none. `variable`: as
-/// std::getenv.
+/// Finds the MPI launcher that has started this process by environment variables. Returns nullopt if there is none.
+/// `variable` returns the value of an environment variable, or null, as std::getenv does.
 std::optional<Launcher> find_launcher(const std::function<const char*(const char*)>& variable);
 
 }  // namespace lanthorn

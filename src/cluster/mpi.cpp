@@ -16,7 +16,7 @@ namespace {
 
 #ifdef LANTHORN_MPI_MODULE
 const MpiFunctions& load() {
-  // MPI's own plug-ins look for its symbols among the global ones.
+  // RTLD_GLOBAL, because plug-ins of MPI look for MPI's symbols among the global ones.
   void* const module = dlopen(LANTHORN_MPI_MODULE, RTLD_LAZY | RTLD_GLOBAL);
   void* const symbol = module != nullptr ? dlsym(module, mpi_functions_symbol) : nullptr;
   if (symbol == nullptr) throw Error(std::string("the module for MPI cannot be loaded: ") + dlerror());

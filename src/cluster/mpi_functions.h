@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// What the module lanthorn-mpi.so does, which alone links MPI.
+// The functions of the module lanthorn-mpi.so. No other part of the program links MPI.
 #pragma once
 
 #include <optional>
@@ -10,13 +10,13 @@
 namespace lanthorn {
 
 struct MpiFunctions {
-  /// Starts MPI. Throws std::runtime_error.
+  /// Starts MPI. Throws std::runtime_error if it cannot.
   TeamLink (*join)();
   void (*leave)();
   void (*abort)(int exit_code);
 };
 
-/// The function of the module that returns these.
+/// The name of the module's function that returns the MpiFunctions.
 constexpr const char* mpi_functions_symbol = "lanthorn_mpi_functions";
 using MpiFunctionsSymbol = const MpiFunctions* (*)();
 

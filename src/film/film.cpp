@@ -24,11 +24,16 @@ constexpr double number_steps = 0x1p28;  // and positions: less precise but larg
 constexpr std::size_t hit_slot = feature_channels;
 template <class Value>
 constexpr double steps_of = is_number<Value> || std::is_same_v<Value, Position> ? number_steps : unit_steps;
-constexpr std::size_t chunk_pixels = 4096;
+constexpr std::size_t chunk_pixels = 4096, chunk_sums = std::size_t{1} << 16;
 
 std::uint64_t count_saturated(std::span<const std::int64_t> sums) {
-  return static_cast<std::uint64_t>(
-      std::count_if(sums.begin(), sums.end(), [](std::int64_t sum) { return std::abs(sum) >= sum_limit; }));
+  std::atomic<std::uint64_t> count = 0;
+  parallel_chunks(sums.size(), chunk_sums, [&](std::size_t, std::size_t begin, std::size_t end) {
+    const auto part = sums.subspan(begin, end - begin);
+    count += static_cast<std::uint64_t>(
+        std::count_if(part.begin(), part.end(), [](std::int64_t sum) { return std::abs(sum) >= sum_limit; }));
+  });
+  return count;
 }
 
 // Channel names of Fichet, Pacanowski & Wilkie 2021, "An OpenEXR Layout for Spectral Images", §3: S0 is unpolarised
@@ -344,14 +349,19 @@ FilmReport Film::report() const {
           .first_too_large = place(too_large_)};
 }
 
-void Film::set_report(const FilmReport& report) {
+void Film::add_problem(Problem& sum, const Problem& more) {
+  sum.count += more.count;
+  sum.first = std::min(sum.first, more.first);
+}
+
+void Film::add_report(const FilmReport& report) {
   const auto problem = [](std::uint64_t count, const std::optional<FilmPlace>& first) {
     Problem p{.count = count};
     if (first) p.first = std::min<std::uint64_t>(first->pass, 0xffffffffu) << 32 | first->pixel;
     return p;
   };
-  non_finite_ = problem(report.non_finite, report.first_non_finite);
-  too_large_ = problem(report.too_large, report.first_too_large);
+  add_problem(non_finite_, problem(report.non_finite, report.first_non_finite));
+  add_problem(too_large_, problem(report.too_large, report.first_too_large));
 }
 
 bool Film::compatible(const Film& other) const {
@@ -362,17 +372,16 @@ bool Film::compatible(const Film& other) const {
 void Film::merge(const Film& other) {
   assert(compatible(other));
   const auto add = [](std::vector<std::int64_t>& sums, const std::vector<std::int64_t>& others) {
-    for (std::size_t i = 0; i < sums.size(); ++i) saturating_add(sums[i], others[i]);
+    parallel_chunks(sums.size(), chunk_sums, [&](std::size_t, std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) saturating_add(sums[i], others[i]);
+    });
   };
   for (std::size_t h = 0; h < halves_.size(); ++h) {
     add(halves_[h].samples, other.halves_[h].samples);
     add(halves_[h].splats, other.halves_[h].splats);
   }
   for (const auto sums : {&Film::parts_, &Film::spectra_, &Film::spectral_splats_}) add(this->*sums, other.*sums);
-  for (const auto problem : {&Film::non_finite_, &Film::too_large_}) {
-    (this->*problem).count += (other.*problem).count;
-    (this->*problem).first = std::min((this->*problem).first, (other.*problem).first);
-  }
+  for (const auto problem : {&Film::non_finite_, &Film::too_large_}) add_problem(this->*problem, other.*problem);
 }
 
 std::size_t Film::plane_count() const { return stride(contents_); }
@@ -396,17 +405,22 @@ Film::PlanePlace<Sums> Film::find_plane(Self& film, std::size_t index) {
 }
 
 std::vector<std::int64_t> Film::plane(std::size_t index) const {
-  const auto [sums, stride, slot] = find_plane<const std::vector<std::int64_t>>(*this, index);
   std::vector<std::int64_t> values(pixel_count());
-  for (std::size_t i = 0; i < values.size(); ++i) values[i] = (*sums)[i * stride + slot];
+  copy_sums(index, 0, values);
   return values;
 }
 
-void Film::set_plane(std::size_t index, std::span<const std::int64_t> values) {
-  assert(values.size() == pixel_count());
-  const auto [sums, stride, slot] = find_plane<std::vector<std::int64_t>>(*this, index);
+void Film::copy_sums(std::size_t plane, std::size_t first, std::span<std::int64_t> out) const {
+  assert(first + out.size() <= pixel_count());
+  const auto [sums, stride, slot] = find_plane<const std::vector<std::int64_t>>(*this, plane);
+  for (std::size_t i = 0; i < out.size(); ++i) out[i] = (*sums)[(first + i) * stride + slot];
+}
+
+void Film::add_sums(std::size_t plane, std::size_t first, std::span<const std::int64_t> values) {
+  assert(first + values.size() <= pixel_count());
+  const auto [sums, stride, slot] = find_plane<std::vector<std::int64_t>>(*this, plane);
   for (std::size_t i = 0; i < values.size(); ++i)
-    (*sums)[i * stride + slot] = std::clamp(values[i], -sum_limit, sum_limit);
+    saturating_add((*sums)[(first + i) * stride + slot], std::clamp(values[i], -sum_limit, sum_limit));
 }
 
 }  // namespace lanthorn

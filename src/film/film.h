@@ -155,10 +155,13 @@ class Film {
   // The raw sums, one plane of `pixel_count` integers per quantity, for saving.
   std::size_t plane_count() const;
   std::vector<std::int64_t> plane(std::size_t index) const;
-  /// `values`: pixel_count of them; clamped to the limit of the sums.
-  void set_plane(std::size_t index, std::span<const std::int64_t> values);
-  /// Restores the report on loading; `saturated` is not stored but counted.
-  void set_report(const FilmReport& report);
+  /// A part of a plane: as many pixels as `out` has, from pixel `first` on.
+  void copy_sums(std::size_t plane, std::size_t first, std::span<std::int64_t> out) const;
+  /// Adds to a part of a plane. The values are clamped to the limit of the sums. Several threads may add to different
+  /// pixels or planes.
+  void add_sums(std::size_t plane, std::size_t first, std::span<const std::int64_t> values);
+  /// Adds the counts of a report; `saturated` is not stored but counted.
+  void add_report(const FilmReport& report);
 
   /// A film of known step exponent, for loading: equivalent to a largest radiance of 2^(exponent + 40).
   static Film with_exponent(int width, int height, int step_exponent, const FilmContents& contents = {});
@@ -173,6 +176,7 @@ class Film {
     /// Low 32 bits of the pass << 32 | pixel: one word, so that threads can agree on the minimum.
     std::uint64_t first = ~std::uint64_t{0};
   };
+  static void add_problem(Problem& sum, const Problem& more);
   using LightMeans = std::array<double, most_light_layers * 3>;  ///< 0 for missing layers
   static constexpr std::size_t surface_slots =
       feature_channels + 2;  ///< of a sample, after its light: with hits, weights

@@ -86,4 +86,11 @@ std::vector<MethodInfo> methods() { return {registry().begin(), registry().end()
 
 const MethodInfo& find_method(const std::string& name) { return find_integrator(name); }
 
+void require_independent_passes(const std::string& option, const std::string& method) {
+  const IntegratorInfo& info = find_integrator(method);
+  if (info.make(Parameters(info.parameters, {}, info.name))->passes_are_independent()) return;
+  throw Error(fmt::format("{}: each pass of {} depends on all before it, so that it can start with pass 0 only", option,
+                          info.name));
+}
+
 }  // namespace lanthorn

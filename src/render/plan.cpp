@@ -115,9 +115,7 @@ RenderPlan plan_render(const Scene& scene, const ViewDescription& view, const Re
   plan.settings = choose_settings(scene, view, options, plan);
   plan.passes_that_fit = plan_memory(scene, plan.view, *plan.integrator, contents, options.memory, plan.settings);
   plan.stop.passes = choose_passes(hints, options);
-  if (plan.stop.passes.begin > 0 && !plan.integrator->passes_are_independent())
-    throw Error(fmt::format(
-        "--pass-range: each pass of {} depends on all before it, so that it can start with pass 0 only", info.name));
+  if (plan.stop.passes.begin > 0) require_independent_passes("--pass-range", info.name);
   plan.stop.seconds = options.seconds;
   plan.stop.noise = options.noise;
   if (options.noise && !plan.integrator->knows_bias())

@@ -182,6 +182,7 @@ class PassLoop {
     if (!member_) return;
     member_->finish();
     if (!total_) return;
+    add_counts(statistics_, encode_counts(member_->counts_of_others()));
     statistics_.passes = total_->pass_count() - passes_before_;
     statistics_.passes_elsewhere = 0;
     plan_.state = *std::move(total_);

@@ -57,6 +57,10 @@ RenderState merge_states(const RenderState& a, const RenderState& b);
 /// As `merge`, into `sum`, which stays as it is if an Error is thrown.
 void add_state(RenderState& sum, const RenderState& more);
 
+class StateReader;
+/// As `SavedState::merge_into`.
+void add_state(RenderState& sum, const StateReader& more);
+
 /// A state without passes of the same render.
 RenderState empty_like(const RenderState& state);
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "render/state.h"
+#include "render/state_file.h"
 
 namespace lanthorn {
 
@@ -68,5 +69,21 @@ std::shared_ptr<RenderState> merge(const RenderState& a, const RenderState& b) {
 }
 
 void merge_into(RenderState& sum, const RenderState& more) { add_state(sum, more); }
+
+SavedState::SavedState(const std::filesystem::path& path)
+    : reader_(std::make_unique<StateReader>(open_state_reader(path))) {}
+SavedState::~SavedState() = default;
+SavedState::SavedState(SavedState&&) noexcept = default;
+SavedState& SavedState::operator=(SavedState&&) noexcept = default;
+
+const std::vector<PassRange>& SavedState::passes() const { return reader_->head().passes; }
+
+std::optional<std::string> SavedState::identity_difference(const RenderState& other) const {
+  return lanthorn::identity_difference(reader_->head(), other);
+}
+
+std::shared_ptr<RenderState> SavedState::load() const { return std::make_shared<RenderState>(reader_->load()); }
+
+void SavedState::merge_into(RenderState& sum) const { add_state(sum, *reader_); }
 
 }  // namespace lanthorn

@@ -12,7 +12,8 @@ namespace {
 class Mpi : public Cli {
  protected:
   static Words launched(int processes, const Words& words) {
-    return Words{"--oversubscribe",         "--allow-run-as-root", "--bind-to", "none", "-n",
+    constexpr const char* limit = "60";  // seconds, of processes that wait for each other for ever
+    return Words{"--oversubscribe",         "--allow-run-as-root", "--timeout", limit, "--bind-to", "none", "-n",
                  std::to_string(processes), LANTHORN_PROGRAM} +
            words;
   }
@@ -21,7 +22,7 @@ class Mpi : public Cli {
   }
   void render_shared(int processes, const Words& words) const {
     const Ending ending = mpirun(processes, words);
-    EXPECT_EQ(ending.exit_code, 0) << ending.err;
+    ASSERT_EQ(ending.exit_code, 0) << ending.err;
     EXPECT_EQ(ending.err, "") << "with --quiet";
     EXPECT_EQ(ending.out, "");
   }
@@ -45,7 +46,7 @@ TEST_F(Mpi, AnyNumberOfProcessesWritesTheSameFiles) {
     const Words command = render({"-i", method, "-p", "18", "--force"});
     succeed(command + Words{"-o", "alone.exr", "-o", "alone.state"});
     for (const int processes : {1, 2, 3, 4}) {
-      render_shared(processes, command + Words{"-o", "shared.exr", "-o", "shared.state"});
+      ASSERT_NO_FATAL_FAILURE(render_shared(processes, command + Words{"-o", "shared.exr", "-o", "shared.state"}));
       expect_equal_files("shared.exr", "alone.exr");
       expect_equal_files("shared.state", "alone.state");
     }
@@ -92,6 +93,25 @@ TEST_F(Mpi, ASignalEndsAllProcessesAndSaves) {
   const std::string passes = std::to_string(passes_of("b.state"));
   succeed(render({"-i", "path", "-p", passes, "-o", "alone.state"}));
   expect_equal_files("b.state", "alone.state");
+}
+
+TEST_F(Mpi, FramesAreRenderedOneAfterTheOther) {
+  const Words command = render({"-i", "path", "-p", "5", "--turntable", "3"});
+  succeed(command + Words{"-o", "alone.#.state"});
+  render_shared(3, command + Words{"-o", "shared.#.state", "--json", "shared.#.json"});
+  for (const std::string frame : {"0", "1", "2"}) {
+    expect_equal_files("shared." + frame + ".state", "alone." + frame + ".state");
+    EXPECT_EQ(nlohmann::json::parse(bytes("shared." + frame + ".json"))["passes"], 5);
+  }
+}
+
+TEST_F(Mpi, TheReportCountsTheWorkOfAllProcesses) {
+  const Words command = render({"-i", "probppm", "-p", "12", "-o", "a.exr", "--force"});
+  succeed(command + Words{"--json", "alone.json"});
+  render_shared(3, command + Words{"--json", "shared.json"});
+  const auto alone = nlohmann::json::parse(bytes("alone.json")), shared = nlohmann::json::parse(bytes("shared.json"));
+  for (const std::string count : {"passes", "rays", "photons_emitted", "photons_stored"})
+    EXPECT_EQ(shared[count], alone[count]) << count;
 }
 
 TEST_F(Mpi, ErrorsAreSaidOnce) {

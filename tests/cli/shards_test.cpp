@@ -86,6 +86,15 @@ TEST_F(Shards, WhatCannotBeSharedIsRefused) {
   refuse({"shards", "tiny.pbrt", "-p", "2", "--shards", "3", "-o", "a.exr"}, "at most one shard for each");
   refuse({"shards", "tiny.pbrt", "-p", "2", "--shards", "2", "-o", "a.txt"}, "expected a name that ends in .exr");
   refuse({"shards", "tiny.pbrt", "-p", "2", "-o", "a.exr"}, "--shards");
+  const std::string depends = "depends on all before it, so that it can start with pass 0 only";
+  for (const std::string method : {"sppm", "ppm"})
+    refuse({"shards", "tiny.pbrt", "-i", method, "-p", "4", "--shards", "2", "-o", "a.exr"},
+           "--shards: each pass of " + method + " " + depends);
+  std::string by_ppm = bytes("tiny.pbrt");
+  by_ppm.insert(by_ppm.find("WorldBegin"), "Integrator \"ppm\"\n");
+  dir_.write("ppm.pbrt", by_ppm);
+  refuse({"shards", "ppm.pbrt", "-p", "4", "--shards", "2", "-o", "a.exr"}, depends);
+  succeed({"shards", "ppm.pbrt", "-i", "path", "-p", "4", "--shards", "2", "-o", "a.exr"});
 }
 
 TEST_F(Shards, MergeNamesWhatIsMissingDoubleOrDamaged) {

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Messages by MPI-3. A message is its length and then pieces, since MPI counts bytes with an int.
+// Sends and receives messages by MPI-3. A message is sent as its length and then in pieces, because MPI counts bytes
+// with an int.
 #include <mpi.h>
 
 #include <algorithm>
@@ -22,7 +23,7 @@ void require(int code, const char* what) {
   if (code != MPI_SUCCESS) throw std::runtime_error(what);
 }
 
-// On its way. MPI reads it where it lies.
+// A message that is being sent. MPI reads these bytes until its requests are complete, so they must not move.
 struct Sending {
   std::uint64_t length;
   std::vector<std::byte> bytes;

@@ -19,26 +19,27 @@ namespace lanthorn {
 /// due. While its sums travel, the passes of the next round are rendered, but not of the one after that.
 class Deal {
  public:
-  /// `done`: passes of the state that is resumed.
+  /// `done`: the passes that the resumed state has. Rank 0 does not deal them out again.
   Deal(const StopRule& stop, const Team& team, std::vector<PassRange> done);
 
   enum class Answer : std::uint8_t {
-    pass,  ///< render it
-    wait,  ///< hand over the sums of `round` and ask again: the next passes depend on them
-    end,   ///< no more passes
+    pass,  ///< the process renders `pass`, which belongs to `round`
+    wait,  ///< the process hands over its sums of `round` and asks again; they decide whether more passes follow
+    end,   ///< there are no more passes
   };
   struct Dealt {
     Answer answer = Answer::end;
     std::uint64_t pass = 0, round = 0;
   };
-  /// `seconds`: since the render began.
+  /// Answers one question. `seconds`: the time since the render began.
   Dealt next(double seconds);
-  /// The sums of the oldest round that is not settled have been gathered. `enough`: the later ones are not wanted.
+  /// Marks the oldest unsettled round as settled, after its sums have been gathered. `enough`: the render ends with
+  /// this round, and the sums of later rounds are thrown away.
   void settle(bool enough);
-  /// Ends the render with the passes that are dealt.
+  /// Deals out no more passes. The render ends with the passes that are dealt.
   void stop();
 
-  /// The last round whose sums are wanted, once that is known.
+  /// Returns the last round whose sums go into the picture, or nullopt while it is not known.
   std::optional<std::uint64_t> last_round() const { return last_; }
   bool is_settled() const { return last_ && settled_ > *last_; }
 
@@ -51,10 +52,10 @@ class Deal {
   StopRule stop_;
   std::optional<double> gather_seconds_, preview_seconds_;
   std::vector<PassRange> done_;
-  std::uint64_t pass_;   // the next one
-  std::uint64_t count_;  // of passes dealt and done before
+  std::uint64_t pass_;   // the next pass
+  std::uint64_t count_;  // number of passes that are dealt or were done before
   std::uint64_t dealt_ = 0, dealt_in_round_ = 0;
-  std::uint64_t round_, settled_;  // the one that is dealt, and the first that is not settled
+  std::uint64_t round_, settled_;  // the round that is dealt out, and the first unsettled one
   std::optional<std::uint64_t> last_, look_;
   double gathered_ = 0, preview_due_;  // seconds
 };

@@ -3,16 +3,19 @@
 // How sums reach rank 0.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <cstdint>
 #include <map>
 #include <optional>
 #include <utility>
 
+#include "lanthorn/error.h"
 #include "render/state.h"
 
 namespace lanthorn {
 
-/// Sums of a round; none of a process that has rendered no pass of it.
+/// The sums of a round. A process that has rendered no pass of the round has none.
 using RoundSums = std::optional<RenderState>;
 
 /// Sums go up a tree: each process adds those of its children to its own and passes them on to its parent, so that rank
@@ -25,8 +28,11 @@ class Gathering {
   static int parent(int rank) { return (rank - 1) / 2; }
   static int children(int rank, int size) { return (2 * rank + 1 < size ? 1 : 0) + (2 * rank + 2 < size ? 1 : 0); }
 
-  /// Adds the sums of this process or, with all below it, of a child.
+  /// Adds the sums of this process or, with all below it, of a child. Throws Error if the round is already taken: then
+  /// the processes do not agree on the tree.
   void add(std::uint64_t round, RoundSums sums) {
+    if (taken_ && round <= *taken_)
+      throw Error(fmt::format("sums of round {} arrive after this process has passed that round on", round));
     Part& part = parts_[round];
     ++part.arrived;
     if (!part.sums)
@@ -39,6 +45,7 @@ class Gathering {
   std::optional<std::pair<std::uint64_t, RoundSums>> take_complete() {
     if (parts_.empty() || parts_.begin()->second.arrived < awaited_) return std::nullopt;
     auto node = parts_.extract(parts_.begin());
+    taken_ = node.key();
     return std::pair(node.key(), std::move(node.mapped().sums));
   }
 
@@ -50,6 +57,7 @@ class Gathering {
     RoundSums sums;
   };
   int awaited_;
+  std::optional<std::uint64_t> taken_;  // the last round
   std::map<std::uint64_t, Part> parts_;
 };
 

@@ -108,7 +108,7 @@ std::optional<TeamMember::Task> TeamMember::try_other(RenderState& own) {
   return End{};
 }
 
-// Gives the sums of all rounds before `end` to the thread.
+// Hands the sums of all rounds before `end` over to the thread.
 void TeamMember::hand_over(RenderState& own, std::uint64_t end) {
   for (; round_ < end; ++round_) {
     RoundSums sums;
@@ -206,7 +206,7 @@ void TeamMember::pass_on() {
   }
 }
 
-// Answers questions, and tells the others when their passes are not wanted.
+// Answers questions, and tells the other processes when their passes are not needed any more.
 void TeamMember::serve() {
   const std::lock_guard lock(mutex_);
   while (!waiting_.empty()) {

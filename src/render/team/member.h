@@ -27,13 +27,14 @@
 
 namespace lanthorn {
 
-/// Between the pass loop and the other processes. A thread of its own talks to them while passes are rendered: it deals
-/// (rank 0), and adds up and passes on sums.
+/// Connects the pass loop with the other processes. It has a thread that sends and receives messages while passes are
+/// rendered. This thread deals out passes (at rank 0), adds up sums and passes them on.
 class TeamMember {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// `state`: of a render that is prepared; of rank 0 with the passes that are resumed. `start`: of the render.
+  /// `state`: the state of a prepared render; at rank 0 it has the passes that are resumed. `start`: the time at which
+  /// the render began.
   TeamMember(Team& team, const StopRule& stop, const RenderState& state, Clock::time_point start);
   ~TeamMember();
   TeamMember(const TeamMember&) = delete;
@@ -49,22 +50,23 @@ class TeamMember {
   };
   struct End {};
   using Task = std::variant<Pass, Sums, End>;
-  /// What the pass loop does next: a pass, at rank 0 also sums to be added (call `settle` then), or nothing more. Takes
-  /// the sums of `own` when they are to be gathered, and leaves a state without passes. `rendered`: the counts of the
-  /// passes since the last call. Throws what has gone wrong anywhere in the team.
+  /// Waits for the pass loop's next task. The loop renders a Pass, adds Sums (at rank 0 alone) and then calls `settle`,
+  /// or stops at the End. When the sums of `own` are to be gathered, this function takes them and leaves a state
+  /// without passes. `rendered`: the counts of the passes since the last call. Throws Error if a process of the team
+  /// has failed.
   Task next(RenderState& own, const RenderStatistics& rendered);
-  /// Of rank 0, after sums have been added. `enough`: the render ends with them.
+  /// Rank 0 calls this function after it has added sums. `enough`: the render ends with these sums.
   void settle(bool enough);
-  /// Of rank 0: ends the render with the passes that are dealt.
+  /// Rank 0 calls this function to end the render with the passes that are dealt.
   void stop();
-  /// Waits until all that this process has to pass on is on its way. After the end.
+  /// Waits until this process has passed on all its sums. The pass loop calls this function after the End.
   void finish();
 
-  /// Of other ranks than 0: set when the running pass shall be given up if it leaves no trace.
+  /// The flag is set, at other ranks than 0, when the running pass shall be given up if it can be undone.
   const std::atomic<bool>* give_up() const { return &give_up_; }
-  /// Of other ranks than 0: set when no pass since the last round is wanted.
+  /// The flag is set, at other ranks than 0, when the passes since the last round are not needed any more.
   const std::atomic<bool>* discard() const { return &discard_; }
-  /// Of rank 0: counts of the passes that the others have rendered.
+  /// Returns, at rank 0, the counts of the passes that the other processes have rendered.
   RenderStatistics counts_of_others() const;
 
  private:
@@ -89,25 +91,25 @@ class TeamMember {
   StopRule stop_;
   Clock::time_point start_;
   std::atomic<bool> give_up_{false}, discard_{false};
-  Gathering gathering_;  // of the thread
+  Gathering gathering_;  // only the thread uses it
 
-  mutable std::mutex mutex_;  // of all below
+  mutable std::mutex mutex_;  // protects all members below
   std::condition_variable changed_;
   std::exception_ptr problem_;
   bool is_abandoned_ = false, is_handed_over_ = false;
-  std::uint64_t round_;                                       // of the pass loop
-  std::deque<std::pair<std::uint64_t, RoundSums>> arriving_;  // from the pass loop
-  // Of rank 0.
+  std::uint64_t round_;                                       // the round that the pass loop renders
+  std::deque<std::pair<std::uint64_t, RoundSums>> arriving_;  // the pass loop has handed these over
+  // Only rank 0 uses these.
   std::optional<Deal> deal_;
-  RenderState identity_;  // its settings alone
+  RenderState identity_;  // has the settings of the render and nothing else
   std::set<int> waiting_, ended_;
-  std::map<int, std::uint64_t> told_to_wait_;  // the round, by rank
+  std::map<int, std::uint64_t> told_to_wait_;  // the last round for which each rank was told to wait
   std::deque<RoundSums> gathered_;
   RenderStatistics counts_;
   bool has_told_to_give_up_ = false;
-  // Of other ranks.
-  std::vector<Message> questions_;  // to be sent
-  std::optional<Message> answer_;   // to the question
+  // Only the other ranks use these.
+  std::vector<Message> questions_;  // the thread sends them
+  std::optional<Message> answer_;   // rank 0 has sent it, and the pass loop has not taken it yet
   std::optional<std::uint64_t> last_round_;
   std::thread thread_;
 };

@@ -60,7 +60,7 @@ std::vector<std::byte> encode_counts(const RenderStatistics& statistics) {
 
 void add_counts(RenderStatistics& sum, std::span<const std::byte> bytes) {
   const auto counts = counts_of(sum);
-  if (bytes.size() != counts.size() * sizeof(std::uint64_t)) return;  // of the first question
+  if (bytes.size() != counts.size() * sizeof(std::uint64_t)) return;  // the first question has none
   for (std::size_t i = 0; i < counts.size(); ++i) {
     std::uint64_t count = 0;
     std::memcpy(&count, &bytes[i * sizeof count], sizeof count);

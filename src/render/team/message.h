@@ -16,16 +16,16 @@ namespace lanthorn {
 
 enum class MessageKind : std::uint8_t {
   // To rank 0.
-  join,    ///< text: the settings of the render
-  ask,     ///< a: passes rendered since the last question; counts of these
-  failed,  ///< text: why the process cannot render
+  join,    ///< says which render the process takes part in; rest: the text of its settings
+  ask,     ///< asks for the next pass; rest: the counts of the passes since the last question
+  failed,  ///< says why the process cannot render; rest: the text
   // From rank 0.
-  deal,     ///< a: pass, b: round
-  wait,     ///< a: a round whose sums are wanted first; another answer follows
-  end,      ///< a: the last round that is wanted
-  give_up,  ///< the running pass; a: 1 if no pass of the running round is wanted
+  deal,     ///< deals out pass a, which belongs to round b
+  wait,     ///< asks for the sums of round a; another answer follows
+  end,      ///< says that there are no more passes; a: the last round whose sums go into the picture
+  give_up,  ///< asks to give up the running pass; a: 1 if the whole running round is not needed
   // To the parent.
-  sums,  ///< a: round; bytes of a state, or none
+  sums,  ///< passes on the sums of round a; rest: the bytes of a state, empty if there are no passes
 };
 
 struct Message {
@@ -35,14 +35,15 @@ struct Message {
 };
 
 std::vector<std::byte> encode(const Message& message);
-/// Throws Error if the bytes are no message.
+/// The inverse of `encode`. Throws Error if the bytes are no message.
 Message decode_message(std::span<const std::byte> bytes);
 
 std::vector<std::byte> bytes_of(const std::string& text);
 std::string text_of(std::span<const std::byte> bytes);
 
-/// Counts that are summed over a team: passes, paths, rays and records.
+/// Encodes the counts that rank 0 sums over the team: passes, paths, rays and records.
 std::vector<std::byte> encode_counts(const RenderStatistics& statistics);
+/// Adds what `encode_counts` has encoded.
 void add_counts(RenderStatistics& sum, std::span<const std::byte> bytes);
 
 }  // namespace lanthorn

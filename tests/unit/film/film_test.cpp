@@ -271,7 +271,7 @@ TEST(Film, TechniquesAddUpToColor) {
   EXPECT_NEAR(share.at(1, 0, 0) + share.at(1, 0, 1) + share.at(1, 0, 2), 1, 1e-6);
 
   Film copy = Film::with_exponent(2, 1, film.step_exponent(), film.contents());
-  for (std::size_t i = 0; i < film.plane_count(); ++i) copy.set_plane(i, film.plane(i));
+  for (std::size_t i = 0; i < film.plane_count(); ++i) copy.add_sums(i, 0, film.plane(i));
   EXPECT_EQ(copy.resolve(2).pixels, film.resolve(2).pixels);
   copy.merge(film);
   EXPECT_EQ(select_layer(copy.resolve(4), "technique.share")->pixels, share.pixels);
@@ -312,7 +312,7 @@ TEST(Film, BucketsAreSavedAndMergedExactly) {
   Film copy = Film::with_exponent(2, 2, whole.step_exponent(), {.light = layers, .splats = true, .buckets = buckets});
   for (std::size_t i = 0; i < whole.plane_count(); ++i) {
     EXPECT_EQ(merged.plane(i), whole.plane(i)) << i;
-    copy.set_plane(i, whole.plane(i));
+    copy.add_sums(i, 0, whole.plane(i));
   }
   EXPECT_EQ(copy.resolve(9).pixels, whole.resolve(9).pixels);
   EXPECT_NE(whole.plane(whole.plane_count() - 1), std::vector<std::int64_t>(4));

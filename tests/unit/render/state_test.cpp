@@ -263,12 +263,12 @@ TEST(State, ForgedHeadersAreErrors) {
 TEST(State, AnySumOfCountsCanBeRead) {
   json forged = header();
   forged["film"]["non_finite"] = {{"count", std::uint64_t{1} << 63}, {"pass", 0}, {"pixel", 0}};
-  RenderState a = decode_state(with_header(forged.dump()), "x"), b = a;
+  RenderState a = decode_state(with_header(forged.dump()), "x"), b = empty_like(a);
   b.passes = {{7, 8}};
   FilmReport report;
   report.non_finite = 1;
   report.first_non_finite = FilmPlace{7, 0};
-  b.film.set_report(report);
+  b.film.add_report(report);
   const RenderState merged = merge_states(a, b);
   EXPECT_EQ(decode_state(encode_state(merged), "x").film.report().non_finite, (std::uint64_t{1} << 63) + 1);
 }
@@ -278,7 +278,7 @@ TEST(State, ErrorsNameTheFile) {
   Bytes newer = encode_state(shard(0, 1));
   newer[8] = std::byte{77};
   EXPECT_EQ(test::error_text([&] { decode_state(newer, "a.state"); }),
-            "a.state: a state file of version 77; this program reads version 6");
+            "a.state: a state file of version 77; this program reads versions 6 and 7");
 }
 
 TEST(MergeStates, EqualsOneRender) {
@@ -320,6 +320,94 @@ TEST(MergeStates, RefusesWhatDoesNotBelongTogether) {
   b.integrator = "path";
   EXPECT_EQ(test::error_text([&] { merge_states(a, b); }), "cannot merge: integrators differ (path and probppm)");
   EXPECT_THROW(merge_states(a, shard(3, 5, false)), Error);
+}
+
+TEST(MergeStates, ReadsFilesStraightIntoTheSum) {
+  const test::TemporaryDir dir;
+  const RenderState a = shard(0, 3), b = shard(3, 7);
+  save_state(b, dir.path() / "b.state");
+  const SavedState saved(dir.path() / "b.state");
+  EXPECT_EQ(saved.passes(), b.passes);
+  EXPECT_FALSE(saved.identity_difference(a));
+  EXPECT_EQ(encode_state(*saved.load()), encode_state(b));
+  RenderState sum = a;
+  saved.merge_into(sum);
+  EXPECT_EQ(encode_state(sum), encode_state(merge_states(a, b)));
+  const Bytes before = encode_state(sum);
+  EXPECT_EQ(test::error_text([&] { saved.merge_into(sum); }),
+            "cannot merge: some passes are in both; make shards with disjoint --pass-range");
+  RenderState other = a;
+  other.film = Film(4, 6, 10, a.film.contents());
+  EXPECT_EQ(test::error_text([&] { saved.merge_into(other); }),
+            "cannot merge: the films differ in size, scale or contents");
+  EXPECT_EQ(encode_state(sum), before);
+}
+
+// Sums stop at their limit, whichever way they are added.
+TEST(MergeStates, SaturatesAsTheFilmDoes) {
+  const test::TemporaryDir dir;
+  RenderState a = shard(0, 3), b = shard(3, 7);
+  const std::vector<std::int64_t> large(24, std::int64_t{3} << 60), small(24, -(std::int64_t{3} << 60));
+  for (RenderState* state : {&a, &b}) state->film.add_sums(0, 0, large), state->film.add_sums(1, 0, small);
+  save_state(b, dir.path() / "b.state");
+  RenderState sum = a;
+  SavedState(dir.path() / "b.state").merge_into(sum);
+  EXPECT_EQ(sum.film.plane(0)[23], std::int64_t{1} << 62);
+  EXPECT_EQ(sum.film.plane(1)[0], -(std::int64_t{1} << 62));
+  EXPECT_EQ(encode_state(sum), encode_state(merge_states(a, b)));
+}
+
+// A film of many blocks, the last one of which is not full.
+TEST(State, LargeFilmsAreSavedInBlocks) {
+  RenderState state = shard(0, 1);
+  state.film = Film(211, 97, 10, {.light = {"direct"}, .splats = true});
+  std::mt19937_64 rng(3);
+  std::vector<std::int64_t> values(state.film.pixel_count());
+  for (std::size_t plane = 0; plane < state.film.plane_count(); ++plane) {
+    for (std::int64_t& value : values) value = static_cast<std::int64_t>(rng()) >> (rng() % 40 + 2);
+    state.film.add_sums(plane, 0, values);
+  }
+  const Bytes bytes = encode_state(state);
+  const RenderState read = decode_state(bytes, "x");
+  for (std::size_t i = 0; i < state.film.plane_count(); ++i) EXPECT_EQ(read.film.plane(i), state.film.plane(i)) << i;
+  EXPECT_EQ(encode_state(read), bytes);
+}
+
+// The sums of version 6 are planes of the whole film.
+Bytes in_version_6(const RenderState& state) {
+  const Bytes bytes = encode_state(state);
+  std::uint32_t header_bytes = 0;
+  std::memcpy(&header_bytes, &bytes[12], 4);
+  Bytes old(bytes.begin(), bytes.begin() + 16 + header_bytes);
+  old[8] = std::byte{6};
+  const auto append_packed = [&old](const Bytes& raw) {
+    uLongf size = compressBound(raw.size());
+    Bytes packed(size);
+    compress(reinterpret_cast<Bytef*>(packed.data()), &size, reinterpret_cast<const Bytef*>(raw.data()), raw.size());
+    packed.resize(size);
+    const std::uint64_t length = size;
+    for (const std::byte b : std::as_bytes(std::span(&length, 1))) old.push_back(b);
+    old.insert(old.end(), packed.begin(), packed.end());
+  };
+  for (std::size_t plane = 0; plane < state.film.plane_count(); ++plane) {
+    const std::vector<std::int64_t> values = state.film.plane(plane);
+    Bytes raw;
+    for (int b = 0; b < 64; b += 8)
+      for (const std::int64_t value : values) raw.push_back(static_cast<std::byte>(value >> b));
+    append_packed(raw);
+  }
+  append_packed(state.integrator_state);
+  old.resize(old.size() + sizeof(std::uint32_t));
+  repair_checksum(old);
+  return old;
+}
+
+TEST(State, ReadsTheVersionBefore) {
+  RenderState state = shard(0, 3);
+  state.integrator_state = {std::byte{5}, std::byte{6}};
+  EXPECT_EQ(encode_state(decode_state(in_version_6(state), "x")), encode_state(state));
+  state.integrator_state.clear();
+  EXPECT_EQ(encode_state(decode_state(in_version_6(state), "x")), encode_state(state));
 }
 
 // Shards of the first passes have none.

@@ -60,6 +60,7 @@ class Network {
             .receive = [this, rank]() -> std::optional<TeamMessage> {
               const std::lock_guard lock(mutex_);
               if (is_down_) throw std::runtime_error("the network is down");
+              if (Clock::now() > end_) throw std::runtime_error("the team hangs");
               auto& box = boxes_[static_cast<std::size_t>(rank)];
               if (box.empty()) return std::nullopt;
               TeamMessage message = std::move(box.front());
@@ -78,7 +79,9 @@ class Network {
   }
 
  private:
+  using Clock = std::chrono::steady_clock;
   std::mutex mutex_;
+  Clock::time_point end_ = Clock::now() + std::chrono::minutes(2);
   bool is_down_ = false;
   std::size_t bytes_sent_ = 0;
   std::vector<std::deque<TeamMessage>> boxes_;
@@ -156,6 +159,18 @@ TEST(Team, AnyNumberOfProcessesRendersTheSameBytes) {
       EXPECT_EQ(shared.statistics.passes_elsewhere, 0u);
     }
   }
+}
+
+// Whoever has rendered them.
+TEST(Team, StatisticsCountTheRaysAndPhotonsOfAllProcesses) {
+  const TeamRender render = of(small("probppm", 9));
+  const RenderStatistics alone = run(1, render).statistics, shared = run(3, render).statistics;
+  EXPECT_GT(alone.photons_stored, 0u);
+  EXPECT_EQ(shared.light_paths, alone.light_paths);
+  EXPECT_EQ(shared.photons_stored, alone.photons_stored);
+  EXPECT_EQ(shared.rays.walk, alone.rays.walk);
+  EXPECT_EQ(shared.rays.shadow, alone.rays.shadow);
+  EXPECT_EQ(shared.rays.eye.paths, alone.rays.eye.paths);
 }
 
 TEST(Team, TheBoundOfTheErrorEndsAfterTheSamePass) {
