@@ -724,7 +724,7 @@ TEST_F(Cli, AutoSaysWhatItFoundAndChose) {
   const nlohmann::json found = json("a.json")["settings"]["findings"];
   EXPECT_GT(found["caustic_light"], 0);
   EXPECT_GT(found["light_paths_per_pixel"], 0);
-  EXPECT_EQ(found["everywhere"].size(), 46u);
+  EXPECT_EQ(found["everywhere"].size(), 76u);
   for (const char* file : {"a.exr", "a.state"})
     EXPECT_TRUE(contains(succeed({"info", file}).out, "found      " + found["summary"].get<std::string>())) << file;
 }

@@ -89,7 +89,7 @@ struct Case {
 const std::vector<Case> cases{{"fifty_lamps", fifty_lamps(1), 3.377e-4},
                               {"fifty_lamps_of_which_47_are_strong", fifty_lamps(100), 3.362e-4},
                               {"fifty_lamps_of_which_47_are_10000_times_as_strong", fifty_lamps(10000), 3.37e-4},
-                              {"sunlit_room", sunlit_room, 5.087e-5},
+                              {"sunlit_room", sunlit_room, 5.087e-5, 32},
                               {"two_mirrors", two_mirrors, 2.948e-3},
                               {"fog", fog, 3.110e-3}};
 const std::vector<Case> long_cases{{"stadium", stadium, 1.935e-2, 32}};
