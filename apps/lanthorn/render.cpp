@@ -97,7 +97,7 @@ void print_efforts(const StateSummary& state) {
     const bool surfaces = choice.at("merges").get<bool>(), media = choice.at("merges_in_media").get<bool>();
     const char* merged = surfaces ? (media ? "all" : "surfaces") : (media ? "media" : "-");
     // Older states lack these keys.
-    if (!choice.value("goes_on", true)) merged = "at the end";
+    if (!choice.value("goes_on", true)) merged = "once";
     const char* lens = choice.at("light_paths_per_pixel") > 0 && choice.value("connects_to_lens", true) ? "yes" : "-";
     row(choice, fmt::format("{:11}  {:4}  {}", choice.at("connections").get<int>(), lens, merged));
   }

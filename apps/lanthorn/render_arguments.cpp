@@ -34,33 +34,34 @@ Option threads_option(unsigned& threads, const std::string& what) {
 }
 
 OptionTable read_options(ReadOptions& o) {
-  return {{.names = "--window-glass",
-           .value = flag(o.window_glass),
-           .brief = "Let light pass straight through panes of glass",
-           .details = "Panes are thindielectric and flat slabs of clear dielectric. Every method then finds what comes "
-                      "through windows. For slabs this is an approximation."},
-          {.names = "--sandbox",
-           .value = flag(o.sandbox),
-           .brief = "For untrusted scenes: read only files in the scene's folder and below it",
-           .details = "This holds whatever names and links say. Messages show no content of files."},
-          max_pixels_option(o.max_pixels),
-          {.names = "--texture-memory",
-           .value = into(o.texture_memory, bytes_type()),
-           .brief = "Limit for the textures in memory, such as 4G",
-           .details = "The largest of those that do not fit are kept in tiles in a temporary file and read as they are "
-                      "looked at. The image does not depend on it.",
-           .otherwise = "half of the free memory"},
-          {.names = "--missing",
-           .value = into(o.skip_missing, choice_type<bool>({{"error", false}, {"skip", true}})),
-           .brief = "What to do about missing files that the scene names",
-           .details = "skip leaves out meshes and media; images are grey, spectra 1, lenses of 50 mm. A warning names "
-                      "each file.",
-           .otherwise = "error"},
-          {.names = "--at",
-           .value = into(o.at, animation_time_type()),
-           .brief = "Time in the first animation of a glTF file: 1.5 seconds, or frame=36@24",
-           .details = "frame=36@24 is frame 36 at 24 frames a second; frame 0 is at 0 seconds.",
-           .otherwise = "everything is at rest"}};
+  return {
+      {.names = "--window-glass",
+       .value = flag(o.window_glass),
+       .brief = "Let light pass straight through panes of glass",
+       .details = "Panes are thindielectric and flat slabs of clear dielectric. Every method then finds what comes "
+                  "through windows. For slabs this is an approximation."},
+      {.names = "--sandbox",
+       .value = flag(o.sandbox),
+       .brief = "For untrusted scenes: read only files in the scene's folder and below it",
+       .details = "This holds whatever names and links say. Messages show no content of files."},
+      max_pixels_option(o.max_pixels),
+      {.names = "--texture-memory",
+       .value = into(o.texture_memory, bytes_type()),
+       .brief = "Limit for the textures in memory, such as 4G",
+       .details = "Larger textures go to a temporary file, and a render reads the parts that it needs. The image does "
+                  "not depend on the limit.",
+       .otherwise = "half of the free memory"},
+      {.names = "--missing",
+       .value = into(o.skip_missing, choice_type<bool>({{"error", false}, {"skip", true}})),
+       .brief = "What to do about missing files that the scene names",
+       .details = "skip leaves out meshes and media; images are grey, spectra 1, lenses of 50 mm. A warning names "
+                  "each file.",
+       .otherwise = "error"},
+      {.names = "--at",
+       .value = into(o.at, animation_time_type()),
+       .brief = "Time in the first animation of a glTF file: 1.5 seconds, or frame=36@24",
+       .details = "frame=36@24 is frame 36 at 24 frames a second; frame 0 is at 0 seconds.",
+       .otherwise = "everything is at rest"}};
 }
 
 ValueType<float> environment_rotation_type() {

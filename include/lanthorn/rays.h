@@ -30,7 +30,7 @@ struct RayHit {
   Vec2 uv{0};
   bool emits = false;
 };
-/// One hit for each ray, when the shutter opens. Interfaces between media are no surfaces. Throws Error, naming the
+/// One hit for each ray, when the shutter opens. Rays pass through interfaces between media. Throws Error, naming the
 /// ray, unless all its numbers are finite and its direction is not 0.
 std::vector<RayHit> intersect(const Scene& scene, std::span<const SceneRay> rays);
 

@@ -39,7 +39,8 @@ std::string Effort::describe() const {
                                          : "hardly any light is in caustics";
   if (light_paths_ == 0) return found + ": path tracing";
   const std::string shorter =
-      report_.short_part > 0 ? fmt::format("; eye paths end where they merge in {}", percent(report_.short_part)) : "";
+      report_.short_part > 0 ? fmt::format("; in {}, eye paths end at their first merge", percent(report_.short_part))
+                             : "";
   return fmt::format("{}: {:.2g} light paths a pixel, merged in {} and connected in {} of the picture{}", found,
                      report_.light_paths_per_pixel, percent(report_.merged_part), percent(report_.connected_part),
                      shorter);
