@@ -47,7 +47,7 @@ endfunction()
 # One test program:
 #   lanthorn_test(unit_index KIND unit SOURCES kdtree_test.cpp MODULES index [LIBRARIES ...] [SHARDS n] [NIGHTLY])
 # Its label is its KIND. ctest runs it whole, or as SHARDS tests of about equal length that can run side by side. Kinds
-# that fail fastest are started first. With NIGHTLY, what is instantiated as Nightly/... is a test of its own,
+# that fail fastest are started first. With NIGHTLY, suites whose names begin with Nightly are a test of their own,
 # <name>_long, with the label nightly.
 function(lanthorn_test name)
   cmake_parse_arguments(ARG "NIGHTLY" "KIND;SHARDS" "SOURCES;MODULES;LIBRARIES" ${ARGN})
@@ -77,10 +77,10 @@ function(lanthorn_test name)
     math(EXPR index "${shard} - 1")
     add_test(NAME ${test} COMMAND ${name})
     set_tests_properties(${test} PROPERTIES LABELS ${ARG_KIND} TIMEOUT 2400 COST ${priority}
-      ENVIRONMENT "GTEST_TOTAL_SHARDS=${ARG_SHARDS};GTEST_SHARD_INDEX=${index};GTEST_FILTER=-Nightly/*")
+      ENVIRONMENT "GTEST_TOTAL_SHARDS=${ARG_SHARDS};GTEST_SHARD_INDEX=${index};GTEST_FILTER=-Nightly*")
   endforeach()
   if(ARG_NIGHTLY)
-    add_test(NAME ${name}_long COMMAND ${name} --gtest_filter=Nightly/*)
+    add_test(NAME ${name}_long COMMAND ${name} --gtest_filter=Nightly*)
     set_tests_properties(${name}_long PROPERTIES LABELS "${ARG_KIND};nightly" TIMEOUT 14400)
   endif()
 endfunction()

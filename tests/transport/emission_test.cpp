@@ -205,7 +205,7 @@ std::string curves() {
 // Weights must see the same density of light paths whether a light path or an eye path makes a path. Merging is rare
 // here, so that connections bring what path tracing leaves to others. Where weights on flat curves took dense light
 // paths at their word, indirect light was 6 % too bright, and 27 % on hair.
-TEST(LearnedEmission, KeepsIndirectLight) {
+TEST(NightlyLearnedEmission, KeepsIndirectLight) {
   const std::string lamp = "AttributeBegin\nAreaLightSource \"diffuse\" " + near_lamp + "AttributeEnd\n";
   struct Plain {
     std::string name, text;

@@ -79,7 +79,7 @@ const std::string room = "Material \"diffuse\" \"rgb reflectance\" [0.7 0.6 0.8]
 const std::string camera = "LookAt 0 0.4 3  0 0.4 0  0 1 0\nCamera \"perspective\" \"float fov\" [14]\n";
 
 // A coloured ball that scatters and glows, thick, above the view. Half of it is in another one that only absorbs.
-TEST(Glow, BallInARoom) {
+TEST(NightlyGlow, BallInARoom) {
   const Scene scene = test::scene_from_text(
       camera + film +
       "WorldBegin\nMakeNamedMedium \"glow\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [0.5 1 2] "

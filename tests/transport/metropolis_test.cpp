@@ -47,7 +47,7 @@ void expect_unbiased_layers(const std::string& integrator) {
         << integrator << ", " << layer;
 }
 
-TEST(Metropolis, ShortChainsAreUnbiased) {
+TEST(NightlyMetropolis, ShortChainsAreUnbiased) {
   expect_unbiased_layers("mlt");
   expect_unbiased_layers("mlt:over=path");
 }

@@ -134,7 +134,7 @@ TEST(PhotonMap, KeptMapsNeedOneSetOfWavelengthsAndOneTime) {
 }
 
 // Half of the floor's light is the eye path's and half the maps', caustics of a lamp without size among it.
-TEST(PhotonMap, SharesOfNarrowLobesAddUp) {
+TEST(NightlyPhotonMap, SharesOfNarrowLobesAddUp) {
   const Scene scene = test::scene_from_text(
       "LookAt 0 1 1.4  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [36]\n"
       "Film \"rgb\" \"integer xresolution\" [32] \"integer yresolution\" [32]\nWorldBegin\n" +

@@ -400,7 +400,7 @@ Exponents exponents_of(double alpha) {
 
 // Figs. 2 and 4: at fixed points variance falls like N^-alpha and bias like N^-(1 - alpha), in the end.
 // Direct light is that of a spot light, without noise, and pixels are points: all noise is the photons'.
-TEST(ProbabilisticProgressivePhotonMapping, ConvergesAtThePublishedRates) {
+TEST(NightlyProbabilisticProgressivePhotonMapping, ConvergesAtThePublishedRates) {
   const Scene scene = test::scene_from_text(R"(
 LookAt 0 1 2.2  0 0.6 0  0 1 0
 Camera "perspective" "float fov" [40]

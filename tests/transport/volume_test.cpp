@@ -668,7 +668,7 @@ double radius_in_beam(VolumeEstimator estimator, double angle) {
 }
 
 // At most as wide as the beam, so that it is not lost, and not so narrow that there is noise for nothing.
-TEST(VolumeMethods, RadiusKnowsTheScaleOfDetail) {
+TEST(NightlyVolumeMethods, RadiusKnowsTheScaleOfDetail) {
   for (const double angle : {0.5, 1.0, 2.0, 4.0}) {
     const double width = 2 * 3.5 * std::tan(angle * std::numbers::pi / 180);
     const double radius = radius_in_beam(VolumeEstimator::beam, angle);
