@@ -15,30 +15,36 @@ namespace lanthorn {
 namespace {
 
 // Work in units of a ray of a walk with its scattering, in a scene of a few triangles. The numbers were fitted to times
-// of path, bdpt and vcm with 1/4, 1 and 4 light paths a pixel in nine scenes; they are fixed, so that choices are the
+// of passes with twelve different efforts in ten scenes (docs/performance.md); they are fixed, so that choices are the
 // same on every machine.
 namespace work {
 constexpr double shadow = 0.5;      // of a ray
-constexpr double densities = 0.65;  // of eye and light paths for each other, at each ray of an eye path
-constexpr double connection = 0.46, lookup = 0.36, merge = 0.1;
-constexpr double light_ray = 0.8;  // of a ray
-// The fit gave 1.95 for a light vertex that is connected to the lens. How much of that is the connection is a guess.
-constexpr double light_vertex = 1.05;  // with sorting
-constexpr double lens = 0.9;
+constexpr double eye_path = 0.25;   // where there are light paths, too
+constexpr double densities = 0.35;  // of eye and light paths for each other, at each ray of an eye path
+constexpr double connection = 0.75, lookup = 0.4, merge = 0.4;
+constexpr double light_path = 1.9;
+constexpr double light_ray = 0.8;      // of a ray
+constexpr double light_vertex = 0.35;  // with sorting
+constexpr double lens = 1.6;           // of a light vertex that is connected to the lens
 }  // namespace work
 
 // A ray takes longer in a deep hierarchy.
 double work_of_ray(const Scene& scene) {
   const SceneStatistics& s = scene.statistics();
   const auto primitives = static_cast<double>(s.triangles + s.patches + s.quadrics + s.curves);
-  return 1 + 0.1 * std::max(0.0, std::log2(primitives + 1) - 5);
+  return 1 + 0.03 * std::max(0.0, std::log2(primitives + 1) - 5);
 }
 
-// Passes share the samples of eye paths out among them, so that their means vary less than if they were independent:
-// measured with path, 1.2 to 3.2 times after 32 passes, most under environments, and 2.3 after 256 in a diffuse room.
-constexpr double stratification = 2.3;
-// Of path tracing's product of variance and work: what light paths must do better, since merges have a bias, too.
-constexpr double margin = 0.85;
+// Passes share the samples of eye paths out among them, so that their means vary less than if they were independent. By
+// how much was measured over 48 passes in four scenes (docs/performance.md). Light paths are shared out, too, but radii
+// shrink, which makes about as much more variance.
+namespace stratification {
+constexpr double long_eye_paths = 1.8;
+constexpr double short_eye_paths = 6;  // few dimensions
+}  // namespace stratification
+// Of path tracing's product of variance and work: what light paths must do better. Merges have a bias, too, and path
+// tracing alone is stratified best (1.2 to 1.4 times better than expected in diffuse rooms).
+constexpr double margin = 0.55;
 
 PlaceEffort place_of(const EffortCandidate& c) {
   return {static_cast<std::uint8_t>(c.connections), c.merges, c.merges_in_media, c.sees, c.goes_on};
@@ -88,7 +94,7 @@ class EffortChoice {
 double EffortChoice::work_of(const EffortBlock& block, const EffortCandidate& c) const {
   const EyeWork& of = c.goes_on ? block.work : block.short_work;
   double sum = ray_work_ * (of.rays + work::shadow * of.next_events);
-  if (c.light_paths > 0) sum += work::densities * of.rays;
+  if (c.light_paths > 0) sum += work::eye_path * block.paths + work::densities * of.rays;
   sum += work::connection * of.connections * static_cast<double>(c.connections);
   if (c.merges || c.merges_in_media)
     sum += work::lookup * of.lookups + work::merge * of.merges * static_cast<double>(c.light_paths);
@@ -106,10 +112,12 @@ void EffortChoice::find_variances() {
   const double floor = 0.01 * sqr(light / paths) + std::numeric_limits<double>::min();
   constexpr double least_part = 0.02;  // of a second moment that is variance
   for (const EffortBlock& block : m_.blocks)
-    for (const EffortBlock::Moments& m : block.moments) {
-      const double of_eye_paths = std::max(0.0, m.of_eye_path - m.square),
-                   of_light_paths = m.second + m.rare() - m.of_eye_path;
-      const double variance = std::max(of_eye_paths / stratification + of_light_paths, least_part * m.second);
+    for (std::size_t k = 0; k < m_.candidates.size(); ++k) {
+      const EffortBlock::Moments& m = block.moments[k];
+      const EffortCandidate& c = m_.candidates[k];
+      const double of_eye_paths = std::max(0.0, m.of_eye_path - m.square), of_light_paths = m.second - m.of_eye_path;
+      const double shared_out = c.goes_on ? stratification::long_eye_paths : stratification::short_eye_paths;
+      const double variance = std::max(of_eye_paths / shared_out + of_light_paths + m.rare(), least_part * m.second);
       variances_.push_back(variance / block.paths / (sqr(block.light / block.paths) + floor));
     }
 }
@@ -129,7 +137,8 @@ double EffortChoice::variance_around(std::size_t b, std::size_t candidate) const
 
 double EffortChoice::work_of_light(float light_paths) const {
   return count_per_pixel(light_paths,
-                         work::light_ray * ray_work_ * m_.light_rays + work::light_vertex * m_.light_vertices);
+                         work::light_path * m_.light_paths + work::light_ray * ray_work_ * m_.light_rays +
+                             work::light_vertex * m_.light_vertices);
 }
 
 double EffortChoice::count_per_pixel(float light_paths, double of_pilot) const {
