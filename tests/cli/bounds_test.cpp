@@ -294,6 +294,24 @@ TEST_F(Bounds, MeshesThatDoNotFitAreRefusedByTheirHeader) {
   }
 }
 
+// Each by itself would fit. The shell's limit holds for the address space; a fifth of it is the program's.
+TEST_F(Bounds, MeshesThatDoNotFitTogetherAreRefusedBeforeAnyIsRead) {
+  write("mesh.ply",
+        "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+        "element face 10000000\nproperty list uchar int vertex_indices\nend_header\n");
+  fs::resize_file(path("mesh.ply"), fs::file_size(path("mesh.ply")) + 36 + 10000000);
+  const std::string mesh = "Shape \"plymesh\" \"string filename\" \"mesh.ply\"\n";
+  write("huge.pbrt", tiny_scene + mesh + mesh + mesh);
+  for (const std::string command : {"info huge.pbrt", "render huge.pbrt -q -o a.exr"}) {
+    const Ending ending = run_shell("ulimit -v 4000000; L " + command);
+    EXPECT_EQ(ending.exit_code, 2) << ending.err;
+    EXPECT_TRUE(contains(ending.err, "the geometry of 3 meshes (30000000 faces) with its search trees takes 5.2 GiB")) << ending.err;
+    EXPECT_EQ(contains(ending.err, "huge.pbrt: 3 meshes with 30000000 faces are going to take 5.2 GiB of memory"),
+              command.starts_with("info"))
+        << ending.err;
+  }
+}
+
 TEST_F(Bounds, InfoSaysWhatTheMachineLeaves) {
   const auto machine = nlohmann::json::parse(succeed({"info", "--machine", "--json"}).out);
   EXPECT_GE(machine.at("hardware_threads"), machine.at("allowed_threads"));
