@@ -305,7 +305,8 @@ TEST_F(Bounds, MeshesThatDoNotFitTogetherAreRefusedBeforeAnyIsRead) {
   for (const std::string command : {"info huge.pbrt", "render huge.pbrt -q -o a.exr"}) {
     const Ending ending = run_shell("ulimit -v 4000000; L " + command);
     EXPECT_EQ(ending.exit_code, 2) << ending.err;
-    EXPECT_TRUE(contains(ending.err, "the geometry of 3 meshes (30000000 faces) with its search trees takes 5.2 GiB")) << ending.err;
+    EXPECT_TRUE(contains(ending.err, "the geometry of 3 meshes (30000000 faces) with its search trees takes 5.2 GiB"))
+        << ending.err;
     EXPECT_EQ(contains(ending.err, "huge.pbrt: 3 meshes with 30000000 faces are going to take 5.2 GiB of memory"),
               command.starts_with("info"))
         << ending.err;

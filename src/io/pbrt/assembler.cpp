@@ -539,8 +539,9 @@ void Assembler::expect_ply_files() const {
   }
   if (observer_) observer_(meshes);
   if (meshes.files > 1)
-    require_memory(meshes.bytes, {context_.scene.filename},
-                   fmt::format("the geometry of {} meshes ({:.0f} faces) with its search trees", meshes.files, meshes.faces));
+    require_memory(
+        meshes.bytes, {context_.scene.filename},
+        fmt::format("the geometry of {} meshes ({:.0f} faces) with its search trees", meshes.files, meshes.faces));
 }
 
 void Assembler::read_ply_files() {
