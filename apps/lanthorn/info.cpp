@@ -12,6 +12,7 @@
 #include "console.h"
 #include "json_text.h"
 #include "lanthorn/error.h"
+#include "lanthorn/expected_meshes.h"
 #include "lanthorn/methods.h"
 #include "lanthorn/scene.h"
 #include "machine_report.h"
@@ -69,7 +70,12 @@ void print_table(const Scene& scene, const SceneSummary& s) {
 }
 
 void show_scene(const std::string& file, const ReadOptions& reading, bool as_json) {
-  const SharedScene scene = build_scene(read_scene(file, reading));
+  const SharedScene scene = build_scene(read_scene(file, reading, [&](const ExpectedMeshes& meshes) {
+    constexpr double large = 1e9;  // bytes; less is loaded in seconds
+    if (meshes.bytes >= large)
+      say("{}: {} meshes with {:.0f} faces are going to take {:.1f} GiB of memory\n", file, meshes.files, meshes.faces,
+          meshes.bytes / (1 << 30));
+  }));
   const SceneSummary summary = summarize(*scene);
   if (!as_json) return print_table(*scene, summary);
   nlohmann::json report = scene_report(summary);

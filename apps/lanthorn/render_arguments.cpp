@@ -157,7 +157,8 @@ OptionTable render_options(RenderArguments& a) {
        .value = into(o.memory, bytes_type()),
        .brief = "Limit for the picture and the photons or light vertices of a pass, such as 512M or 2G",
        .details = "The scene is not counted. A render that needs more is refused before it starts; reversephotonmap "
-                  "works in blocks of pixels that fit. The image does not depend on it.",
+                  "works in blocks of pixels that fit. Of many light paths, most methods keep 8.4M at a time (auto, "
+                  "bdpt, bpm, vcm: 2.1M; sppm, ppm, photonmap: all). The image does not depend on it.",
        .otherwise = "free memory"}};
   const OptionTable parameters{{.names = "--set",
                                 .value = each_into(o.set, setting_type()),

@@ -6,6 +6,7 @@
 
 #include "io/replace_environment.h"
 #include "lanthorn/error.h"
+#include "lanthorn/expected_meshes.h"
 #include "lanthorn/scene.h"
 #include "math/hash.h"
 #include "render/method_of_file.h"
@@ -19,17 +20,12 @@ struct SceneFile::Parts {
   std::optional<EnvironmentPicture> environment{};
 };
 
-SceneFile::SceneFile(const std::filesystem::path& path, const ReadOptions& options)
-    : parts_(new Parts{{path, options, method_of_file}, path, options}) {
-  const EnvironmentChoice& environment = options.environment;
-  if (environment.source.empty() && !(environment == EnvironmentChoice()))
-    throw Error("--environment-rotate, -scale, -up: expected --environment FILE, which they are about");
-}
-SceneFile::~SceneFile() = default;
+namespace {
 
-SceneDescription SceneFile::at(const std::optional<double>& seconds) {
-  auto& [source, path, options, environment] = *parts_;
-  SceneDescription scene = source.read(seconds);
+SceneDescription read_at(SceneSource& source, const std::filesystem::path& path, const ReadOptions& options,
+                         std::optional<EnvironmentPicture>& environment, const std::optional<double>& seconds,
+                         const MeshObserver& observer) {
+  SceneDescription scene = source.read(seconds, observer);
   if (options.window_glass) {
     if (replace_window_glass(scene) == 0)
       scene.warnings.push_back(
@@ -43,8 +39,33 @@ SceneDescription SceneFile::at(const std::optional<double>& seconds) {
   return scene;
 }
 
+void check_environment(const EnvironmentChoice& environment) {
+  if (environment.source.empty() && !(environment == EnvironmentChoice()))
+    throw Error("--environment-rotate, -scale, -up: expected --environment FILE, which they are about");
+}
+
+}  // namespace
+
+SceneFile::SceneFile(const std::filesystem::path& path, const ReadOptions& options)
+    : parts_(new Parts{{path, options, method_of_file}, path, options}) {
+  check_environment(options.environment);
+}
+SceneFile::~SceneFile() = default;
+
+SceneDescription SceneFile::at(const std::optional<double>& seconds) {
+  return read_at(parts_->source, parts_->path, parts_->options, parts_->environment, seconds, {});
+}
+
 SceneDescription read_scene(const std::filesystem::path& path, const ReadOptions& options) {
-  return SceneFile(path, options).at(options.at);
+  return read_scene(path, options, {});
+}
+
+SceneDescription read_scene(const std::filesystem::path& path, const ReadOptions& options,
+                            const MeshObserver& observer) {
+  SceneSource source(path, options, method_of_file);
+  check_environment(options.environment);
+  std::optional<EnvironmentPicture> environment;
+  return read_at(source, path, options, environment, options.at, observer);
 }
 
 SceneDescription read_pbrt_string(std::string_view text, const std::filesystem::path& folder, const std::string& name) {

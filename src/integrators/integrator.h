@@ -70,6 +70,9 @@ struct MemoryUse {
   MediumRecords media = MediumRecords::none;  ///< what is kept of light paths in media
   double per_medium_photon = 0;               ///< for each of these records, if not `bytes_of_medium_photon`
   bool fills_the_rest = false;                ///< works in blocks that take the rest of `RenderSettings::memory`
+  /// Light paths whose records are in memory at once, of methods that work in blocks of them (`LightPathBlocks`).
+  std::uint64_t photon_block = std::numeric_limits<std::uint64_t>::max();
+  double per_pixel_of_blocks = 0;  ///< besides `per_pixel`, for each pass that has several blocks
 };
 /// Bytes of a photon while it is traced and sorted into its map (measured: 104 to 115).
 inline constexpr double bytes_per_photon = 130;

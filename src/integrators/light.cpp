@@ -51,14 +51,22 @@ class LightTracer final : public Integrator {
     return contents;
   }
 
+  MemoryUse memory_use(const RenderSettings& settings) const override {
+    return {.per_light_path = bytes_per_light_path, .photon_block = settings.photon_block};
+  }
   bool passes_may_overlap() const override { return true; }
   PassReport render_pass(const RenderJob& job, std::uint32_t pass, const FilmPass& film,
                          const PhaseObserver& begin) override {
     PassReport report;
     begin(Phase::photons);
-    const LightPaths paths(job.scene, {job.settings.seed, Stream::light, pass, job.settings.photons});
+    const LightPathBlocks blocks(job.settings.photons, job.settings.photon_block);
+    LightPaths paths(job.scene, {job.settings.seed, Stream::light, pass, job.settings.photons, nullptr, blocks[0]});
     report.light_paths = paths.total();
     report.rays = trace_lights(job, paths, film);
+    for (std::uint32_t block = 1; block < blocks.count(); ++block) {
+      paths.begin_block(blocks[block]);
+      report.rays += trace_lights(job, paths, film);
+    }
     begin(Phase::eye);
     report.rays += see_emission(job, {.unlit_glow = job.scene.has_unlit_glow()}, pass, film);
     return report;

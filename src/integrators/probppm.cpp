@@ -32,11 +32,13 @@ class ProbabilisticProgressivePhotonMapper final : public Integrator {
     return photon_limitation(scene, photon_source_.volume());
   }
   std::string remark() const override { return photon_source_.emission().remark; }
-  MemoryUse memory_use(const RenderSettings&) const override {
+  MemoryUse memory_use(const RenderSettings& settings) const override {
     return {.per_photon = bytes_per_photon,
             .per_light_path = bytes_per_light_path,
             .per_pixel = 2 * sizeof(float),
-            .media = records_for(photon_source_.volume())};
+            .media = records_for(photon_source_.volume()),
+            .photon_block = settings.photon_block,
+            .per_pixel_of_blocks = PartialLight::bytes_per_pixel};
   }
   bool passes_share_wavelengths() const override { return true; }
   bool passes_may_overlap() const override { return true; }
@@ -54,21 +56,29 @@ class ProbabilisticProgressivePhotonMapper final : public Integrator {
 PassReport ProbabilisticProgressivePhotonMapper::render_pass(const RenderJob& job, std::uint32_t pass,
                                                              const FilmPass& film, const PhaseObserver& begin) {
   const PassRadii radii(first_radius_, RadiusSchedule{1, alpha_}.radius(pass));
-  const PassPhotons photons = photon_source_.trace(job, pass, radii.classes(), kernel_.support(radii.largest()), begin);
-  PassReport report = photons.report;
-  report.radius = radii.typical();
-  report.rays += trace_eye_paths(
-      job, {pass, {job.settings.max_depth, 3}}, film, [&](Sampler& sampler) { return photons.draw.of_path(sampler); },
-      [&](const PathContext& path, const EyeStart& start, const PixelPlace& place, LightLayers& layers) {
-        const auto gather = [&](const SurfaceVertex& vertex, const LobeSplit& split) {
-          return photons.gather([&](const PhotonMap<HashGrid>& map, int flux_class) {
-            return gather_photons(map, vertex, {kernel_, radii.at(place.index, flux_class), split}, path.w);
+  const PassDraw draw = draw_for_pass(job, pass);
+  const LightPathBlocks blocks(job.settings.photons, job.settings.photon_block);
+  PartialLight partial(job.view.window, draw.w, blocks.count());
+  PassReport report;
+  for (std::uint32_t block = 0; block < blocks.count(); ++block) {
+    const PassPhotons photons =
+        photon_source_.trace(job, pass, radii.classes(), kernel_.support(radii.largest()), begin, blocks[block]);
+    report += photons.report;
+    report.rays += trace_eye_paths(
+        job, {pass, {job.settings.max_depth, 3}, &partial}, film,
+        [&](Sampler& sampler) { return draw.of_path(sampler); },
+        [&](const PathContext& path, const EyeStart& start, const PixelPlace& place, LightLayers& layers) {
+          const auto gather = [&](const SurfaceVertex& vertex, const LobeSplit& split) {
+            return photons.gather([&](const PhotonMap<HashGrid>& map, int flux_class) {
+              return gather_photons(map, vertex, {kernel_, radii.at(place.index, flux_class), split}, path.w);
+            });
+          };
+          with_gather_visitor(photons, PathVisitor{path, layers}, gather, [&](auto visitor) {
+            walk_from_camera(path, start.camera, job.view.medium, std::move(visitor));
           });
-        };
-        with_gather_visitor(photons, PathVisitor{path, layers}, gather, [&](auto visitor) {
-          walk_from_camera(path, start.camera, job.view.medium, std::move(visitor));
         });
-      });
+  }
+  report.radius = radii.typical();
   return report;
 }
 

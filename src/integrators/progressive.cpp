@@ -31,12 +31,12 @@ void PassPhotonSource::prepare(const RenderJob& job) {
 }
 
 PassPhotons PassPhotonSource::trace(const RenderJob& job, std::uint32_t pass, const FluxClasses& classes, float support,
-                                    const PhaseObserver& begin) {
+                                    const PhaseObserver& begin, const LightPathBlock& block) {
   const RenderSettings& settings = job.settings;
-  PassPhotons photons{draw_for_pass(job, pass), {}, {}, {}};
+  PassPhotons photons{draw_for_pass(job, pass), {}, {}, {}, block.begin == 0};
   begin(Phase::photons);
   const auto tracer = tracers_.borrow();
-  tracer->trace(job.scene, {settings.seed, Stream::light, pass, settings.photons},
+  tracer->trace(job.scene, {settings.seed, Stream::light, pass, settings.photons, nullptr, block},
                 {.max_depth = settings.max_depth, .classes = classes, .media = records_for(estimator_)}, photons.draw,
                 emission_.get());
   begin(Phase::build);

@@ -39,12 +39,13 @@ FilmContents progressive_layers(const Scene& scene);
 /// Message about light of the scene that photon methods with this estimator do not find. Empty if they find all light.
 std::string photon_limitation(const Scene& scene, VolumeEstimator estimator);
 
-/// The photons of a pass, with what its eye paths share.
+/// The photons of a pass or of one of its blocks, with what the eye paths of the pass share.
 struct PassPhotons {
   PassDraw draw;
   std::vector<PhotonMap<HashGrid>> maps;  ///< by class (`FluxClasses`)
   std::optional<VolumeGather> volume;     ///< none if there are no photons in media
   PassReport report;                      ///< of the photons' part of the pass
+  bool are_first = true;                  ///< of the pass's blocks
 
   /// The sum of `gather(map, flux_class)` over the classes of photons.
   template <class Gather>
@@ -73,7 +74,7 @@ class PassPhotonSource {
   /// Traces the photons and builds the maps of their classes for gathers of `support` metres or less, times the radius
   /// factor of the class. At the end it announces the phase of eye paths.
   PassPhotons trace(const RenderJob& job, std::uint32_t pass, const FluxClasses& classes, float support,
-                    const PhaseObserver& begin);
+                    const PhaseObserver& begin, const LightPathBlock& block = {});
 
  private:
   EmissionChoice choice_;
@@ -92,22 +93,34 @@ class PassPhotonSource {
 template <class Gather>
 struct GatherVisitor : PathVisitor {
   Gather gather;
+  bool adds_all = true;  ///< false: the light of photons alone, along the same eye path
 
-  using PathVisitor::operator();  // Without photons in media, the walk continues there as that of a path tracer.
+  // Without photons in media, the walk continues there as that of a path tracer.
+  Continuation operator()(const MediumVertex& vertex) {
+    if (adds_all) return PathVisitor::operator()(vertex);
+    return vertex.may_scatter ? Continuation::go_on() : Continuation::stop();
+  }
+  void operator()(const MediumRay& ray) {
+    if (adds_all) PathVisitor::operator()(ray);
+  }
+  void operator()(const EmissionVertex& vertex) {
+    if (adds_all) PathVisitor::operator()(vertex);
+  }
+  void operator()(const EscapeVertex& vertex) {
+    if (adds_all) PathVisitor::operator()(vertex);
+  }
   NarrowContinuation operator()(const SurfaceVertex& vertex) {
-    const WalkState& state = vertex.state;
     layers.see(vertex);
-    layers.add_hit(vertex, hit_emitter(path, vertex));
+    if (adds_all) layers.add_hit(vertex, hit_emitter(path, vertex));
     if (!vertex.may_scatter) return {Continuation::stop()};
     if (!has_non_delta(vertex.at.bsdf)) return {Continuation::go_on()};
 
     const LobeSplit split = split_lobes(vertex);
     const NarrowContinuation answer = NarrowContinuation::with_sky_branch(split);
-    path.sampler.seek(visitor_dimensions(state.depth));
-    const DirectLight direct = next_event(path, vertex, answer);
-    layers.add(class_of_next_event(state), direct.radiance, direct.dispersed);
-    if (!split.is_all_narrow()) {
-      add(state, gather(vertex, split));
+    if (adds_all) add_direct(vertex, answer);
+    if (split.is_all_narrow()) return answer;
+    add(vertex.state, gather(vertex, split));
+    if (adds_all) {
       add_sky(path, vertex, layers);
       add_unlit_glow(path, vertex, split, layers);
     }
@@ -115,6 +128,11 @@ struct GatherVisitor : PathVisitor {
   }
 
  protected:
+  void add_direct(const SurfaceVertex& vertex, const NarrowContinuation& answer) {
+    path.sampler.seek(visitor_dimensions(vertex.state.depth));
+    const DirectLight direct = next_event(path, vertex, answer);
+    layers.add(class_of_next_event(vertex.state), direct.radiance, direct.dispersed);
+  }
   void add(const WalkState& state, const GatheredLight& light) {
     layers.add(state.non_delta == 0 ? PathClass::caustic : PathClass::indirect, light.caustic, false);
     layers.add(PathClass::indirect, light.indirect, false);
@@ -124,7 +142,7 @@ struct GatherVisitor : PathVisitor {
 
 // Clang 14 has no deduction guides for aggregates.
 template <class Gather>
-GatherVisitor(PathVisitor, Gather) -> GatherVisitor<Gather>;
+GatherVisitor(PathVisitor, Gather, bool) -> GatherVisitor<Gather>;
 
 /// The same with photons in media.
 template <class Gather>
@@ -146,15 +164,17 @@ struct VolumeGatherVisitor : GatherVisitor<Gather> {
   NarrowContinuation operator()(const SurfaceVertex& vertex) {
     if (!walk.is_gathered()) return GatherVisitor<Gather>::operator()(vertex);
     this->layers.see(vertex);
-    if (walk.finds_hits()) this->layers.add_hit(vertex, hit_emitter(this->path, vertex));
+    if (this->adds_all && walk.finds_hits()) this->layers.add_hit(vertex, hit_emitter(this->path, vertex));
     return {walk.follow_glow(this->path)};
   }
   Continuation operator()(const MediumVertex& vertex) {
     this->layers.see(vertex);
     if (walk.is_gathered()) return walk.follow_glow(this->path);
     if (!vertex.may_scatter) return Continuation::stop();
+    // The decision of the walk comes after the numbers of next-event estimation.
     const MediumLight light = walk.scatter(this->path, vertex, this->ray_light);
-    this->layers.add(class_of_next_event(vertex.state), light.direct.radiance, light.direct.dispersed);
+    if (this->adds_all)
+      this->layers.add(class_of_next_event(vertex.state), light.direct.radiance, light.direct.dispersed);
     this->add(vertex.state, light.gathered);
     return Continuation::go_on();
   }
@@ -166,7 +186,7 @@ VolumeGatherVisitor(GatherVisitor<Gather>, VolumeWalk) -> VolumeGatherVisitor<Ga
 /// those that have some.
 template <class Gather, class Follow>
 void with_gather_visitor(const PassPhotons& photons, const PathVisitor& base, const Gather& gather, Follow&& follow) {
-  const GatherVisitor<Gather> visitor{base, gather};
+  const GatherVisitor<Gather> visitor{base, gather, photons.are_first};
   if (photons.volume)
     follow(VolumeGatherVisitor{visitor, VolumeWalk(*photons.volume)});
   else

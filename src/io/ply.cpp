@@ -297,6 +297,20 @@ struct Faces {
   std::uint64_t polygons = 0, degenerate = 0;
 };
 
+PlyNeed need_of(const Header& header) {
+  double vertices = 0, faces = 0;
+  bool has_attributes = false;
+  for (const Element& element : header.elements) {
+    if (element.name == "vertex") {
+      vertices = static_cast<double>(element.count);
+      for (const Property& p : element.properties) has_attributes = has_attributes || attribute_named(p.name) > z;
+    }
+    if (element.name == "face") faces = static_cast<double>(element.count);
+  }
+  const double trees = faces * (tree_bytes_per_triangle + building_bytes_per_triangle);
+  return {faces, mesh_bytes(vertices, faces, has_attributes) + trees};
+}
+
 template <class Body>
 class BodyReader {
  public:
@@ -324,21 +338,11 @@ class BodyReader {
   Faces faces;
 
  private:
-  // Refuses a mesh whose scene cannot be built, before any of it is read. Faces count as triangles.
+  // Refuses a mesh whose scene cannot be built, before any of it is read.
   void require_memory_of(const Header& header) const {
-    double vertices_there = 0, triangles = 0;
-    bool has_attributes = false;
-    for (const Element& element : header.elements) {
-      check_size(element);
-      if (element.name == "vertex") {
-        vertices_there = static_cast<double>(element.count);
-        for (const Property& p : element.properties) has_attributes = has_attributes || attribute_named(p.name) > z;
-      }
-      if (element.name == "face") triangles = static_cast<double>(element.count);
-    }
-    const double trees = triangles * (tree_bytes_per_triangle + building_bytes_per_triangle);
-    require_memory(mesh_bytes(vertices_there, triangles, has_attributes) + trees, body_.place(),
-                   fmt::format("the mesh ({:.0f} faces) with its search tree", triangles));
+    for (const Element& element : header.elements) check_size(element);
+    const PlyNeed need = need_of(header);
+    require_memory(need.bytes, body_.place(), fmt::format("the mesh ({:.0f} faces) with its search tree", need.faces));
   }
 
   // Before memory is allocated: the file must be long enough for the header's counts.
@@ -562,6 +566,16 @@ PlyMesh parse_plain(std::string_view bytes, const std::string& name) {
 }
 
 }  // namespace
+
+std::optional<PlyNeed> need_of_ply(std::string_view start) {
+  if (is_gzip(start)) return std::nullopt;
+  const std::string unnamed;
+  try {
+    return need_of(HeaderReader(start, unnamed).read());
+  } catch (const Error&) {  // thrown again when the file is read
+    return std::nullopt;
+  }
+}
 
 PlyMesh parse_ply(std::string_view bytes, const std::string& name) {
   return is_gzip(bytes) ? parse_plain(gunzip(bytes, name), name) : parse_plain(bytes, name);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -23,5 +24,13 @@ struct PlyMesh {
 /// vertex_index). Other elements and properties are skipped. Throws Error with `name` and, in the header and in ascii
 /// files, the line.
 PlyMesh parse_ply(std::string_view bytes, const std::string& name);
+
+/// What a mesh will take, by the header of its file.
+struct PlyNeed {
+  double faces = 0;  ///< larger polygons count as triangles
+  double bytes = 0;  ///< of memory, with its search tree
+};
+/// `start`: the first bytes of a file. nullopt if they do not hold the header of a PLY file that is not compressed.
+std::optional<PlyNeed> need_of_ply(std::string_view start);
 
 }  // namespace lanthorn

@@ -138,7 +138,7 @@ SceneSource::SceneSource(const std::filesystem::path& path, const ReadOptions& o
 }
 SceneSource::~SceneSource() = default;
 
-SceneDescription SceneSource::read(const std::optional<double>& seconds) {
+SceneDescription SceneSource::read(const std::optional<double>& seconds, const MeshObserver& observer) {
   if (seconds && !is_gltf(name_)) throw Error(name_ + ": --at, --frames: only glTF files have animations");
   SceneDescription scene = discreet(access_, name_, [&] {
     if (bytes_.empty()) bytes_ = decompressed(access_.read(name_), name_);
@@ -147,7 +147,7 @@ SceneDescription SceneSource::read(const std::optional<double>& seconds) {
     const FileReader read = decompressing_reader(access_);
     return finished(scene_extension(name_) == ".obj"
                         ? completed(obj::read(bytes_, folder_, name_, read, &access_), options_)
-                        : pbrt::read(bytes_, folder_, name_, methods_, read, &access_),
+                        : pbrt::read(bytes_, folder_, name_, methods_, read, &access_, observer),
                     bytes_, access_, files_);
   });
   files_ = scene.files;

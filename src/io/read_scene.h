@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include "io/known_method.h"
+#include "lanthorn/expected_meshes.h"
 #include "lanthorn/scene.h"
 
 namespace lanthorn {
@@ -27,7 +28,7 @@ class SceneSource {
   SceneSource(const SceneSource&) = delete;
   SceneSource& operator=(const SceneSource&) = delete;
 
-  SceneDescription read(const std::optional<double>& seconds);
+  SceneDescription read(const std::optional<double>& seconds, const MeshObserver& observer = {});
 
  private:
   SceneDescription read_model(const std::optional<double>& seconds);

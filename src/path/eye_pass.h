@@ -4,7 +4,9 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "base/parallel.h"
 #include "film/film_pass.h"
@@ -71,26 +73,56 @@ inline EyeStart start_eye_path(const View& view, const PixelPlace& place, float 
   return {eye_ray(view, raster, sampler.next2(), time), raster, f.weight};
 }
 
+/// The light of the eye paths of a pass whose photons come in blocks. Each eye path is traced once for each block, with
+/// the same random numbers, and its light is kept from trace to trace.
+class PartialLight {
+ public:
+  static constexpr std::size_t bytes_per_pixel = sizeof(LightLayers);
+
+  /// `w` must outlive it.
+  PartialLight(const PixelWindow& window, const Wavelengths& w, std::uint32_t traces)
+      : layers_(traces > 1 ? static_cast<std::size_t>(window.width()) * static_cast<std::size_t>(window.height()) : 0,
+                LightLayers(w)),
+        traces_left_(traces) {}
+
+  bool is_whole() const { return layers_.empty(); }  ///< one trace finds all of it
+  bool is_last_trace() const { return traces_left_ == 1; }
+  LightLayers& of(const PixelPlace& place) { return layers_[place.index]; }
+  void end_trace() { --traces_left_; }
+
+ private:
+  std::vector<LightLayers> layers_;  // by pixel
+  std::uint32_t traces_left_;
+};
+
 /// The eye paths of a pass.
 struct EyePass {
   std::uint32_t pass = 0;
   WalkLimits limits;
+  PartialLight* partial = nullptr;  ///< null: one trace finds all light
 };
 
 /// Adds one sample to each pixel: `draw(sampler)` gives the eye path its time and wavelengths, and
-/// `trace(path, start, place, layers)` follows it and collects its light.
+/// `trace(path, start, place, layers)` follows it and collects its light. With `EyePass::partial`, the last trace adds
+/// the samples.
 template <class Draw, class Trace>
 RayCounts trace_eye_paths(const RenderJob& job, const EyePass& pass, const FilmPass& film, Draw&& draw_path,
                           Trace&& trace) {
-  return for_each_pixel(job.view.window, [&](const PixelPlace& place, RayCounts& counts) {
+  PartialLight* const partial = pass.partial && !pass.partial->is_whole() ? pass.partial : nullptr;
+  const RayCounts rays = for_each_pixel(job.view.window, [&](const PixelPlace& place, RayCounts& counts) {
     film.prefetch(place.index);
     Sampler sampler = eye_sampler(job, place, pass.pass);
     const PathDraw draw = draw_path(sampler);
     const EyeStart start = start_eye_path(job.view, place, draw.time, sampler);
-    LightLayers layers(draw.w);
-    trace(PathContext{job.scene, draw.w, sampler, counts, pass.limits}, start, place, layers);
-    film.add(place.index, layers.sample(start.filter_weight, job.view.sensor));
+    const PathContext path{job.scene, draw.w, sampler, counts, pass.limits};
+    LightLayers whole(draw.w);
+    LightLayers& layers = partial ? partial->of(place) : whole;
+    trace(path, start, place, layers);
+    if (!partial || partial->is_last_trace())
+      film.add(place.index, layers.sample(start.filter_weight, job.view.sensor));
   });
+  if (partial) partial->end_trace();
+  return rays;
 }
 /// The same for eye paths whose times and wavelengths are their own.
 template <class Trace>

@@ -39,8 +39,15 @@ std::uint32_t flight_code(const EmissionSample& emission, const BoundingSphere& 
 
 LightPaths::LightPaths(const Scene& scene, const LightPass& pass)
     : scene_(scene), pass_(pass), allocation_(allocate(scene, pass)) {
-  const SceneStatistics& s = scene.statistics();
-  if (s.triangles + s.patches >= large_scene && total() <= std::numeric_limits<std::uint32_t>::max())
+  begin_block(pass.block);
+}
+
+void LightPaths::begin_block(const LightPathBlock& block) {
+  first_ = std::min(block.begin, total());
+  count_ = std::min(block.end, total()) - first_;
+  const SceneStatistics& s = scene_.statistics();
+  if (s.triangles + s.patches >= large_scene && !pass_.is_in_order &&
+      count_ <= std::numeric_limits<std::uint32_t>::max())
     order_ = coherent_order();
 }
 
@@ -51,12 +58,13 @@ const PhotonAllocation::Share& LightPaths::share_of(std::uint64_t number) const 
 }
 
 std::vector<std::uint32_t> LightPaths::coherent_order() const {
-  std::vector<std::uint64_t> keys(total());
+  std::vector<std::uint64_t> keys(count_);
   const Wavelengths any = Wavelengths::rgb(0.5f);  // position and direction do not depend on them
   parallel_chunks(keys.size(), light_path_chunk, [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const PhotonAllocation::Share& share = share_of(i);
-      Sampler sampler = sampler_of(i, share);
+      const std::uint64_t number = first_ + i;
+      const PhotonAllocation::Share& share = share_of(number);
+      Sampler sampler = sampler_of(number, share);
       const std::optional<EmissionSample> emission = sample_emission_of(path_of(share), sampler, any);
       const std::uint64_t code = emission ? flight_code(*emission, scene_.bounding_sphere()) : 0;
       keys[i] = code << 32 | i;

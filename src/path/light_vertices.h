@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "base/parallel.h"
-#include "base/prefetch.h"
 #include "path/light_pass.h"
 #include "path/subpath.h"
 
@@ -51,7 +50,8 @@ struct LightBeam {
   bool dispersed = false;
 };
 
-/// The vertices of all light paths of a pass, path by path. A path's number is its position in the order of LightPaths.
+/// The vertices of the light paths of a pass or of one of its blocks, path by path. A path's number is its position in
+/// the order of LightPaths.
 class LightVertices {
  public:
   /// Removes all vertices. `chunks` is LightPaths::chunk_count().
@@ -98,10 +98,6 @@ class LightVertices {
         if (is_wanted(v)) selected[i++] = &v;
     });
     return selected;
-  }
-  /// Tells the processor that the vertices of path `number` will be read soon.
-  [[gnu::always_inline]] void prefetch(std::size_t number) const {
-    for (const LightVertex& vertex : path(number)) lanthorn::prefetch(vertex);
   }
 
  private:

@@ -10,7 +10,8 @@
 
 namespace lanthorn {
 
-/// Settings of every method, besides scene and view. All but `memory` affect the picture.
+/// Settings of every method, besides scene and view. All but `memory` affect the picture; `photon_block` does so by
+/// rounding alone.
 struct RenderSettings {
   std::uint64_t seed = 0;
   ColorMode color = ColorMode::rgb;
@@ -18,7 +19,10 @@ struct RenderSettings {
   /// Parts of a pass, which the method renders one after the other. Each has wavelengths of its own, its share of the
   /// light paths, and an eye path in every pixel. 1 for RGB colour and for methods whose paths draw their wavelengths.
   std::uint32_t parts = 1;
-  std::uint64_t photons = 0;                      ///< light paths per part of a pass
+  std::uint64_t photons = 0;  ///< light paths per part of a pass
+  /// Light paths whose photons are in memory at once, of methods that can gather from some photons after the others.
+  /// Fixed, so that no sum depends on the memory that there is; as many as a picture of 3840 x 2160 has by default.
+  std::uint64_t photon_block = std::uint64_t{1} << 23;
   std::uint64_t memory = std::uint64_t{1} << 30;  ///< bytes for methods that work in blocks of pixels
 };
 

@@ -90,7 +90,7 @@ void PhotonTracer::trace(const Scene& scene, LightPass pass, const PhotonRule& r
   if (guide != nullptr) pass.guide = &guide->emission;
   const LightPaths paths(scene, pass);
   const MediumRecords records = scene.has_scattering_media() ? rule.media : MediumRecords::none;
-  emitted_ = paths.total();
+  emitted_ = paths.count();
   photons_.resize(static_cast<std::size_t>(rule.classes.count()));
   for (auto& of_class : photons_) {
     of_class.resize(paths.chunk_count());
@@ -98,12 +98,12 @@ void PhotonTracer::trace(const Scene& scene, LightPass pass, const PhotonRule& r
   }
   medium_photons_.resize(records == MediumRecords::none ? 0 : paths.chunk_count());
   for (std::vector<MediumPhoton>& photons : medium_photons_) photons.clear();
-  const float beam_share = share_of_beams(emitted_);
+  const float beam_share = share_of_beams(paths.total());
   const WalkLimits limits{rule.max_depth - 1, rule.roulette_depth};
   rays_ = paths.for_each([&](const LightPath& start, Sampler& sampler, RayCounts& counts, std::size_t chunk) {
     const PathContext path{scene, draw.w, sampler, counts, limits};
     const float time = draw.of_path(sampler).time;
-    const StoreVisitor store{rule, start, static_cast<float>(emitted_), draw.w, photons_, chunk};
+    const StoreVisitor store{rule, start, static_cast<float>(paths.total()), draw.w, photons_, chunk};
     const auto follow = [&](auto visitor) { walk_from_light(path, start, time, std::move(visitor)); };
     switch (records) {
       case MediumRecords::none:

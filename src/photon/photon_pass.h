@@ -45,8 +45,8 @@ struct PhotonRule {
 /// Photons by class, chunk of work, and path.
 using PhotonChunks = std::vector<std::vector<std::vector<Photon>>>;
 
-/// Traces the photons of a pass and keeps them in path order: chunk by chunk and path by path, independent of the
-/// number of threads. Reuses its memory from pass to pass.
+/// Traces the photons of a pass, or of a block of its light paths, and keeps them in path order: chunk by chunk and
+/// path by path, independent of the number of threads. Reuses its memory from pass to pass.
 class PhotonTracer {
  public:
   /// All photons of the pass share `draw`. `guide` may be null; the pass has none of its own.
@@ -57,6 +57,7 @@ class PhotonTracer {
   std::span<const std::vector<Photon>> chunks(std::size_t flux_class = 0) const { return photons_[flux_class]; }
   /// In media, by the same chunks; none if the rule asks for none.
   std::span<const std::vector<MediumPhoton>> medium_chunks() const { return medium_photons_; }
+  /// Light paths of the block, or of the whole pass.
   std::uint64_t emitted() const { return emitted_; }
   /// On surfaces and in media.
   std::uint64_t stored() const { return stored_; }

@@ -51,6 +51,20 @@ Limit limit_of(std::optional<std::uint64_t> option) {
   return {static_cast<double>(*available), "there are only " + memory_text(static_cast<double>(*available))};
 }
 
+std::string too_many_photons(const RenderSettings& settings, const MemoryUse& use, const Stored& per_path, double bytes,
+                             double film, const Limit& limit) {
+  const bool has_blocks = use.photon_block < settings.photons;
+  const char* const of = has_blocks ? " at a time" : settings.parts > 1 ? " of a part of a pass" : " a pass";
+  return fmt::format(
+      "{} light paths{} take {} of memory{}, beside {} for the picture, but {}: choose fewer with --photons{}",
+      has_blocks ? use.photon_block : settings.photons, of, memory_text(bytes),
+      per_path.photons > 0 ? fmt::format(" ({:.2g} photons each)", per_path.photons) : "", memory_text(film),
+      limit.words,
+      use.photon_block == MemoryUse{}.photon_block
+          ? ", or a method that does not need all of them at a time (probppm, vcm, bpm, auto)"
+          : "");
+}
+
 }  // namespace
 
 std::size_t plan_memory(const Scene& scene, const View& view, const Integrator& integrator,
@@ -60,8 +74,8 @@ std::size_t plan_memory(const Scene& scene, const View& view, const Integrator& 
   const int width = view.window.width(), height = view.window.height();
   // At the end the picture stands beside the sums, with what its error is measured from.
   constexpr double film_bytes = 1.5 * sizeof(std::int64_t);
-  const double film =
-      static_cast<double>(width) * height * (film_bytes * static_cast<double>(Film::stride(contents)) + use.per_pixel);
+  const double pixels = static_cast<double>(width) * height;
+  const double film = pixels * (film_bytes * static_cast<double>(Film::stride(contents)) + use.per_pixel);
   if (film > limit.bytes)
     throw Error(fmt::format(
         "{} x {} pixels take {} of memory, but {}: choose fewer with --resolution, or render parts with --crop", width,
@@ -69,16 +83,13 @@ std::size_t plan_memory(const Scene& scene, const View& view, const Integrator& 
 
   const bool keeps_photons = use.per_photon > 0 && settings.photons > 0;
   const Stored per_path = keeps_photons ? stored_per_light_path({scene, view, settings}, use) : Stored{};
-  const double paths = static_cast<double>(settings.photons);
-  const double photons = paths * (per_path.bytes + use.per_light_path);
-  if (film + photons > limit.bytes)
-    throw Error(fmt::format(
-        "{} light paths{} a pass take {} of memory{}, beside {} for the picture, but {}: choose fewer with --photons",
-        settings.photons, settings.parts > 1 ? " of a part of" : "", memory_text(photons),
-        keeps_photons ? fmt::format(" ({:.2g} photons each)", per_path.photons) : "", memory_text(film), limit.words));
+  const std::uint64_t held = std::min(settings.photons, use.photon_block);
+  const double of_blocks = held < settings.photons ? pixels * use.per_pixel_of_blocks : 0;
+  const double photons = static_cast<double>(held) * (per_path.bytes + use.per_light_path) + of_blocks;
+  if (film + photons > limit.bytes) throw Error(too_many_photons(settings, use, per_path, photons, film, limit));
   // Random numbers and maps count to 2^32.
   constexpr double most_numbers = std::numeric_limits<std::uint32_t>::max();
-  if (std::max(paths, paths * per_path.photons) > most_numbers)
+  if (std::max(static_cast<double>(settings.photons), static_cast<double>(held) * per_path.photons) > most_numbers)
     throw Error(fmt::format("--photons {}: a pass has {:.0f} light paths and as many photons at most", settings.photons,
                             most_numbers));
   if (use.fills_the_rest && option) settings.memory = static_cast<std::uint64_t>(limit.bytes - film - photons);

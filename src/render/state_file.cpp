@@ -463,8 +463,10 @@ std::vector<std::byte> encode_state(const RenderState& state, const SaveOptions&
 }
 
 RenderState decode_state(std::span<const std::byte> bytes, const std::string& file) {
-  return StateReader(source_of(bytes), file).load();
+  return read_state(bytes, file).load();
 }
+
+StateReader read_state(std::span<const std::byte> bytes, const std::string& name) { return {source_of(bytes), name}; }
 
 void save_state(const RenderState& state, const std::filesystem::path& path, const SaveOptions& options) {
   write_file(path, encode_state(state, options));

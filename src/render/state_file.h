@@ -74,6 +74,9 @@ class StateReader {
   std::vector<Piece> pieces_;
 };
 
+/// Of bytes, which must outlive the reader. `name`: of the file, in messages.
+StateReader read_state(std::span<const std::byte> bytes, const std::string& name);
+
 /// Of a file. Throws Error also if it cannot be read.
 StateReader open_state_reader(const std::filesystem::path& path);
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -257,7 +258,10 @@ Effort EffortChoice::best() const {
     least = product;
   };
   if (!has_specular_) consider(0, margin);
-  for (const float light_paths : light_path_choices) consider(light_paths, 1);
+  constexpr double most_numbers = std::numeric_limits<std::uint32_t>::max();  // of random sequences
+  for (const float light_paths : light_path_choices)
+    if (static_cast<double>(light_paths) * static_cast<double>(job_.settings.photons) <= most_numbers)
+      consider(light_paths, 1);
   std::vector<PlaceEffort> places;
   for (const std::size_t k : best.candidates) places.push_back(place_of(m_.candidates[k]));
   const auto paths = static_cast<double>(best_paths) * static_cast<double>(job_.settings.photons);

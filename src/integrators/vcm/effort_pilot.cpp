@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <concepts>
+#include <limits>
 #include <span>
 #include <utility>
 #include <vector>
@@ -152,6 +153,7 @@ void Pilot::run(std::uint32_t number, const VcmPreparation& prepared) {
   RenderSettings of_pilot = job_.settings, of_other = job_.settings;
   of_pilot.seed ^= own_seed * (2 * number + 1);
   of_other.seed ^= own_seed * (2 * number + 2);
+  of_pilot.photon_block = of_other.photon_block = std::numeric_limits<std::uint64_t>::max();
   const RenderJob job{job_.scene, job_.view, of_pilot}, other_job{job_.scene, job_.view, of_other};
   VcmPass pass(job, typical_pass, settings_, prepared, vertices_);
   VcmPass other(other_job, typical_pass, settings_, prepared, other_vertices_);

@@ -42,9 +42,9 @@ RayCounts trace_light_paths(const VcmPass& pass, const FilmPass& film) {
       });
 }
 
-RayCounts trace_eye_paths(const VcmPass& pass, const FilmPass& film) {
+RayCounts trace_eye_paths(const VcmPass& pass, PartialLight& partial, const FilmPass& film) {
   return trace_eye_paths(
-      pass.job, {pass.number, {pass.max_depth(), pass.settings.roulette_depth}}, film,
+      pass.job, {pass.number, {pass.max_depth(), pass.settings.roulette_depth}, &partial}, film,
       [&](Sampler& sampler) { return pass.draw_of_eye_path(sampler); },
       [&](const PathContext& path, const EyeStart& start, const PixelPlace&, LightLayers& layers) {
         walk_from_camera(path, start.camera, pass.job.view.medium, EyeVisitor(path, pass, start.raster, layers));
@@ -68,18 +68,42 @@ struct UntilFirstMerge {
 void count_photons(VcmPass& pass) {
   const RenderJob& job = pass.job;
   pass.sees = false;
-  trace_light_paths(pass, nullptr, [](const auto&...) {});
-  PassReport unused;
-  pass.build_merges(unused);
-  for_each_pixel(job.view.window, [&](const PixelPlace& place, RayCounts& counts) {
-    Sampler sampler = eye_sampler(job, place, pass.number);
-    const PathDraw draw = pass.draw_of_eye_path(sampler);
-    const EyeStart start = start_eye_path(job.view, place, draw.time, sampler);
-    LightLayers layers(draw.w);
-    const PathContext path{job.scene, draw.w, sampler, counts, {pass.max_depth(), pass.settings.roulette_depth}};
-    walk_from_camera(path, start.camera, job.view.medium,
-                     UntilFirstMerge{EyeVisitor(path, pass, start.raster, layers)});
-  });
+  for (std::uint32_t block = 0; block < pass.blocks.count(); ++block) {
+    pass.begin_block(block);
+    trace_light_paths(pass, nullptr, [](const auto&...) {});
+    PassReport unused;
+    pass.build_merges(unused);
+    for_each_pixel(job.view.window, [&](const PixelPlace& place, RayCounts& counts) {
+      Sampler sampler = eye_sampler(job, place, pass.number);
+      const PathDraw draw = pass.draw_of_eye_path(sampler);
+      const EyeStart start = start_eye_path(job.view, place, draw.time, sampler);
+      LightLayers layers(draw.w);
+      const PathContext path{job.scene, draw.w, sampler, counts, {pass.max_depth(), pass.settings.roulette_depth}};
+      walk_from_camera(path, start.camera, job.view.medium,
+                       UntilFirstMerge{EyeVisitor(path, pass, start.raster, layers)});
+    });
+  }
+}
+
+// The steps of a pass, for one block of light paths after the other.
+PassReport render_blocks(VcmPass& pass, const FilmPass& film, const PhaseObserver& begin) {
+  PartialLight partial(pass.job.view.window, pass.draw.w, pass.blocks.count());
+  PassReport report;
+  report.light_paths = pass.light_paths.total();
+  for (std::uint32_t block = 0; block < pass.blocks.count(); ++block) {
+    begin(Phase::photons);
+    pass.begin_block(block);
+    report.rays += trace_light_paths(pass, film);
+    if (pass.settings.switches.merging) {
+      begin(Phase::build);
+      PassReport built;
+      pass.build_merges(built);
+      report += built;
+    }
+    begin(Phase::eye);
+    report.rays += trace_eye_paths(pass, partial, film);
+  }
+  return report;
 }
 
 class VertexConnectionAndMerging final : public Integrator {
@@ -87,7 +111,7 @@ class VertexConnectionAndMerging final : public Integrator {
   explicit VertexConnectionAndMerging(const VcmSettings& settings) : settings_(settings) {}
 
   FilmContents film_contents(const Scene& scene) const override { return settings_.film_contents(scene); }
-  MemoryUse memory_use(const RenderSettings&) const override { return settings_.memory_use(); }
+  MemoryUse memory_use(const RenderSettings& settings) const override { return settings_.memory_use(settings); }
   std::string limitation(const Scene& scene) const override { return settings_.limitation(scene); }
   std::string remark() const override {
     if (!prepared_) return {};
@@ -126,15 +150,7 @@ class VertexConnectionAndMerging final : public Integrator {
     if (tests_) count_photons_before(job, number);
     const auto vertices = vertices_.borrow();
     VcmPass pass(job, number, settings_, *prepared_, *vertices, tests_ ? &*tests_ : nullptr);
-    PassReport report;
-    report.light_paths = pass.light_paths.total();
-    report.rays = trace_light_paths(pass, film);
-    if (settings_.switches.merging) {
-      begin(Phase::build);
-      pass.build_merges(report);
-    }
-    begin(Phase::eye);
-    report.rays += trace_eye_paths(pass, film);
+    const PassReport report = render_blocks(pass, film, begin);
     if (pass.uniformity) pass.uniformity->end_pass();
     return report;
   }

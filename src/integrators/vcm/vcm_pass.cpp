@@ -41,8 +41,9 @@ VcmPass::VcmPass(const RenderJob& job_, std::uint32_t number_, const VcmSettings
       effort(prepared.effort),
       number(number_),
       draw(draw_for_pass(job, number)),
+      blocks(prepared.effort.light_paths(), vertex_block(job.settings)),
       light_paths(job.scene, {job.settings.seed, Stream::light, number, prepared.effort.light_paths(),
-                              prepared.emission.starts()}),
+                              prepared.emission.starts(), blocks[0], blocks.count() > 1 && !draw.is_of_one_time()}),
       volume_kernels(prepared.volume_radii.kernels(settings.alpha, number)),
       sees(connects() && effort.sees()),
       beam_share(volume_kernels.uses_beams() ? share_of_beams(light_paths.total()) : 0.0f),
@@ -54,6 +55,13 @@ VcmPass::VcmPass(const RenderJob& job_, std::uint32_t number_, const VcmSettings
   bidirectional.techniques = {.light_paths = paths,
                               .connects = settings.switches.connections,
                               .volume = volume_kernels.merging(paths, beam_share)};
+}
+
+void VcmPass::begin_block(std::uint32_t block) {
+  if (block == 0) return;
+  surface_merges.reset();
+  volume_merges.reset();
+  light_paths.begin_block(blocks[block]);
 }
 
 void VcmPass::build_merges(PassReport& report) {
@@ -91,10 +99,21 @@ std::size_t VcmPass::partner(std::size_t first, int i, int count) const {
   return (first + all * static_cast<std::size_t>(i) / static_cast<std::size_t>(count)) % all;
 }
 
+std::span<const LightVertex> VcmPass::light_path(std::size_t path) const {
+  const std::size_t first = light_paths.first();
+  if (path < first || path - first >= std::max<std::size_t>(light_paths.count(), 1)) return {};
+  return vertices.path(path - first);
+}
+
 PathDraw VcmPass::draw_of_eye_path(Sampler& sampler) const {
   if (draw.is_of_one_time()) return draw.of_path(sampler);
-  const std::span<const LightVertex> light_path = vertices.path(partner(sampler));
-  return light_path.empty() ? draw.of_path(sampler) : PathDraw{light_path.front().at.time, draw.w};
+  const std::size_t path = partner(sampler);
+  if (blocks.count() > 1 && light_paths.total() > 0) {  // the light path may be one of another block
+    Sampler of_light_path = light_paths.sampler_of(path);
+    return draw.of_path(of_light_path);
+  }
+  const std::span<const LightVertex> met = light_path(path);
+  return met.empty() ? draw.of_path(sampler) : PathDraw{met.front().at.time, draw.w};
 }
 
 }  // namespace lanthorn

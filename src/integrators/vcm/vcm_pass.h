@@ -3,8 +3,10 @@
 // What the light paths and the eye paths of a pass of vertex connection and merging share.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 
 #include "integrators/integrator.h"
 #include "integrators/vcm/effort.h"
@@ -33,27 +35,34 @@ struct VcmPreparation {
   VcmPreparation& operator=(const VcmPreparation&) = delete;
 };
 
-/// One pass. Keeps references to all that it is made from. `tests`: see MergeShrinks; null if all radii shrink alike.
+/// One pass. Its light paths come in blocks (`LightPathBlocks`): those of a block are traced, sorted, and met by all
+/// eye paths before those of the next. Keeps references to all that it is made from. `tests`: see MergeShrinks; null if
+/// all radii shrink alike.
 struct VcmPass {
   const RenderJob& job;
   const VcmSettings& settings;
   const Effort& effort;
   std::uint32_t number;
   PassDraw draw;
-  LightPaths light_paths;
+  LightPathBlocks blocks;
+  LightPaths light_paths;  ///< of the block
   VolumeKernels volume_kernels;
   bool sees;                    ///< light paths are connected to the lens somewhere
   float beam_share;             ///< of light paths whose flights are kept
   Bidirectional bidirectional;  ///< but η, which is each pixel's own
   UniformityTests* uniformity;  ///< to be told of the photons of this pass; null: they are not counted
   MergeRadii radii;
-  LightVertices& vertices;
-  // Of the light paths, once these are traced:
+  LightVertices& vertices;  ///< of the block
+  // Of the block's light paths, once these are traced:
   std::optional<SurfaceMerges> surface_merges;
   std::optional<VolumeMerges> volume_merges;  ///< none if there are none in media
 
   VcmPass(const RenderJob& job, std::uint32_t number, const VcmSettings& settings, const VcmPreparation& prepared,
           LightVertices& vertices, UniformityTests* tests = nullptr);
+  /// Goes on to a block; the pass begins with the first one.
+  void begin_block(std::uint32_t block);
+  /// True if the block is the first one: eye paths then find the light that does not depend on light paths, too.
+  bool is_first_block() const { return light_paths.first() == 0; }
   /// Sorts the vertices of the light paths for merging.
   void build_merges(PassReport& report);
 
@@ -74,6 +83,8 @@ struct VcmPass {
   std::size_t partner(Sampler& of_eye_path) const;
   /// Number `i` of `count` light paths, the first of which is `first`: at equal distances among all.
   std::size_t partner(std::size_t first, int i, int count) const;
+  /// The vertices of a light path. None if it belongs to another block.
+  std::span<const LightVertex> light_path(std::size_t path) const;
   /// Time and wavelengths of an eye path: those of the light path that it is connected to.
   PathDraw draw_of_eye_path(Sampler& sampler) const;
 };

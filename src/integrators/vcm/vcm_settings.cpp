@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <string>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "base/parameters.h"
 #include "integrators/vcm/uniformity_tests.h"
 #include "lanthorn/error.h"
+#include "path/eye_pass.h"
 #include "path/light_vertices.h"
 #include "photon/media/volume_radius.h"
 
@@ -96,18 +98,21 @@ std::string VcmSettings::limitation(const Scene& scene) const {
   return "without merging in media (volume=beam), none of the light that they scatter is found";
 }
 
-MemoryUse VcmSettings::memory_use() const {
+MemoryUse VcmSettings::memory_use(const RenderSettings& settings) const {
   constexpr double spare = 1.25;  // of vectors that grow; measured: 1.02
   const double merged = switches.merging ? bytes_per_photon : 0;
   const double of_vertex = spare * sizeof(LightVertex);
   const double most_light_paths = chooses_effort ? 4 : 1;  // over those of `RenderSettings::photons`
+  const auto block = static_cast<double>(vertex_block(settings));
   return {.per_photon = most_light_paths * (of_vertex + merged),
           .per_light_path = most_light_paths * bytes_per_light_path,
           .per_pixel = static_cast<double>(sizeof(float) + (chooses_effort ? UniformityTests::bytes_per_pixel : 0)),
           .first_depth = 1,
           .media = MediumRecords::points,
           .per_medium_photon =
-              most_light_paths * (of_vertex + (switches.merging ? bytes_of_medium_photon(MediumRecords::points) : 0))};
+              most_light_paths * (of_vertex + (switches.merging ? bytes_of_medium_photon(MediumRecords::points) : 0)),
+          .photon_block = static_cast<std::uint64_t>(std::max(block / most_light_paths, 1.0)),
+          .per_pixel_of_blocks = PartialLight::bytes_per_pixel};
 }
 
 IntegratorInfo vcm_info() {

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -53,12 +54,17 @@ struct VcmSettings {
   VcmSettings(const Parameters& parameters, VcmSwitches switches);
   FilmContents film_contents(const Scene& scene) const;
   std::string limitation(const Scene& scene) const;
-  MemoryUse memory_use() const;
+  MemoryUse memory_use(const RenderSettings& settings) const;
   bool merges_in_media() const {
     return std::any_of(volume.begin(), volume.end(), [](bool used) { return used; });
   }
   bool merges_by(VolumeEstimator estimator) const { return volume[static_cast<std::size_t>(estimator)]; }
 };
+
+/// Light paths of a block. Their vertices take about four times as much memory as photons.
+constexpr std::uint64_t vertex_block(const RenderSettings& settings) {
+  return std::max<std::uint64_t>(settings.photon_block / 4, 1);
+}
 
 std::unique_ptr<Integrator> make_vertex_connection_and_merging(const VcmSettings& settings);
 

@@ -7,6 +7,7 @@
 #include <optional>
 #include <variant>
 
+#include "base/prefetch.h"
 #include "integrators/vcm/moments.h"
 #include "integrators/vcm/vcm_pass.h"
 #include "path/connections.h"
@@ -120,7 +121,7 @@ class EyeVisitor {
     if (moments) bidirectional_.weighed = &moments->weighed;
     if (pass.connects() && bidirectional_.techniques.connections > 0) {
       partner_ = pass.partner(path.sampler);
-      pass.vertices.prefetch(partner_);
+      for (const LightVertex& vertex : pass.light_path(partner_)) prefetch(vertex);
     }
     subpath_.begin_at_lens(pass.job.view.camera);
   }
@@ -131,7 +132,7 @@ class EyeVisitor {
     subpath_.arrive(path_, v);
     if (moments_) is_short_ = v.state.non_delta == 0;
     if (moments_ && v.state.non_delta <= 1) ++moments_->short_work.rays;
-    if (hits_count(v.state) && pass_.shows(0, v.state.depth + 1))
+    if (pass_.is_first_block() && hits_count(v.state) && pass_.shows(0, v.state.depth + 1))
       add_hit(v, hit_emitter(path_, bidirectional_, v, subpath_), v.state.depth > 1);
     if (!v.may_scatter) return {Continuation::stop()};
     if (v.state.non_delta > 0 && !bidirectional_.techniques.goes_on) return {Continuation::go_on(), true};
@@ -161,12 +162,12 @@ class EyeVisitor {
   // It hits a light (TR eqs. 42, 43).
   void operator()(const EmissionVertex& v) {
     const bool is_light = path_.scene.volume_light(v.state.medium).has_value();
-    if ((is_light && !hits_count(v.state)) || !pass_.shows(0, v.state.depth + 2)) return;
+    if (!pass_.is_first_block() || (is_light && !hits_count(v.state)) || !pass_.shows(0, v.state.depth + 2)) return;
     add_hit(v, hit_glow(path_, bidirectional_, v, subpath_), is_light && v.state.depth > 0);
   }
   void operator()(const EscapeVertex& v) {
     if (moments_ && v.state.non_delta <= 1) ++moments_->short_work.rays;
-    if (!hits_count(v.state) || !pass_.shows(0, v.state.depth + 2)) return;
+    if (!pass_.is_first_block() || !hits_count(v.state) || !pass_.shows(0, v.state.depth + 2)) return;
     subpath_.escape(v.state, v.direction);
     add_hit(v, hit_environment(path_, bidirectional_, v, subpath_), v.state.depth > 0);
   }
@@ -203,14 +204,14 @@ class EyeVisitor {
   void connect_all(const Vertex& v) {
     const int eye_vertices = v.state.depth + 1;
     count(&EyeWork::next_events);
-    if (pass_.shows(1, eye_vertices)) {
+    if (pass_.is_first_block() && pass_.shows(1, eye_vertices)) {
       const DirectLight direct = next_event(path_, bidirectional_, v, subpath_);
       layers_.add(class_of_next_event(v.state), technique::nee, direct.radiance, direct.dispersed);
       note(direct.radiance, direct.dispersed, &TechniqueDensities::walk);
     }
     const auto connections = static_cast<int>(bidirectional_.techniques.connections);
     for (int i = 0; i < connections; ++i)
-      for (const LightVertex& other : pass_.vertices.path(pass_.partner(partner_, i, connections))) {
+      for (const LightVertex& other : pass_.light_path(pass_.partner(partner_, i, connections))) {
         if (v.state.depth + other.depth > pass_.max_depth() || !pass_.shows(other.depth + 1, eye_vertices)) continue;
         const DirectLight light = connect(path_, bidirectional_, v, subpath_, other);
         layers_.add(PathClass::indirect, technique::vc, light.radiance, light.dispersed);
@@ -241,7 +242,8 @@ class EyeVisitor {
       count(&EyeWork::merges);
       if (tests) tests->count(pixel, v.at.shading.to_local(place.offset), place.u);
     };
-    if (tests && tests->seeks_obstacles() && !is_flat_and_clear(path_, v, pass_.radii.at(raster_)))
+    if (tests && tests->seeks_obstacles() && pass_.is_first_block() &&
+        !is_flat_and_clear(path_, v, pass_.radii.at(raster_)))
       tests->note_obstacle(pixel);
     has_merged_ = true;
     count(&EyeWork::lookups);

@@ -2,14 +2,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/pbrt/assembler.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <charconv>
 #include <exception>
 #include <new>
+#include <span>
 #include <utility>
 
+#include "base/memory.h"
 #include "base/parallel.h"
 #include "io/ply.h"
+#include "lanthorn/file.h"
 #include "shape/curves.h"
 
 namespace lanthorn::pbrt {
@@ -52,7 +57,7 @@ std::size_t bytes_of(const Parameters& parameters) {
 
 }  // namespace
 
-Assembler::Assembler(Context& context) : context_(context) {
+Assembler::Assembler(Context& context, MeshObserver observer) : context_(context), observer_(std::move(observer)) {
   materials_.push_back({"diffuse", "", ParameterList("Material \"diffuse\"", {}, {})});
   material_references_.push_back({});
 }
@@ -513,6 +518,32 @@ void Assembler::report_missing_files() {
   });
 }
 
+// Refuses meshes that are too large together, before any of them is read. Files that cannot be read are reported when
+// they are.
+void Assembler::expect_ply_files() const {
+  if (context_.access == nullptr || pending_plys_.empty()) return;
+  constexpr std::uint64_t largest_header = 1u << 16;
+  ExpectedMeshes meshes;
+  for (const PendingPly& ply : pending_plys_) {
+    try {
+      const PartlyReadFile file(context_.access->checked(ply.path));
+      std::string start(std::min(file.size(), largest_header), '\0');
+      file.read(0, std::as_writable_bytes(std::span(start)));
+      const auto need = need_of_ply(start);
+      if (!need) continue;
+      ++meshes.files;
+      meshes.faces += need->faces;
+      meshes.bytes += need->bytes;
+    } catch (const Error&) {
+    }
+  }
+  if (observer_) observer_(meshes);
+  if (meshes.files > 1)
+    require_memory(
+        meshes.bytes, {context_.scene.filename},
+        fmt::format("the geometry of {} meshes ({:.0f} faces) with its search trees", meshes.files, meshes.faces));
+}
+
 void Assembler::read_ply_files() {
   struct Result {
     PlyMesh mesh;
@@ -570,6 +601,7 @@ void Assembler::finish(Place place) {
   build_materials();
   resolve_shapes();
   report_missing_files();
+  expect_ply_files();
   read_ply_files();
 }
 

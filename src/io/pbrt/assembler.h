@@ -15,6 +15,7 @@
 #include "io/pbrt/context.h"
 #include "io/pbrt/directive.h"
 #include "io/ply.h"
+#include "lanthorn/expected_meshes.h"
 #include "lanthorn/transform.h"
 
 namespace lanthorn::pbrt {
@@ -42,7 +43,7 @@ struct GraphicsState {
 /// that directives change. Throws Error at the directive if it is wrong or in the wrong block.
 class Assembler {
  public:
-  explicit Assembler(Context& context);
+  explicit Assembler(Context& context, MeshObserver observer = {});
 
   void execute(Directive directive);
   /// After the last directive, at `place`: resolves names that may be defined after they are used, reads the PLY files.
@@ -164,11 +165,13 @@ class Assembler {
   void resolve_shapes();
   void resolve_references(description::Shape& shape);
   void report_missing_files();
+  void expect_ply_files() const;
   void read_ply_files();
   void place_ply(const PendingPly& pending, PlyMesh&& mesh);
   void check_names_used() const;
 
   Context& context_;
+  MeshObserver observer_;
   GraphicsState state_;
   std::vector<Saved> saved_;
   std::map<std::string, TransformPair> coordinate_systems_;

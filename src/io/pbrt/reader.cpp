@@ -47,10 +47,10 @@ Place parse_upgraded(std::string_view text, const DirectiveSink& sink, FileStack
 }  // namespace
 
 SceneDescription read(std::string_view text, std::filesystem::path folder, const std::string& name, FindMethod methods,
-                      FileReader read_file, const FileAccess* access) {
+                      FileReader read_file, const FileAccess* access, MeshObserver observer) {
   Context context = make_context(text, std::move(folder), name, std::move(read_file), access);
   context.methods = std::move(methods);
-  Assembler assembler(context);
+  Assembler assembler(context, std::move(observer));
   FileStack files;
   const DirectiveSink build = [&](Directive d) { assembler.execute(std::move(d)); };
   try {

@@ -27,12 +27,16 @@ TeamMember::TeamMember(Team& team, const StopRule& stop, const RenderState& stat
       stop_(stop),
       start_(start),
       gathering_(team.link.rank, team.link.size),
+      tree_check_(team.link.size, gathering_.awaited_children()),
       round_(team.rounds),
       identity_(identity_of(state)) {
   if (is_first())
     deal_.emplace(stop, team, state.passes);
   else
-    questions_.push_back({.kind = MessageKind::join, .rest = bytes_of(state.settings)});
+    questions_.push_back({.kind = MessageKind::join,
+                          .a = static_cast<std::uint64_t>(Gathering::parent(team.link.rank)),
+                          .b = static_cast<std::uint64_t>(gathering_.awaited_children()),
+                          .rest = bytes_of(state.settings)});
   thread_ = std::thread([this] { run(); });
 }
 
@@ -153,9 +157,8 @@ bool TeamMember::step() {
 void TeamMember::handle(const TeamMessage& received) {
   Message message = decode_message(received.bytes);
   if (message.kind == MessageKind::sums) {
-    RoundSums sums;
-    if (!message.rest.empty()) sums = decode_state(message.rest, fmt::format("the sums of process {}", received.from));
-    return gathering_.add(message.a, std::move(sums));
+    PackedSums sums{std::move(message.rest), fmt::format("the sums of process {}", received.from)};
+    return gathering_.add_child(message.a, std::move(sums));
   }
   const std::lock_guard lock(mutex_);
   if (is_first()) return handle_at_first(received.from, message);
@@ -177,7 +180,7 @@ void TeamMember::handle_at_first(int from, const Message& message) {
     if (const auto difference = identity_difference(identity_, other))
       throw Error(
           fmt::format("process {} of {} renders something else: it differs in {}", from, team_.link.size, *difference));
-    return;
+    return tree_check_.join(from, message.a, message.b);
   }
   add_counts(counts_, message.rest);
   waiting_.insert(from);
@@ -189,19 +192,19 @@ void TeamMember::add_arrived() {
     const std::lock_guard lock(mutex_);
     arrived.swap(arriving_);
   }
-  for (auto& [round, sums] : arrived) gathering_.add(round, std::move(sums));
+  for (auto& [round, sums] : arrived) gathering_.add_own(round, std::move(sums));
 }
 
 void TeamMember::pass_on() {
   while (auto complete = gathering_.take_complete()) {
-    auto& [round, sums] = *complete;
     if (is_first()) {
+      RoundSums sums = complete->take_sums();
       const std::lock_guard lock(mutex_);
       gathered_.push_back(std::move(sums));
       changed_.notify_all();
     } else {
       send(Gathering::parent(team_.link.rank),
-           {.kind = MessageKind::sums, .a = round, .rest = sums ? encode_state(*sums) : std::vector<std::byte>()});
+           {.kind = MessageKind::sums, .a = complete->round, .rest = complete->take_bytes()});
     }
   }
 }

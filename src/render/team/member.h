@@ -91,7 +91,8 @@ class TeamMember {
   StopRule stop_;
   Clock::time_point start_;
   std::atomic<bool> give_up_{false}, discard_{false};
-  Gathering gathering_;  // only the thread uses it
+  Gathering gathering_;   // only the thread uses it
+  TreeCheck tree_check_;  // the same, at rank 0
 
   mutable std::mutex mutex_;  // protects all members below
   std::condition_variable changed_;

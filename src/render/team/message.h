@@ -16,7 +16,9 @@ namespace lanthorn {
 
 enum class MessageKind : std::uint8_t {
   // To rank 0.
-  join,    ///< says which render the process takes part in; rest: the text of its settings
+  /// Says which render the process takes part in; a: the rank that it passes its sums on to, b: the number of
+  /// processes that pass theirs on to it, rest: the text of its settings.
+  join,
   ask,     ///< asks for the next pass; rest: the counts of the passes since the last question
   failed,  ///< says why the process cannot render; rest: the text
   // From rank 0.

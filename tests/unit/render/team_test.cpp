@@ -22,6 +22,7 @@
 #include "render/state.h"
 #include "render/team/deal.h"
 #include "render/team/gathering.h"
+#include "render/team/message.h"
 #include "support/error_text.h"
 
 namespace lanthorn::team_test {
@@ -355,16 +356,94 @@ TEST(Gathering, TreeReachesEveryProcessOnce) {
 
 TEST(Gathering, WaitsForAllOfARound) {
   Gathering gathering(0, 3);
-  gathering.add(0, std::nullopt);
-  gathering.add(1, std::nullopt);
-  gathering.add(0, std::nullopt);
+  gathering.add_own(0, std::nullopt);
+  gathering.add_own(1, std::nullopt);
+  gathering.add_child(0, {});
   EXPECT_FALSE(gathering.take_complete());
-  gathering.add(0, std::nullopt);
+  gathering.add_child(0, {});
   const auto complete = gathering.take_complete();
   ASSERT_TRUE(complete);
-  EXPECT_EQ(complete->first, 0u);
-  EXPECT_FALSE(complete->second);
+  EXPECT_EQ(complete->round, 0u);
+  EXPECT_FALSE(complete->sums);
+  EXPECT_TRUE(complete->packed.bytes.empty());
   EXPECT_FALSE(gathering.take_complete());
+  EXPECT_EQ(test::error_text([&] { gathering.add_child(0, {}); }),
+            "sums of round 0 arrive after this process has passed that round on");
+}
+
+// Whatever comes first, and whoever has rendered nothing.
+TEST(Gathering, AddsTheSumsOfAllThatHaveSome) {
+  std::vector<RenderState> states;
+  RenderState all;
+  for (std::uint64_t i = 0; i < 3; ++i) {
+    Session session(box(), small("path", 1));
+    session.render({.passes = {i, i + 1}});
+    states.push_back(session.state());
+    if (i == 0) all = session.state();
+    if (i > 0) add_state(all, session.state());
+  }
+  const auto without_times = [](const RenderState& state) { return encode_state(state, {.times = false}); };
+  for (const bool own_first : {true, false})
+    for (const bool has_own : {true, false})
+      for (const bool has_second : {true, false}) {
+        Gathering gathering(0, 3);
+        const auto add_own = [&] { gathering.add_own(5, has_own ? RoundSums(states[0]) : RoundSums()); };
+        if (own_first) add_own();
+        gathering.add_child(5, {encode_state(states[1]), "the sums of process 1"});
+        gathering.add_child(5, {has_second ? encode_state(states[2]) : Bytes(), "the sums of process 2"});
+        if (!own_first) add_own();
+        RenderState expected = states[1];
+        if (has_own) add_state(expected, states[0]);
+        if (has_second) add_state(expected, states[2]);
+        auto complete = gathering.take_complete();
+        ASSERT_TRUE(complete);
+        auto bytes = *complete;
+        EXPECT_TRUE(without_times(decode_state(bytes.take_bytes(), "bytes")) == without_times(expected));
+        EXPECT_TRUE(without_times(*complete->take_sums()) == without_times(expected));
+      }
+}
+
+TEST(Gathering, DamagedSumsNameTheirProcess) {
+  Gathering gathering(0, 2);
+  Session session(box(), small("path", 1));
+  session.render({.passes = {0, 1}});
+  Bytes bytes = encode_state(session.state());
+  bytes[bytes.size() / 2] ^= std::byte{1};
+  gathering.add_child(0, {bytes, "the sums of process 1"});
+  EXPECT_NE(test::error_text([&] { gathering.add_own(0, empty_like(session.state())); }).find("the sums of process 1"),
+            std::string::npos);
+}
+
+// A process that forgets a child would lose its sums, and one that waits for a child that does not exist would wait
+// for ever.
+TEST(Gathering, ATreeOnWhichProcessesDoNotAgreeIsNoticedWhenAllHaveJoined) {
+  const auto said = [](std::uint64_t parent_of_third, std::uint64_t awaited_by_first) {
+    return test::error_text([&] {
+      TreeCheck check(4, 2);
+      check.join(3, parent_of_third, 0);
+      check.join(1, 0, awaited_by_first);
+      check.join(2, 0, 0);
+    });
+  };
+  EXPECT_EQ(said(1, 1), "no error");
+  EXPECT_EQ(
+      said(1, 0),
+      "process 1 of 4 waits for the sums of 0 processes, but 1 pass theirs on to it: the processes do not run the "
+      "same program");
+  EXPECT_NE(said(1, 2).find("process 1 of 4 waits for the sums of 2 processes, but 1 pass"), std::string::npos);
+  EXPECT_NE(said(0, 1).find("process 0 of 4 waits for the sums of 2 processes, but 3 pass"), std::string::npos);
+  EXPECT_NE(said(9, 1).find("passes its sums on to process 9"), std::string::npos);
+}
+
+TEST(Team, AProcessThatExpectsAnotherTreeEndsTheRender) {
+  Network network(2);
+  const RenderOptions options = small("path", 1'000'000);
+  Session other(box(), options);
+  network.link(1).send(0,
+                       encode({.kind = MessageKind::join, .a = 0, .b = 1, .rest = bytes_of(other.state().settings)}));
+  const TeamRender render = of(options);
+  EXPECT_NE(test::error_text([&] { render_as(0, network, render); }).find("process 1 of 2 waits for the sums of 1"),
+            std::string::npos);
 }
 
 }  // namespace
