@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: Apache-2.0
 #
 # Usage: tests/packages/reproducible.sh FOLDER
-# Builds the packages that scripts/release has made in FOLDER again, from a clone of the same commit in another folder, at
+# Builds the packages that scripts/release has made in FOLDER again, from a clone of the same commit in another, at
 # another time, without ccache: the bytes must be the same. Names the files that differ, and where diffoscope is installed,
 # in what.
 set -euo pipefail
@@ -12,8 +12,8 @@ packages=$(realpath -m "${1:?folder of packages}")
 [ -e "$packages/SHA256SUMS" ] || { echo "SKIPPED, NOT TESTED: no packages in $packages" >&2; exit 77; }
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-git clone --quiet "$source" "$work/another folder"
-cd "$work/another folder"
+git clone --quiet "$source" "$work/another"
+cd "$work/another"
 export CCACHE_DISABLE=1
 scripts/release "$work/again" >/dev/null
 cd "$work/again"
