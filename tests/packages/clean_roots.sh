@@ -84,8 +84,10 @@ use() {
   [ "$(head -c 4 "$root/root/ring.png" | tail -c 3)" = PNG ] || fail "ring.png is no PNG"
   step "$program info --machine" inside "$program" info --machine
   grep compiled "$work/log"
-  # Of two runs with one instruction set, whichever folder or distribution, the bytes are the same.
-  sha256sum <"$root/root/ring.png" >>"$work/sums"
+  # The C library's sines differ between distributions in the last bit.
+  [ -e "$work/heart.exr" ] || cp "$root/root/heart.exr" "$work"
+  cp "$work/heart.exr" "$root/root/first.exr"
+  step "the picture of the first root" inside "$program" compare /root/heart.exr /root/first.exr --max-mse 1e-12
   step "Xvfb, xdotool and OpenGL in software" install xvfb xdotool libgl1-mesa-dri libegl-mesa0 libgl1 libglx-mesa0 libegl1
   step "$program view under Xvfb" inside timeout 600 bash /root/view.sh "$program" "$scenes/ring.pbrt"
 }
@@ -101,13 +103,13 @@ check_debian_packages() {
 picture = lanthorn.render(lanthorn.load_file("/usr/share/lanthorn/scenes/gallery/heart.pbrt"), passes=1, resolution=(64, 48))
 assert picture["color"].shape == (48, 64, 3) and picture["color"].mean() > 0
 picture.save("/root/python.exr")'
-  cmp "$root/root/python.exr" "$root/root/heart.exr" || fail "Python and the program make different pictures"
+  step "the same picture" inside lanthorn compare /root/python.exr /root/heart.exr --max-mse 0
   step "apt install man-db" install man-db
   step "man lanthorn-render" inside man lanthorn-render
   grep -q -e --noise "$work/log" || fail "the man page does not have --noise"
   step "apt install ./liblanthorn-dev_*.deb ./lanthorn-mpi_*.deb" install $(cd "$root" && ls ./root/liblanthorn-dev_*.deb ./root/lanthorn-mpi_*.deb)
   step "mpirun -n 2 lanthorn render" inside mpirun --allow-run-as-root --oversubscribe -n 2 lanthorn render /usr/share/lanthorn/scenes/ring.pbrt -r 320x240 -p 8 -o /root/mpi.png
-  cmp "$root/root/mpi.png" "$root/root/ring.png" || fail "two processes and one make different pictures"
+  step "the same picture" inside lanthorn compare /root/mpi.png /root/ring.png --max-mse 0
   step "apt install g++ pkgconf" install g++ pkgconf
   cp "$source/examples/render_a_file/main.cpp" "$root/root"
   step "g++ main.cpp \$(pkg-config --cflags --libs lanthorn)" \
@@ -131,5 +133,4 @@ for name in "$@"; do
   umount --recursive --lazy "$root/proc" "$root/dev"
   rm -rf --one-file-system "$root"
 done
-[ "$(sort -u "$work/sums" | wc -l)" = 1 ] || fail "ring.png differs between the roots: $(cat "$work/sums")"
 echo "Took $SECONDS s"
