@@ -25,9 +25,7 @@ using std::uint64_t;
 class PythonSession {
  public:
   PythonSession(const SeenScene& scene, const RenderOptions& options)
-      : scene_(scene),
-        session_(scene.scene, scene.view, options),
-        integrator_(options.integrator) {}
+      : scene_(scene), session_(scene.scene, scene.view, options), integrator_(options.integrator) {}
 
   /// Renders what the plan asks for, or these limits. Throws Python's KeyboardInterrupt after the running pass if the
   /// user asks for that; the passes until then are kept.

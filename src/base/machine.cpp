@@ -28,7 +28,8 @@ constexpr std::array<std::string_view, 12> fast_sets{"sse4_2",   "avx",      "f1
 
 // The level of the x86-64 psABI whose instructions this library may contain.
 constexpr const char* compiled_for =
-#if defined(__AVX512F__) && defined(__AVX512BW__) && defined(__AVX512CD__) && defined(__AVX512DQ__) && defined(__AVX512VL__)
+#if defined(__AVX512F__) && defined(__AVX512BW__) && defined(__AVX512CD__) && defined(__AVX512DQ__) && \
+    defined(__AVX512VL__)
     "x86-64-v4";
 #elif defined(__AVX2__) && defined(__BMI2__) && defined(__FMA__)
     "x86-64-v3";
