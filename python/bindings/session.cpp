@@ -145,6 +145,11 @@ py::dict statistics_as_dict(const PythonSession& session) {
   return data;
 }
 
+std::string session_text(const PythonSession& s) {
+  return "<lanthorn.Session " + s.method() + ", " + std::to_string(s.pass_count()) + " of " +
+         std::to_string(s.planned_passes()) + " passes>";
+}
+
 }  // namespace
 
 void bind_session(py::module_& module) {
@@ -205,10 +210,7 @@ void bind_session(py::module_& module) {
           "list of str: what the scene does not get, and light that the method leaves out.")
       .def_property_readonly("statistics", &statistics_as_dict,
                              "dict: passes, seconds, rays, photons ... of the last call of `render`.")
-      .def("__repr__", [](const PythonSession& s) {
-        return "<lanthorn.Session " + s.method() + ", " + std::to_string(s.pass_count()) + " of " +
-               std::to_string(s.planned_passes()) + " passes>";
-      });
+      .def("__repr__", &session_text);
 }
 
 }  // namespace lanthorn::python
