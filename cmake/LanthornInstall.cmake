@@ -9,7 +9,7 @@ set(pkgconfig_dir ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 # All paths are relative to the file that asks, so that the folder can be moved. The second one is for a library in
 # glibc-hwcaps/x86-64-v3.
 cmake_path(RELATIVE_PATH CMAKE_INSTALL_FULL_LIBDIR BASE_DIRECTORY ${CMAKE_INSTALL_FULL_BINDIR} OUTPUT_VARIABLE bin_to_lib)
-set_target_properties(lanthorn_program PROPERTIES INSTALL_RPATH $ORIGIN/${bin_to_lib})
+set_target_properties(lanthorn_program PROPERTIES INSTALL_RPATH "$ORIGIN/${bin_to_lib};$ORIGIN/${bin_to_lib}/lanthorn")
 set_target_properties(lanthorn PROPERTIES INSTALL_RPATH "$ORIGIN/lanthorn;$ORIGIN/../../lanthorn")
 if(LANTHORN_WHEEL)  # in one folder with its modules, and without links, which wheels do not have
   set_target_properties(lanthorn PROPERTIES INSTALL_RPATH $ORIGIN VERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})

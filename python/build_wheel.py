@@ -41,8 +41,8 @@ def _wheel():
 
 def _build(prefix):
     build = SOURCE / "build/wheel"
-    configure = ["cmake", "-S", SOURCE, "-B", build, "-DCMAKE_BUILD_TYPE=Release", "-DLANTHORN_BUILD_TESTS=OFF"]
-    configure += ["-DLANTHORN_BUILD_VIEWER=OFF", "-DLANTHORN_BUILD_MPI=OFF", "-DLANTHORN_BUILD_PYTHON=ON"]
+    configure = ["cmake", "-S", SOURCE, "-B", build, "-DCMAKE_BUILD_TYPE=Release", "-DLANTHORN_UNITY=ON"]
+    configure += ["-DLANTHORN_BUILD_TESTS=OFF", "-DLANTHORN_BUILD_VIEWER=OFF", "-DLANTHORN_BUILD_MPI=OFF", "-DLANTHORN_BUILD_PYTHON=ON"]
     configure += [f"-DPython3_EXECUTABLE={sys.executable}", "-DLANTHORN_INSTALL_PYTHON_DIR=.", "-DLANTHORN_WHEEL=ON"]
     if shutil.which("ninja"):
         configure += ["-G", "Ninja"]
@@ -51,7 +51,7 @@ def _build(prefix):
     subprocess.run(configure, check=True)
     subprocess.run(["cmake", "--build", build, "--target", "lanthorn_python", "lanthorn_openimageio",
                     "--parallel", str(os.cpu_count() or 1)], check=True)
-    subprocess.run(["cmake", "--install", build, "--component", "python", "--prefix", prefix], check=True)
+    subprocess.run(["cmake", "--install", build, "--component", "python", "--strip", "--prefix", prefix], check=True)
 
 
 def _record(name, data):

@@ -48,6 +48,7 @@ std::string memory_text(const MachineInfo& m) {
 void print_table(const MachineInfo& m) {
   print("processor  {}\n", or_unknown(m.processor));
   print("sets       {}\n", or_unknown(fmt::format("{}", fmt::join(m.instruction_sets, " "))));
+  print("compiled   for {}\n", or_unknown(m.compiled_for));
   print("cores      {}\n", cores_text(m));
   print("threads    {}\n", threads_text(m));
   print("memory     {}\n", memory_text(m));
@@ -66,6 +67,7 @@ json machine_json(const MachineInfo& m) {
   for (const NamedText& library : m.libraries) libraries[library.name] = library.text;
   return {{"processor", m.processor},
           {"instruction_sets", m.instruction_sets},
+          {"compiled_for", m.compiled_for},
           {"cores", m.cores > 0 ? json(m.cores) : json()},
           {"hardware_threads", m.hardware_threads},
           {"core_kinds", kinds},

@@ -25,6 +25,7 @@ struct CoreKind {
 struct MachineInfo {
   std::string processor;
   std::vector<std::string> instruction_sets;  ///< only those that affect speed, by the kernel's names
+  std::string compiled_for;                   ///< instruction set of the library: x86-64, x86-64-v2, -v3 or -v4
   unsigned cores = 0;                         ///< 0: unknown
   unsigned hardware_threads = 0;
   std::vector<CoreKind> core_kinds;               ///< empty if all cores are alike

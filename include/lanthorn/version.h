@@ -4,6 +4,7 @@
 
 namespace lanthorn {
 
-inline constexpr const char* version = "0.1.0";
+/// The build, packages and the Python module read it here. docs/releases.md says what it promises.
+inline constexpr const char* version = "0.9.0";
 
 }  // namespace lanthorn

@@ -82,13 +82,13 @@ void read_edits(Reader& reader, const py::dict& edits, const char* table, const 
   const py::object data = edits[table];
   reader.at(table, [&] {
     require_dict(reader, data);
-    for (const auto& [key, value] : data.cast<py::dict>()) {
-      reader.at(place_of(key), [&] {
-        const Index index = edited_entry(reader, key, table);
+    for (const auto& edit : data.cast<py::dict>()) {  // no structured binding: Clang 14 cannot capture it
+      reader.at(place_of(edit.first), [&] {
+        const Index index = edited_entry(reader, edit.first, table);
         if (index >= old.size())
           reader.fail("expected an index below " + std::to_string(old.size()) + ", got " + std::to_string(index));
         T entry = old[index];
-        read(reader, value, entry);
+        read(reader, edit.second, entry);
         out.emplace(index, std::move(entry));
       });
     }

@@ -124,8 +124,11 @@ std::string html_of(const SeenScene& seen) {
 }
 std::string text_of(const SeenScene& seen) {
   const SceneSummary summary = summarize(*seen.scene);
-  return "<lanthorn.Scene " + std::to_string(summary.triangles) + " triangles, lights: " + counted(summary.lights) +
-         ">";
+  const auto size = film_size(seen.view);
+  const auto others = summary.patches + summary.quadrics + summary.curves;
+  return "<lanthorn.Scene " + std::to_string(size[0]) + " x " + std::to_string(size[1]) + ", " +
+         std::to_string(summary.triangles) + " triangles, " + std::to_string(others) +
+         " other shapes, lights: " + counted(summary.lights) + ", materials: " + counted(summary.materials) + ">";
 }
 
 template <class Make>

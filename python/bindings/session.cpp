@@ -11,6 +11,8 @@
 
 #include "bindings.h"
 #include "lanthorn/denoise.h"
+#include "lanthorn/methods.h"
+#include "lanthorn/scene.h"
 #include "lanthorn/session.h"
 
 namespace lanthorn::python {
@@ -23,7 +25,7 @@ using std::uint64_t;
 class PythonSession {
  public:
   PythonSession(const SeenScene& scene, const RenderOptions& options)
-      : scene_(scene), session_(scene.scene, scene.view, options) {}
+      : scene_(scene), session_(scene.scene, scene.view, options), integrator_(options.integrator) {}
 
   /// Renders what the plan asks for, or these limits. Throws Python's KeyboardInterrupt after the running pass if the
   /// user asks for that; the passes until then are kept.
@@ -51,6 +53,9 @@ class PythonSession {
     noisy.image = with_denoised_light(clean.picture);
     noisy.error = clean.error;
     return noisy;
+  }
+  std::string method() const {
+    return integrator_ ? *integrator_ : default_method(description_of(*scene_.scene).hints.integrator).name;
   }
   uint64_t pass_count() const { return session_.pass_count(); }
   std::vector<description::Warning> warnings() const { return session_.warnings(); }
@@ -105,6 +110,7 @@ class PythonSession {
   std::atomic<bool> is_stopped_{false};
   SeenScene scene_;
   Session session_;
+  std::optional<std::string> integrator_;
   RenderStatistics statistics_;
 };
 
@@ -137,6 +143,11 @@ py::dict statistics_as_dict(const PythonSession& session) {
   data["photons_stored"] = s.photons_stored;
   data["radius"] = s.radius;
   return data;
+}
+
+std::string session_text(const PythonSession& s) {
+  return "<lanthorn.Session " + s.method() + ", " + std::to_string(s.pass_count()) + " of " +
+         std::to_string(s.planned_passes()) + " passes>";
 }
 
 }  // namespace
@@ -198,7 +209,8 @@ void bind_session(py::module_& module) {
           "warnings", [](const PythonSession& s) { return texts_of(s.warnings()); },
           "list of str: what the scene does not get, and light that the method leaves out.")
       .def_property_readonly("statistics", &statistics_as_dict,
-                             "dict: passes, seconds, rays, photons ... of the last call of `render`.");
+                             "dict: passes, seconds, rays, photons ... of the last call of `render`.")
+      .def("__repr__", &session_text);
 }
 
 }  // namespace lanthorn::python

@@ -146,7 +146,8 @@ void bind_threads(py::module_& module) {
   module.def(
       "set_threads",
       [](unsigned threads) {
-        static std::unique_ptr<ThreadLimit> limit;
+        // Never destroyed: at exit TBB may be gone before it.
+        static auto& limit = *new std::unique_ptr<ThreadLimit>;
         limit.reset();
         if (threads > 0) limit = std::make_unique<ThreadLimit>(threads);
       },
@@ -177,8 +178,7 @@ void bind_tools(py::module_& module) {
       "dict: what engines look up instead of integrating over an environment (docs/methods/ibl.md): 'irradiance',\n"
       "a Picture of six faces side by side, over pi; 'specular', a list of (roughness, Picture) by level;\n"
       "'sh' (9, 3), spherical harmonics of the irradiance over pi; 'mean' radiance.");
-  module.def("methods", &methods_as_list,
-             "list of dict: the methods with 'name', 'summary', 'paper' and 'parameters', {name: (default, help)}.");
+  module.def("_methods", &methods_as_list, "What lanthorn.methods makes a list of Method.");
   bind_threads(module);
 }
 

@@ -17,6 +17,8 @@ Units are metres, watts and degrees; colours are linear Rec.709; a picture's row
 file, a scene or an option raises `lanthorn.Error`, which says where. docs/python.md has the rest.
 """
 
+import html
+
 from . import _lanthorn
 from ._lanthorn import (
     Bsdf,
@@ -42,7 +44,6 @@ from ._lanthorn import (
     load_string,
     look_at,
     merge,
-    methods,
     open_state,
     radiance_along,
     read_environment,
@@ -68,6 +69,38 @@ def render(scene, *, denoise=False, **options):
         interrupt.picture = session.picture() if session.pass_count else None
         raise
     return session.denoised() if denoise else session.picture()
+
+
+class Method(dict):
+    """What `methods` tells of a rendering method: 'name', 'summary', 'paper' and 'parameters', {name: (default, help)}."""
+
+    def __repr__(self):
+        """Its name and summary in one line."""
+        return f"<lanthorn.Method {self['name']}: {self['summary']}>"
+
+    def _repr_html_(self):
+        """What notebooks show: the parameters with their defaults."""
+        rows = "".join(_row(name, *texts) for name, texts in self["parameters"].items())
+        paper = f"<br><i>{html.escape(self['paper'])}</i>" if self["paper"] else ""
+        return f"<p><b>{html.escape(self['name'])}</b> {html.escape(self['summary'])}{paper}</p><table>{rows}</table>"
+
+
+class Methods(list):
+    """The methods, each a Method, in the order of `lanthorn list`."""
+
+    def _repr_html_(self):
+        """What notebooks show: a line for each method."""
+        return f"<table>{''.join(_row(m['name'], m['summary'], m['paper']) for m in self)}</table>"
+
+
+def _row(name, *texts):
+    cells = "".join(f"<td style='text-align:left'>{html.escape(text)}</td>" for text in texts)
+    return f"<tr><th style='text-align:left'>{html.escape(name)}</th>{cells}</tr>"
+
+
+def methods():
+    """The rendering methods, a list of Method: what each is, where it comes from, and its parameters."""
+    return Methods(map(Method, _lanthorn._methods()))
 
 
 class Rays:
@@ -118,4 +151,4 @@ def add_integrator(name, integrator):
     _lanthorn._add_integrator(name, (integrator.__doc__ or "").strip().split("\n")[0], radiance)
 
 
-__all__ = [name for name in dir() if not name.startswith("_")] + ["__version__"]
+__all__ = [name for name in dir() if not name.startswith("_") and name != "html"] + ["__version__"]

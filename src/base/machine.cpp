@@ -26,6 +26,21 @@ namespace fs = std::filesystem;
 constexpr std::array<std::string_view, 12> fast_sets{"sse4_2",   "avx",      "f16c",  "fma",  "avx2", "avx512f",
                                                      "avx512vl", "avx512dq", "asimd", "fphp", "sve",  "sve2"};
 
+// The level of the x86-64 psABI whose instructions this library may contain.
+constexpr const char* compiled_for =
+#if defined(__AVX512F__) && defined(__AVX512BW__) && defined(__AVX512CD__) && defined(__AVX512DQ__) && \
+    defined(__AVX512VL__)
+    "x86-64-v4";
+#elif defined(__AVX2__) && defined(__BMI2__) && defined(__FMA__)
+    "x86-64-v3";
+#elif defined(__SSE4_2__)
+    "x86-64-v2";
+#elif defined(__x86_64__)
+    "x86-64";
+#else
+    "";
+#endif
+
 std::string trimmed(const std::string& text) {
   constexpr const char* blanks = " \t";
   const std::size_t begin = text.find_first_not_of(blanks);
@@ -127,6 +142,7 @@ void read_gpus(const fs::path& root, MachineInfo& machine) {
 
 MachineInfo machine_from_files(const fs::path& root) {
   MachineInfo machine;
+  machine.compiled_for = compiled_for;
   read_processor(root, machine);
   read_core_kinds(root, machine);
   read_gpus(root, machine);

@@ -10,6 +10,7 @@
 
 #include "base/parallel.h"
 #include "base/threads.h"
+#include "image/fallback_libraries.h"
 #include "lanthorn/error.h"
 
 namespace lanthorn {
@@ -21,7 +22,11 @@ const ImageCodec& load_codec() {
   if (startable_threads(started_by_libraries) < started_by_libraries)
     throw Error(fmt::format("the libraries that read images start up to {} threads, more than are allowed",
                             started_by_libraries));
-  void* const module = dlopen(LANTHORN_IMAGE_MODULE, RTLD_LAZY | RTLD_LOCAL);
+  void* module = dlopen(LANTHORN_IMAGE_MODULE, RTLD_LAZY | RTLD_LOCAL);
+  if (const auto folder = folder_of_fallback_libraries(); module == nullptr && !folder.empty()) {
+    load_fallback_libraries(folder);
+    module = dlopen(LANTHORN_IMAGE_MODULE, RTLD_LAZY | RTLD_LOCAL);
+  }
   void* const symbol = module != nullptr ? dlsym(module, image_codec_symbol) : nullptr;
   if (symbol == nullptr) throw Error({}, std::string("the module that reads images cannot be loaded: ") + dlerror());
   const ImageCodec& codec = *reinterpret_cast<ImageCodecFunction>(symbol)();

@@ -322,7 +322,7 @@ TEST_F(Bounds, InfoSaysWhatTheMachineLeaves) {
     EXPECT_TRUE(contains(machine.at("libraries").at(library), ".")) << library;
   const std::string text = succeed({"info", "--machine"}).out;
   for (const std::string line :
-       {"processor ", "sets ", "cores ", "threads ", "memory ", "gpu ", "version    Embree 3."})
+       {"processor ", "sets ", "compiled ", "cores ", "threads ", "memory ", "gpu ", "version    Embree 3."})
     EXPECT_TRUE(contains(text, line)) << text;
   refuse({"info"}, "expected a file, or --machine");
   refuse({"info", "tiny.pbrt", "--machine"}, "takes no file");

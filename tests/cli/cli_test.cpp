@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <random>
@@ -140,6 +142,10 @@ TEST_F(Cli, VersionIsANumber) {
   const Ending ending = succeed({"--version"});
   EXPECT_TRUE(std::isdigit(static_cast<unsigned char>(ending.out.front()))) << ending.out;
   EXPECT_EQ(std::count(ending.out.begin(), ending.out.end(), '\n'), 1) << ending.out;
+  // The README says how to cite it.
+  std::ifstream in(LANTHORN_SOURCE_DIR "/README.md");
+  const std::string readme{std::istreambuf_iterator<char>(in), {}};
+  EXPECT_TRUE(contains(readme, "{Version " + ending.out.substr(0, ending.out.size() - 1) + "}"));
 }
 
 // A start with them takes .25 s of CPU.

@@ -164,6 +164,22 @@ class Pictures(unittest.TestCase):
         self.assertEqual(self.picture._repr_png_()[:8], b"\x89PNG\r\n\x1a\n")
         self.assertEqual(self.picture._repr_png_(), self.picture.png())
         self.assertNotEqual(self.picture.png(exposure=1), self.picture.png())
+        methods = lanthorn.methods()
+        self.assertEqual(methods._repr_html_().count("<tr>"), len(methods))
+        vcm = next(m for m in methods if m["name"] == "vcm")
+        self.assertEqual(vcm._repr_html_().count("<tr>"), len(vcm["parameters"]))
+        self.assertNotIn("<b>", lanthorn.Method(vcm, summary="<b>")._repr_html_().replace("<b>vcm</b>", ""))
+
+    def test_objects_say_what_they_are(self):
+        scene = lanthorn.load_file(CORNELL)
+        width, height = scene.resolution
+        self.assertRegex(repr(scene), rf"^<lanthorn.Scene {width} x {height}, \d+ triangles, .*lights: 1 area, materials: \d")
+        session = lanthorn.Session(scene, integrator="path", passes=3, resolution=(8, 8))
+        session.render(passes=1)
+        self.assertEqual(repr(session), "<lanthorn.Session path, 1 of 3 passes>")
+        self.assertIn("<lanthorn.Session auto, 0 of", repr(lanthorn.Session(scene, resolution=(8, 8))))
+        vcm = next(m for m in lanthorn.methods() if m["name"] == "vcm")
+        self.assertEqual(repr(vcm), f"<lanthorn.Method vcm: {vcm['summary']}>")
 
     def test_arrays_become_pictures(self):
         array = np.linspace(0, 1, 60, dtype=np.float64).reshape(4, 5, 3)
@@ -190,6 +206,16 @@ class Sessions(unittest.TestCase):
         counts = [session.pass_count for _ in session.passes(2)]
         self.assertEqual(counts, [1, 2])
         np.testing.assert_array_equal(session.picture().array, lanthorn.render(self.scene, **SMALL).array)
+
+    def test_threads_change_nothing(self):
+        # By itself, as the limit holds for the whole process, until it has ended well.
+        script = (
+            "import lanthorn, sys\nlanthorn.set_threads(1)\n"
+            f"picture = lanthorn.render(lanthorn.load_file({str(CORNELL)!r}), resolution=(32, 32), passes=2, integrator='path')\n"
+            "sys.stdout.buffer.write(picture['color'].tobytes())"
+        )
+        alone = subprocess.run([sys.executable, "-c", script], stdout=subprocess.PIPE, check=True).stdout
+        self.assertEqual(alone, lanthorn.render(self.scene, **SMALL)["color"].tobytes())
 
     def test_limits(self):
         session = lanthorn.Session(self.scene, **SMALL)

@@ -4,6 +4,7 @@
 
 import os
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -14,6 +15,9 @@ SOURCE = pathlib.Path(__file__).resolve().parents[2]
 
 
 class Wheel(unittest.TestCase):
+    def version(self):
+        return re.search(r'version = "(.*)";', (SOURCE / "include/lanthorn/version.h").read_text()).group(1)
+
     def test_pip_install(self):
         with tempfile.TemporaryDirectory() as folder:
             venv.create(folder, system_site_packages=True, with_pip=True)
@@ -21,6 +25,9 @@ class Wheel(unittest.TestCase):
             environment = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
             subprocess.run([python, "-m", "pip", "install", "--no-index", SOURCE], check=True, env=environment)
             scene = SOURCE / "tests/scenes/lamps-with-images.pbrt"  # images need lanthorn-openimageio.so
+            # Wheels have no links: one copy of the library, by the name that the module asks for.
+            libraries = sorted(file.name for file in (pathlib.Path(folder) / "lib").rglob("liblanthorn*"))
+            self.assertEqual(libraries, [f"liblanthorn.so.{self.version().rsplit('.', 1)[0]}"])
             script = (
                 f"import lanthorn; assert lanthorn.__file__.startswith({folder!r}), lanthorn.__file__\n"
                 f"picture = lanthorn.render(lanthorn.load_file({str(scene)!r}), passes=1, resolution=(16, 16))\n"
