@@ -41,7 +41,7 @@ double work_of_ray(const Scene& scene) {
 // shrink, which makes about as much more variance.
 namespace stratification {
 constexpr double long_eye_paths = 1.8;
-constexpr double short_eye_paths = 6;  // few dimensions
+constexpr double short_eye_paths = 4;  // few dimensions
 }  // namespace stratification
 // Of path tracing's product of variance and work: what light paths must do better. Merges have a bias, too, and path
 // tracing alone is stratified best (1.2 to 1.4 times better than expected in diffuse rooms).

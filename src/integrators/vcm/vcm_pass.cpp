@@ -41,7 +41,7 @@ VcmPass::VcmPass(const RenderJob& job_, std::uint32_t number_, const VcmSettings
       effort(prepared.effort),
       number(number_),
       draw(draw_for_pass(job, number)),
-      blocks(prepared.effort.light_paths(), vertex_block(job.settings)),
+      blocks(prepared.effort.light_paths(), job.settings.photon_block),
       light_paths(job.scene, {job.settings.seed, Stream::light, number, prepared.effort.light_paths(),
                               prepared.emission.starts(), blocks[0], blocks.count() > 1 && !draw.is_of_one_time()}),
       volume_kernels(prepared.volume_radii.kernels(settings.alpha, number)),

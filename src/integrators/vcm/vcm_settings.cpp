@@ -103,7 +103,7 @@ MemoryUse VcmSettings::memory_use(const RenderSettings& settings) const {
   const double merged = switches.merging ? bytes_per_photon : 0;
   const double of_vertex = spare * sizeof(LightVertex);
   const double most_light_paths = chooses_effort ? 4 : 1;  // over those of `RenderSettings::photons`
-  const auto block = static_cast<double>(vertex_block(settings));
+  const auto block = static_cast<double>(settings.photon_block);
   return {.per_photon = most_light_paths * (of_vertex + merged),
           .per_light_path = most_light_paths * bytes_per_light_path,
           .per_pixel = static_cast<double>(sizeof(float) + (chooses_effort ? UniformityTests::bytes_per_pixel : 0)),

@@ -61,11 +61,6 @@ struct VcmSettings {
   bool merges_by(VolumeEstimator estimator) const { return volume[static_cast<std::size_t>(estimator)]; }
 };
 
-/// Light paths of a block. Their vertices take about four times as much memory as photons.
-constexpr std::uint64_t vertex_block(const RenderSettings& settings) {
-  return std::max<std::uint64_t>(settings.photon_block / 4, 1);
-}
-
 std::unique_ptr<Integrator> make_vertex_connection_and_merging(const VcmSettings& settings);
 
 }  // namespace lanthorn
