@@ -85,7 +85,7 @@ class FinalRender:
     def _show(self, result, answer):
         picture = passes.Picture(answer)
         layer = result.layers[0]
-        layer.passes["Combined"].rect.foreach_set(passes.rect(picture.combined(self.is_transparent)).ravel())
+        layer.passes["Combined"].rect = passes.rect(picture.combined(self.is_transparent))
         for wanted in self.passes:
             values = picture.of_pass(wanted)
             if values is None:
@@ -94,7 +94,7 @@ class FinalRender:
                 window = camera.window_of_border(self.camera["screen_window"], self.size, self.crop)
                 values = camera.axial_depth(values[:, :, 0], window)[:, :, None]
                 values = values.clip(max=passes.FAR)
-            layer.passes[wanted.name].rect.foreach_set(passes.rect(values).ravel())
+            layer.passes[wanted.name].rect = passes.rect(values)
         self._tell_metadata(result, answer)
         self.engine.update_result(result)
         self._tell_progress(answer)

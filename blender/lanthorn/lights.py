@@ -98,5 +98,6 @@ def add_light(parts, name, light, matrix, report):
         parts["lights"][name] = made["light"]
         return
     parts["area_lights"][name] = {"radiance": made["radiance"]}
-    parts["materials"].setdefault("lamp", {"type": "interface"})
+    # A lamp does not stop the light of others: its surface lets all of it pass.
+    parts["materials"].setdefault("lamp", {"type": "thindielectric", "eta": 1.0})
     parts["shapes"][name] = {**made["shape"], "material": "lamp", "area_light": name}

@@ -80,5 +80,6 @@ class Picture:
 
 
 def rect(values):
-    """The pixels as Blender's passes take them: rows from the bottom."""
-    return numpy.ascontiguousarray(values[::-1]).reshape(-1, values.shape[2])
+    """The pixels as Blender's passes take them: rows from the bottom. Lists, because Blender reads the items of arrays
+    one by one."""
+    return values[::-1].reshape(-1, values.shape[2]).tolist()
