@@ -1,17 +1,13 @@
 # SPDX-FileCopyrightText: 2026 The Lanthorn authors
 # SPDX-License-Identifier: Apache-2.0
 """Blender's cameras and views as Lanthorn's."""
-import math
-
-# Blender's cameras look along -z, Lanthorn's along +z.
-FLIP_Z = ((1, 0, 0, 0), (0, 1, 0, 0), (0, 0, -1, 0), (0, 0, 0, 1))
-
 
 def rows(matrix):
     return [list(row) for row in matrix]
 
 
 def times_flip_z(matrix):
+    """Camera to world: Blender's cameras look along -z, Lanthorn's along +z."""
     return [[row[0], row[1], -row[2], row[3]] for row in matrix]
 
 
@@ -33,7 +29,7 @@ def lens_of(camera, matrix_world):
         to_focus = dof.focus_object.matrix_world.translation - matrix_world.translation
         axis = matrix_world.to_3x3().normalized().col[2]
         distance = abs(to_focus.dot(axis))
-    focal_length = 1e-3 * camera.lens if camera.type == "PERSP" else 1e-3 * camera.ortho_scale * 1e3 / 2
+    focal_length = 1e-3 * camera.lens if camera.type == "PERSP" else camera.ortho_scale / 2
     return {"lens_radius": focal_length / (2 * max(dof.aperture_fstop, 1e-3)), "focal_distance": max(distance, 1e-5)}
 
 
@@ -114,7 +110,3 @@ def window_of_border(window, size, border):
     left, top, right, bottom = border
     return [x0 + (x1 - x0) * left / width, x0 + (x1 - x0) * right / width,
             y1 - (y1 - y0) * bottom / height, y1 - (y1 - y0) * top / height]
-
-
-def is_finite(number):
-    return math.isfinite(number)

@@ -1,9 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The Lanthorn authors
 # SPDX-License-Identifier: Apache-2.0
-"""The render engine: final renders."""
+"""The render engine: final renders and the viewport."""
 import bpy
+import gpu
 
-from . import camera, passes, settings
+from . import camera, passes, settings, viewport
 from .link import Link, LinkError
 from .scene_export import SceneExport
 
@@ -133,6 +134,40 @@ class LanthornEngine(bpy.types.RenderEngine):
         except LinkError as error:
             self.report({"ERROR"}, f"Lanthorn: {error}")
             self.error_set(f"Lanthorn: {error}")
+
+    # Blender makes an engine for each viewport, and calls no __init__ that it may not leave out.
+    _viewport = None
+
+    def __del__(self):
+        if self._viewport is not None:
+            self._viewport.close()
+
+    def view_update(self, context, depsgraph):
+        settings_of_scene = context.scene.lanthorn
+        try:
+            if self._viewport is None:
+                self._viewport = viewport.Viewport(start_program(), self._redraw, settings_of_scene.viewport_options(),
+                                                   settings_of_scene.denoise)
+            self._viewport.update_scene(context, depsgraph)
+        except LinkError as error:
+            self.update_stats("Lanthorn", str(error))
+
+    def view_draw(self, context, depsgraph):
+        if self._viewport is None:
+            return
+        self._viewport.update_view(context)
+        gpu.state.blend_set("ALPHA_PREMULT")
+        self.bind_display_space_shader(depsgraph.scene)
+        self._viewport.draw(context.region.width, context.region.height)
+        self.unbind_display_space_shader()
+        gpu.state.blend_set("NONE")
+        self.update_stats("Lanthorn", self._viewport.problem or self._viewport.status)
+
+    def _redraw(self):
+        try:
+            self.tag_redraw()
+        except ReferenceError:  # the viewport is gone
+            pass
 
 
 def register():

@@ -5,6 +5,7 @@ import math
 
 # What stands in for a lamp without a size, whose light Cycles takes from a point.
 SMALLEST_RADIUS = 1e-4
+WIDE_SPOT = 0.85  # cosine of half the cone from which the approximation of its profile is told
 
 
 def _color(light):
@@ -40,19 +41,22 @@ def _point(light, matrix, report):
 
 
 def _spot(light, matrix, report):
-    # The cone of Cycles is smooth between blend and edge; a lamp without a size throws it.
+    # Cycles multiplies the intensity P / 4 pi by the cosine to the axis; here, its mean over the cone stands for it.
     power = _strength(light, light.energy, report)
     if light.shadow_soft_size >= SMALLEST_RADIUS:
         report.note(light.name, "a spot light has no size: its shadows and caustics are sharp")
     outer = math.degrees(light.spot_size) / 2
-    # Cycles: smoothstep of (cos(angle) - cos(outer)) / ((1 - cos(outer)) blend), roughly.
+    # Cycles: smoothstep of (cos(angle) - cos(outer)) / ((1 - cos(outer)) blend).
     cosine = math.cos(light.spot_size / 2)
+    mean_cosine = (1 + cosine) / 2
+    if cosine < WIDE_SPOT:
+        report.note(light.name, "a wide spot light is evenly bright: Cycles' are darker to the edge")
     inner = math.degrees(math.acos(min(1, cosine + (1 - cosine) * light.spot_blend)))
     place = matrix.translation
     target = place - matrix.to_3x3().normalized().col[2]
     return {"light": {"type": "spot", "from": list(place), "to": list(target), "cone_angle": outer,
                       "cone_delta_angle": outer - inner,
-                      "intensity": {"spectrum": [p / (4 * math.pi) for p in power]}}}
+                      "intensity": {"spectrum": [mean_cosine * p / (4 * math.pi) for p in power]}}}
 
 
 def _sun(light, matrix, report):
@@ -70,7 +74,7 @@ def _rectangle(width, height):
 
 
 def _area(light, matrix, report):
-    # A Lambertian emitter of P / (pi A), on the side of -z.
+    # Cycles: radiance P / 4 A, on the side of -z. (A Lambertian emitter of P watts would have P / pi A.)
     width = light.size
     height = light.size_y if light.shape in {"RECTANGLE", "ELLIPSE"} else light.size
     scale = matrix.to_scale()
@@ -85,7 +89,7 @@ def _area(light, matrix, report):
         shape = {"type": "disk", "radius": 0.5, "reverse_orientation": True}
         to_world = [[row[0] * width, row[1] * height, row[2], row[3]] for row in to_world]
     return {"shape": {**shape, "object_to_world": to_world},
-            "radiance": [p / (math.pi * max(area, 1e-12)) for p in power]}
+            "radiance": [p / (4 * max(area, 1e-12)) for p in power]}
 
 
 KINDS = {"POINT": _point, "SPOT": _spot, "SUN": _sun, "AREA": _area}

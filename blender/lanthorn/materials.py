@@ -52,16 +52,17 @@ class Materials:
         self.textures.groups = []
         name = f"material {key}"
         look, medium = self._look_of(material)
-        node = look.material or {"type": "interface"}
+        is_seen = look.material is not None or not is_black(look.emission)
+        node = look.material or ({"type": "diffuse", "reflectance": BLACK} if is_seen else {"type": "interface"})
         if medium is not None:
             self.parts["media"][name] = medium
             node = {**node, "interior": name}
-        self.parts["materials"][name] = {**node, **look.relief} if node["type"] != "interface" else node
+        self.parts["materials"][name] = {**node, **look.relief} if is_seen else node
         members = {"material": name}
         if not is_black(look.emission) and look.strength > 0:
             self.parts["area_lights"][name] = {"radiance": look.emission, "scale": look.strength, "two_sided": True}
             members["area_light"] = name
-        if look.alpha != OPAQUE:
+        if is_seen and look.alpha != OPAQUE:
             members["alpha"] = look.alpha
         return members
 

@@ -25,17 +25,24 @@ class SceneExport:
         self.folder = tempfile.TemporaryDirectory(prefix="lanthorn-")
         self.report = Report()
         self._sent = empty_parts()
+        self._meshes = {}  # triangles by material slot, by key; kept until `forget`
+
+    def forget(self, depsgraph):
+        """Drops the meshes that have changed since the last export."""
+        names = {update.id.name_full for update in depsgraph.updates if update.is_updated_geometry}
+        if names:
+            self._meshes = {key: made for key, made in self._meshes.items() if not names & made[0]}
 
     def close(self):
         self.folder.cleanup()
 
-    def parts(self, depsgraph, is_viewport=False):
-        """All objects, materials and lights that are seen; without the camera."""
+    def parts(self, depsgraph, space=None):
+        """All objects, materials and lights that are seen; without the camera. `space`: of a viewport."""
         parts = empty_parts()
         self.report = Report()
         materials = Materials(parts, self.report, self.folder.name)
         for instance in depsgraph.object_instances:
-            if instance.show_self and (not is_viewport or instance.object.visible_get()):
+            if instance.show_self and (space is None or instance.object.visible_in_viewport_get(space)):
                 self._add_instance(parts, materials, instance)
         scene_world = depsgraph.scene_eval.world
         light = world.light_of_world(scene_world, self.report) if scene_world is not None else None
@@ -51,7 +58,7 @@ class SceneExport:
         elif object.type in MESH_TYPES:
             key = self._mesh_key(object)
             if key not in parts["objects"]:
-                parts["objects"][key] = self._shapes(object, materials)
+                parts["objects"][key] = self._shapes(key, object, materials)
             if parts["objects"][key]["shapes"]:
                 parts["instances"][name] = {"object": key, "object_to_world": camera.rows(matrix)}
         elif object.type not in IGNORED_TYPES:
@@ -71,17 +78,21 @@ class SceneExport:
         is_shared = object.type == "MESH" and not object.modifiers and object.data is not None
         return f"{object.data.name_full if is_shared else object.name_full}|{object.type}|{slots}"
 
-    def _shapes(self, object, materials):
+    def _shapes(self, key, object, materials):
+        if key not in self._meshes:
+            names = {object.name_full, object.data.name_full}
+            self._meshes[key] = names, self._triangles(object)
+        slots, shapes = object.material_slots, []
+        for slot, triangles in sorted(self._meshes[key][1].items()):
+            material = slots[min(slot, len(slots) - 1)].material if len(slots) else None
+            shapes.append({"type": "triangles", **triangles, **materials.shape_members(material)})
+        return {"shapes": shapes}
+
+    @staticmethod
+    def _triangles(object):
         mesh = object.to_mesh()
-        if mesh is None:
-            return {"shapes": []}
         try:
-            slots = object.material_slots
-            shapes = []
-            for slot, triangles in sorted(meshes.triangle_meshes(mesh).items()):
-                material = slots[min(slot, len(slots) - 1)].material if len(slots) else None
-                shapes.append({"type": "triangles", **triangles, **materials.shape_members(material)})
-            return {"shapes": shapes}
+            return meshes.triangle_meshes(mesh) if mesh is not None else {}
         finally:
             object.to_mesh_clear()
 
@@ -102,6 +113,8 @@ class SceneExport:
 
 def is_equal(a, b):
     """Whether two parts are the same, arrays included."""
+    if a is b:
+        return True
     if isinstance(a, dict) and isinstance(b, dict):
         return a.keys() == b.keys() and all(is_equal(a[key], b[key]) for key in a)
     if isinstance(a, (list, tuple)) and isinstance(b, (list, tuple)):

@@ -46,6 +46,14 @@ class LanthornSceneSettings(bpy.types.PropertyGroup):
             options["clamp"] = self.clamp
         return options
 
+    def viewport_options(self):
+        """Those of a picture that refines as long as it is looked at, until the noise is low enough."""
+        options = self.options()
+        options.pop("seconds", None)
+        options.pop("passes", None)
+        options["noise"] = min(options.get("noise", 0.02), 0.02)
+        return options
+
 
 class LanthornLayerSettings(bpy.types.PropertyGroup):
     use_caustic: BoolProperty(name="Caustic", description="Light that mirrors and glass have gathered", default=True)
