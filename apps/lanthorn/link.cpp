@@ -57,8 +57,11 @@ void add_link(CLI::App& app) {
       "program. Ends when standard input does.\n\n"
       "Example:\n"
       "  lanthorn link <requests >answers";
-  add_command(app, {"link", "Render for another program, which sends the scene through a pipe",
-                    {threads_option(a->threads, "the picture")}, footer, [a] { run_link(*a); }});
+  add_command(app, {"link",
+                    "Render for another program, which sends the scene through a pipe",
+                    {threads_option(a->threads, "the picture")},
+                    footer,
+                    [a] { run_link(*a); }});
 }
 
 }  // namespace lanthorn::program

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The Lanthorn authors
 # SPDX-License-Identifier: Apache-2.0
 """Node materials as materials, emission and media of Lanthorn."""
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 from .textures import Textures
 
@@ -18,7 +18,6 @@ class Look:
     emission: object = None  # a color, or a texture
     strength: float = 1.0
     alpha: object = OPAQUE
-    relief: dict = field(default_factory=dict)  # normal_map, displacement
 
 
 def scaled(color, factor):
@@ -36,10 +35,10 @@ def is_black(color):
 class Materials:
     """Adds what a scene's materials need to its parts."""
 
-    def __init__(self, parts, report, folder):
+    def __init__(self, parts, report, images):
         self.parts, self.report = parts, report
-        self.textures = Textures(parts, report, folder)
-        self._done = {}
+        self.textures = Textures(parts, report, images)
+        self._done, self._mixes = {}, 0
 
     def shape_members(self, material):
         """The members that a shape of this material has: material, area_light, alpha."""
@@ -49,7 +48,7 @@ class Materials:
         return self._done[key]
 
     def _add(self, key, material):
-        self.textures.groups = []
+        self.textures.groups, self._mixes = [], 0
         name = f"material {key}"
         look, medium = self._look_of(material)
         is_seen = look.material is not None or not is_black(look.emission)
@@ -57,7 +56,7 @@ class Materials:
         if medium is not None:
             self.parts["media"][name] = medium
             node = {**node, "interior": name}
-        self.parts["materials"][name] = {**node, **look.relief} if is_seen else node
+        self.parts["materials"][name] = node
         members = {"material": name}
         if not is_black(look.emission) and look.strength > 0:
             self.parts["area_lights"][name] = {"radiance": look.emission, "scale": look.strength, "two_sided": True}
@@ -88,16 +87,23 @@ class Materials:
         if make is None:
             self.report.note(owner, f"the shader {node.bl_label} has no counterpart: a grey diffuse one stands in")
             return Look({"type": "diffuse", "reflectance": [HALFWAY] * 3})
-        look = make(self, node, owner)
-        if not look.relief and look.material is not None:
-            look.relief = self._relief(node, owner)
-        return look
+        return make(self, node, owner)
 
     def _input_look(self, socket, owner):
         source = self.textures.source(socket)
         return self._look(source.node, owner) if source is not None else Look({"type": "diffuse", "reflectance": BLACK})
 
+    def _count(self):
+        """A number for each mix of a material, the same at each export."""
+        self._mixes += 1
+        return self._mixes
+
+    def _solid(self, node, owner, **material):
+        """A closure with the relief that its shader node asks for."""
+        return {**material, **self._relief(node, owner)}
+
     def _relief(self, node, owner):
+        """normal_map or displacement."""
         socket = node.inputs.get("Normal")
         source = self.textures.source(socket) if socket is not None else None
         if source is None:
@@ -119,6 +125,9 @@ class Materials:
         alpha = self.textures.squared(self.textures.number(node.inputs[name], owner), owner)
         return {"u": alpha, "v": alpha, "remap": False}
 
+    def _albedo(self, node, owner, name="Color"):
+        return clamped(self.textures.color(node.inputs[name], owner))
+
     def _constant(self, node, owner, name, what):
         """The number of an input that no texture can vary."""
         value = self.textures.number(node.inputs[name], owner)
@@ -130,11 +139,11 @@ class Materials:
     # Shaders.
 
     def diffuse(self, node, owner):
-        return Look({"type": "diffuse", "reflectance": clamped(self.textures.color(node.inputs["Color"], owner))})
+        return Look(self._solid(node, owner, type="diffuse", reflectance=self._albedo(node, owner)))
 
     def translucent(self, node, owner):
-        return Look({"type": "diffusetransmission", "reflectance": BLACK,
-                     "transmittance": clamped(self.textures.color(node.inputs["Color"], owner))})
+        return Look(self._solid(node, owner, type="diffusetransmission", reflectance=BLACK,
+                                transmittance=self._albedo(node, owner)))
 
     def transparent(self, node, owner):
         color = self.textures.color(node.inputs["Color"], owner)
@@ -147,16 +156,15 @@ class Materials:
                     strength=self._constant(node, owner, "Strength", "the strength of emission"))
 
     def glossy(self, node, owner):
-        return Look({"type": "conductor", "reflectance": clamped(self.textures.color(node.inputs["Color"], owner)),
-                     "roughness": self._roughness(node, owner)})
+        return Look(self._metal(node, owner, "Color"))
 
     def _dielectric(self, node, owner, color):
         # Cycles multiplies by the colour at each interface, Lanthorn by the root of the tint.
         tint = self.textures.color(node.inputs[color], owner)
         if isinstance(tint, list):
             tint = [c * c for c in clamped(tint)]
-        return {"type": "dielectric", "eta": max(1.0001, self._constant(node, owner, "IOR", "the index of refraction")),
-                "tint": tint, "roughness": self._roughness(node, owner)}
+        eta = max(1.0001, self._constant(node, owner, "IOR", "the index of refraction"))
+        return self._solid(node, owner, type="dielectric", eta=eta, tint=tint, roughness=self._roughness(node, owner))
 
     def glass(self, node, owner):
         return Look(self._dielectric(node, owner, "Color"))
@@ -171,8 +179,8 @@ class Materials:
 
     def velvet(self, node, owner):
         self.report.note(owner, "Velvet becomes a black surface with sheen")
-        return Look({"type": "plastic", "reflectance": BLACK, "specular": 0.0, "sheen_roughness": 0.5,
-                     "sheen_color": clamped(self.textures.color(node.inputs["Color"], owner))})
+        return Look(self._solid(node, owner, type="plastic", reflectance=BLACK, specular=0.0, sheen_roughness=0.5,
+                                sheen_color=self._albedo(node, owner)))
 
     def principled(self, node, owner):
         look = self._principled_base(node, owner)
@@ -203,9 +211,9 @@ class Materials:
         self.parts["materials"][names[0]], self.parts["materials"][names[1]] = first(), second()
         return {"type": "mix", "materials": names, "amount": amount}
 
-    def _metal(self, node, owner):
-        return {"type": "conductor", "reflectance": clamped(self.textures.color(node.inputs["Base Color"], owner)),
-                "roughness": self._roughness(node, owner)}
+    def _metal(self, node, owner, color="Base Color"):
+        return self._solid(node, owner, type="conductor", reflectance=self._albedo(node, owner, color),
+                           roughness=self._roughness(node, owner))
 
     def _plastic(self, node, owner):
         # Blender 3: the reflection at normal incidence is 0.08 times Specular; 4: twice that of the index.
@@ -216,8 +224,8 @@ class Materials:
         if not isinstance(factor, dict) and factor > 1:
             self.report.note(owner, "Specular above 0.5 is taken as 0.5")
             factor = 1.0
-        return {"type": "plastic", "reflectance": clamped(self.textures.color(node.inputs["Base Color"], owner)),
-                "eta": 1.5, "specular": factor, "roughness": self._roughness(node, owner)}
+        return self._solid(node, owner, type="plastic", reflectance=self._albedo(node, owner, "Base Color"), eta=1.5,
+                           specular=factor, roughness=self._roughness(node, owner))
 
     def _note_principled(self, node, owner):
         for name, what in (("Subsurface", "subsurface scattering"), ("Subsurface Weight", "subsurface scattering"),
@@ -255,32 +263,35 @@ class Materials:
         return {"texture": name}
 
     def _mixed(self, first, second, amount, owner):
-        look = Look(relief=first.relief or second.relief)
-        for part, other, share in ((first, second, self._complement(amount, owner)), (second, first, amount)):
-            if not is_black(part.emission):
-                if isinstance(share, dict):
-                    self.report.note(owner, "a texture that mixes emission counts as one half")
-                    share = HALFWAY
-                if not is_black(look.emission):
-                    self.report.note(owner, "of two emissions in one material, the second one is used")
-                look.emission, look.strength = part.emission, part.strength * share
-        solid = [part.material for part in (first, second) if part.material is not None]
-        if len(solid) == 2:
-            look.material = self._blend(lambda: solid[0], lambda: solid[1], amount, f"{owner}/{id(first)}", "mix")
-        elif solid:
-            look.material = solid[0]
-            self.report.note(owner, "a surface that is mixed with emission reflects as if it were not")
+        look = Look()
+        for part, share in ((first, self._complement(amount, owner)), (second, amount)):
+            self._add_emission(look, part, share, owner)
+        black = {"type": "diffuse", "reflectance": BLACK}
+        solids = [part.material or black for part in (first, second)]
+        if first.material is not None or second.material is not None:
+            look.material = self._blend(lambda: solids[0], lambda: solids[1], amount, owner, f"mix{self._count()}")
         return look
+
+    def _add_emission(self, look, part, share, owner):
+        if is_black(part.emission):
+            return
+        if isinstance(share, dict):
+            self.report.note(owner, "a texture that mixes emission counts as one half")
+            share = HALFWAY
+        if not is_black(look.emission):
+            self.report.note(owner, "of two emissions in one material, the second one is used")
+        look.emission, look.strength = part.emission, part.strength * share
 
     def add(self, node, owner):
         first, second = (self._input_look(socket, owner) for socket in node.inputs[:2])
         if first.material is not None and second.material is not None:
             self.report.note(owner, "Add of two surfaces becomes their mean")
-        return self._mixed_fully(first, second, owner)
-
-    def _mixed_fully(self, first, second, owner):
-        look = self._mixed(first, second, HALFWAY, owner)
-        look.strength *= 2
+            look = self._mixed(first, second, HALFWAY, owner)
+            look.strength *= 2
+            return look
+        look = Look(first.material or second.material)
+        self._add_emission(look, first, 1, owner)
+        self._add_emission(look, second, 1, owner)
         return look
 
     # Media.

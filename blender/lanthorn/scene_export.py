@@ -6,6 +6,7 @@ import tempfile
 from . import camera, lights, meshes, world
 from .materials import Materials
 from .report import Report
+from .textures import ImageFiles
 
 MESH_TYPES = {"MESH", "CURVE", "SURFACE", "META", "FONT"}
 IGNORED_TYPES = {"CAMERA", "EMPTY", "ARMATURE", "LATTICE", "SPEAKER", "LIGHT_PROBE", "GPENCIL"}
@@ -24,6 +25,7 @@ class SceneExport:
     def __init__(self):
         self.folder = tempfile.TemporaryDirectory(prefix="lanthorn-")
         self.report = Report()
+        self._images = ImageFiles(self.folder.name)
         self._sent = empty_parts()
         self._meshes = {}  # triangles by material slot, by key; kept until `forget`
 
@@ -40,7 +42,7 @@ class SceneExport:
         """All objects, materials and lights that are seen; without the camera. `space`: of a viewport."""
         parts = empty_parts()
         self.report = Report()
-        materials = Materials(parts, self.report, self.folder.name)
+        materials = Materials(parts, self.report, self._images)
         for instance in depsgraph.object_instances:
             if instance.show_self and (space is None or instance.object.visible_in_viewport_get(space)):
                 self._add_instance(parts, materials, instance)

@@ -3,8 +3,11 @@
 """Values of sockets: constants, and textures that nodes describe."""
 import math
 import os
+import struct
+import zlib
 
 import bpy
+import numpy
 
 
 def source_of(socket):
@@ -26,29 +29,61 @@ def linear_map(mapping):
     return [[cos * sx, -sin * sy], [sin * sx, cos * sy]], [tx, ty]
 
 
-def file_of_image(image, folder):
-    """The image as a file that Lanthorn reads; None if there are no pixels."""
-    path = bpy.path.abspath(image.filepath, library=image.library)
-    if image.source == "FILE" and image.packed_file is None and not image.is_dirty and os.path.isfile(path):
-        return path
-    if image.size[0] == 0:
-        return None
-    copy = image.copy()
+def _png(path, pixels):
+    """Writes (height, width, 4) of 8 bits, rows from the top."""
+    height, width = pixels.shape[:2]
+    rows = numpy.zeros((height, 1 + 4 * width), dtype=numpy.uint8)  # each after its filter: none
+    rows[:, 1:] = pixels.reshape(height, -1)
+    chunks = ((b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 6, 0, 0, 0)),
+              (b"IDAT", zlib.compress(rows.tobytes(), 1)), (b"IEND", b""))
+    with open(path, "wb") as file:
+        file.write(b"\x89PNG\r\n\x1a\n")
+        for name, data in chunks:
+            file.write(struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data)))
+
+
+def _written(image, path):
+    """Writes the pixels of an image that is no file. Returns the name, with its extension."""
+    width, height = image.size
+    pixels = numpy.empty(width * height * 4, dtype=numpy.float32)
+    image.pixels.foreach_get(pixels)
+    if not image.is_float:
+        _png(path + ".png", (pixels.reshape(height, width, 4)[::-1].clip(0, 1) * 255 + 0.5).astype(numpy.uint8))
+        return path + ".png"
+    copy = bpy.data.images.new("lanthorn", width, height, alpha=True, float_buffer=True)
     try:
-        copy.file_format = "OPEN_EXR" if image.is_float else "PNG"
-        path = os.path.join(folder, f"image{len(os.listdir(folder))}." + ("exr" if image.is_float else "png"))
-        copy.filepath_raw = path
+        copy.pixels.foreach_set(pixels)
+        copy.file_format, copy.filepath_raw = "OPEN_EXR", path + ".exr"
         copy.save()
     finally:
         bpy.data.images.remove(copy)
-    return path
+    return path + ".exr"
+
+
+class ImageFiles:
+    """Images as files that Lanthorn reads; those that are none go to a folder, once."""
+
+    def __init__(self, folder):
+        self.folder, self._written = folder, {}
+
+    def path_of(self, image):
+        """None if there are no pixels."""
+        path = bpy.path.abspath(image.filepath, library=image.library)
+        if image.source == "FILE" and image.packed_file is None and not image.is_dirty and os.path.isfile(path):
+            return path
+        if image.size[0] == 0:
+            return None
+        key = image.name_full
+        if key not in self._written or image.is_dirty:
+            self._written[key] = _written(image, os.path.join(self.folder, f"image{len(self._written)}"))
+        return self._written[key]
 
 
 class Textures:
     """Adds textures to the parts of a scene. The values of sockets are numbers, lists, or references to textures."""
 
-    def __init__(self, parts, report, folder):
-        self.parts, self.report, self.folder = parts, report, folder
+    def __init__(self, parts, report, images):
+        self.parts, self.report, self.images = parts, report, images
         self.groups = []  # group nodes that were entered
 
     def source(self, socket):
@@ -156,7 +191,7 @@ class Textures:
     def _image(self, node, owner, is_color, channel=None):
         if node.image is None:
             return [1, 0, 1] if is_color else 0.0
-        filename = file_of_image(node.image, self.folder)
+        filename = self.images.path_of(node.image)
         if filename is None:
             self.report.note(owner, f"the image {node.image.name} is not there: magenta stands in")
             return [1, 0, 1] if is_color else 0.0
@@ -226,7 +261,7 @@ class Textures:
         output = self.source(node.inputs["Color"])
         if output is None or output.node.type != "TEX_IMAGE" or output.node.image is None:
             return None
-        filename = file_of_image(output.node.image, self.folder)
+        filename = self.images.path_of(output.node.image)
         if filename is None:
             return None
         image = {"filename": filename, "encoding": "linear"}

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The Lanthorn authors
 # SPDX-License-Identifier: Apache-2.0
 """The rendered viewport: a thread talks to the program, the interface draws the picture that it has."""
-import queue
+import collections
 import threading
 
 import gpu
@@ -21,8 +21,8 @@ class Viewport:
     def __init__(self, link, redraw, options, denoises):
         self._link, self._redraw = link, redraw
         self._options, self._denoises = options, denoises
-        self._edits = queue.Queue()
-        self._lock = threading.Lock()
+        self._edits = collections.deque()  # None at the end
+        self._lock = threading.Condition()
         self._answer, self._texture = None, None
         self.problem = ""
         self.status = "Loading"
@@ -48,7 +48,7 @@ class Viewport:
         if not (changed or gone or is_moved):
             return
         self._view = view
-        self._edits.put({"set": {**(changed or {}), **view}, "remove": gone or {}, "is_moving": not (changed or gone)})
+        self._put({"set": {**(changed or {}), **view}, "remove": gone or {}, "is_moving": not (changed or gone)})
         if not self._is_started:
             self._is_started = True
             self._thread.start()
@@ -64,8 +64,13 @@ class Viewport:
         if self._texture is not None:
             draw_texture_2d(self._texture, (0, 0), width, height)
 
+    def _put(self, edit):
+        with self._lock:
+            self._edits.append(edit)
+            self._lock.notify_all()
+
     def close(self):
-        self._edits.put(None)
+        self._put(None)
         if self._is_started:
             self._thread.join(timeout=5)
         self._link.close()
@@ -82,7 +87,10 @@ class Viewport:
 
     def _serve(self):
         number, is_running = 0, False
-        while (edit := self._next_edit(is_running)) is not None:
+        while True:
+            edit = self._next_edit(is_running)
+            if edit is None:
+                return
             if edit:
                 self._link.request("update", **edit)
             if not is_running:
@@ -97,48 +105,14 @@ class Viewport:
                 self._redraw()
 
     def _next_edit(self, is_running):
-        """All edits that have come, as one; an empty one if there is none; None at the end."""
-        merged = {}
-        try:
-            while True:
-                edit = self._edits.get(block=not is_running and not merged, timeout=60)
-                if edit is None:
-                    return None
-                merged = merged_edits(merged, edit)
-        except queue.Empty:
-            return merged
-
-
-def merged_edits(first, second):
-    """The effect of two updates, one after the other. (A part that the second one removes may never have been sent.)"""
-    if not first:
-        return second
-    if first["remove"] or second["remove"]:
-        return {**second, "set": _without(_joined(first["set"], second["set"]), second["remove"]),
-                "remove": _joined_names(first, second)}
-    return {**second, "set": _joined(first["set"], second["set"]),
-            "is_moving": first["is_moving"] and second["is_moving"]}
-
-
-def _joined(first, second):
-    from .scene_export import TABLES
-    joined = {**first, **second}
-    for table in TABLES:
-        if table in first and table in second:
-            joined[table] = {**first[table], **second[table]}
-    return joined
-
-
-def _without(parts, removed):
-    return {table: {name: part for name, part in entries.items() if name not in removed[table]}
-            if table in removed else entries for table, entries in parts.items()}
-
-
-def _joined_names(first, second):
-    tables = {*first["remove"], *second["remove"]}
-    added = {table: set(first["set"].get(table, {})) for table in tables}
-    return {table: list(first["remove"].get(table, [])) +
-            [name for name in second["remove"].get(table, []) if name not in added[table]] for table in tables}
+        """The next edit; an empty one if there is none; None at the end. Of several views, only the last one counts."""
+        with self._lock:
+            while not self._edits and not is_running:
+                self._lock.wait()
+            edit = self._edits.popleft() if self._edits else {}
+            while edit and edit["is_moving"] and self._edits and self._edits[0] and self._edits[0]["is_moving"]:
+                edit = self._edits.popleft()
+            return edit
 
 
 def describe(answer):

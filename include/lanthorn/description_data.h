@@ -12,9 +12,9 @@
 
 namespace lanthorn {
 
-/// A dict to a description. A table ("materials", "lights" ...) is a list, or a dict of entries by name; in such a dict,
-/// textures may refer to textures that come later. References are indices or names. Throws Error with the place of what
-/// is wrong, such as "materials.glass.eta: expected a number, got 'high'".
+/// A dict to a description. A table ("materials", "lights" ...) is a list, or a dict of entries by name; in such a
+/// dict, textures and mixes of materials may refer to entries that come later. References are indices or names. Throws
+/// Error with the place of what is wrong, such as "materials.glass.eta: expected a number, got 'high'".
 SceneDescription description_of_data(const plain::Value& data);
 /// The description as a dict of lists, seen like this.
 plain::Value data_of_description(const SceneDescription& description, const ViewDescription& view);

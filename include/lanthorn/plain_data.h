@@ -437,7 +437,8 @@ void read_member(Reader& reader, const Dict& data, T& out, const Reference<T, M>
       const auto* list = value->as<List>();
       if (list == nullptr || list->size() != (out.*member.member).size())
         reader.fail(std::to_string((out.*member.member).size()) + " indices or names", *value);
-      for (std::size_t i = 0; i < list->size(); ++i) read_reference(reader, (*list)[i], member.table, (out.*member.member)[i]);
+      for (std::size_t i = 0; i < list->size(); ++i)
+        read_reference(reader, (*list)[i], member.table, (out.*member.member)[i]);
     } else {
       read_reference(reader, *value, member.table, out.*member.member);
     }

@@ -21,16 +21,26 @@ enum class Scalar : std::uint8_t { int8, int16, int32, int64, uint8, uint16, uin
 template <class Visit>
 decltype(auto) with_type(Scalar scalar, Visit&& visit) {
   switch (scalar) {
-    case Scalar::int8: return visit(static_cast<const std::int8_t*>(nullptr));
-    case Scalar::int16: return visit(static_cast<const std::int16_t*>(nullptr));
-    case Scalar::int32: return visit(static_cast<const std::int32_t*>(nullptr));
-    case Scalar::int64: return visit(static_cast<const std::int64_t*>(nullptr));
-    case Scalar::uint8: return visit(static_cast<const std::uint8_t*>(nullptr));
-    case Scalar::uint16: return visit(static_cast<const std::uint16_t*>(nullptr));
-    case Scalar::uint32: return visit(static_cast<const std::uint32_t*>(nullptr));
-    case Scalar::uint64: return visit(static_cast<const std::uint64_t*>(nullptr));
-    case Scalar::float32: return visit(static_cast<const float*>(nullptr));
-    case Scalar::float64: break;
+    case Scalar::int8:
+      return visit(static_cast<const std::int8_t*>(nullptr));
+    case Scalar::int16:
+      return visit(static_cast<const std::int16_t*>(nullptr));
+    case Scalar::int32:
+      return visit(static_cast<const std::int32_t*>(nullptr));
+    case Scalar::int64:
+      return visit(static_cast<const std::int64_t*>(nullptr));
+    case Scalar::uint8:
+      return visit(static_cast<const std::uint8_t*>(nullptr));
+    case Scalar::uint16:
+      return visit(static_cast<const std::uint16_t*>(nullptr));
+    case Scalar::uint32:
+      return visit(static_cast<const std::uint32_t*>(nullptr));
+    case Scalar::uint64:
+      return visit(static_cast<const std::uint64_t*>(nullptr));
+    case Scalar::float32:
+      return visit(static_cast<const float*>(nullptr));
+    case Scalar::float64:
+      break;
   }
   return visit(static_cast<const double*>(nullptr));
 }
@@ -75,8 +85,8 @@ class Dict {
   std::vector<Entry> entries_;
 };
 
-struct Value : std::variant<std::monostate, bool, std::int64_t, std::uint64_t, double, std::string, Array, List, Dict,
-                            Other> {
+struct Value
+    : std::variant<std::monostate, bool, std::int64_t, std::uint64_t, double, std::string, Array, List, Dict, Other> {
   using variant::variant;
 
   bool is_none() const { return std::holds_alternative<std::monostate>(*this); }

@@ -89,8 +89,7 @@ py::array whole_array(const py::object& owner) {
 
 Picture picture_of_array(const py::object& data, const std::optional<std::vector<std::string>>& names) {
   Reader reader;
-  const auto array =
-      plain::number_array<float>(reader, value_of(data), "numbers of shape (height, width, channels)");
+  const auto array = plain::number_array<float>(reader, value_of(data), "numbers of shape (height, width, channels)");
   if (array.shape.size() != 2 && array.shape.size() != 3)
     reader.fail("expected numbers of shape (height, width, channels) or (height, width), got " +
                 std::to_string(array.shape.size()) + " dimensions");

@@ -30,10 +30,20 @@ std::shared_ptr<const void> keeper_of(const py::object& object) {
 std::optional<Scalar> scalar_of(const py::dtype& type) {
   const bool is_wide = type.itemsize() == 8;
   switch (type.kind()) {
-    case 'f': return is_wide ? Scalar::float64 : Scalar::float32;
-    case 'i': return is_wide ? Scalar::int64 : type.itemsize() == 4 ? Scalar::int32 : type.itemsize() == 2 ? Scalar::int16 : Scalar::int8;
-    case 'u': return is_wide ? Scalar::uint64 : type.itemsize() == 4 ? Scalar::uint32 : type.itemsize() == 2 ? Scalar::uint16 : Scalar::uint8;
-    default: return std::nullopt;
+    case 'f':
+      return is_wide ? Scalar::float64 : Scalar::float32;
+    case 'i':
+      return is_wide                ? Scalar::int64
+             : type.itemsize() == 4 ? Scalar::int32
+             : type.itemsize() == 2 ? Scalar::int16
+                                    : Scalar::int8;
+    case 'u':
+      return is_wide                ? Scalar::uint64
+             : type.itemsize() == 4 ? Scalar::uint32
+             : type.itemsize() == 2 ? Scalar::uint16
+                                    : Scalar::uint8;
+    default:
+      return std::nullopt;
   }
 }
 

@@ -156,6 +156,20 @@ class LinkTest(unittest.TestCase):
         textured["spectrum_textures"]["z"] = textured["spectrum_textures"]["a"] | {"tex1": {"texture": "a"}}
         self.assert_refused("refers to itself", "update", set={"spectrum_textures": textured["spectrum_textures"]})
 
+    def test_mixes_come_in_any_order(self):
+        mixed = scene()
+        mixed["materials"] |= {"a": {"type": "mix", "materials": ["white", "black"], "amount": 0.5},
+                               "black": {"type": "diffuse", "reflectance": 0}}
+        mixed["objects"]["square"]["shapes"][0]["material"] = "a"
+        self.start(mixed)
+        self.assertAlmostEqual(mean(last_picture(self.client)), 0.25, delta=0.03)
+        # Another mix leads to another order of the materials.
+        change = {"materials": {"a": {"type": "mix", "materials": ["black", "white"], "amount": 0.8}}}
+        revision = self.client.request("update", set=change)["revision"]
+        self.assertAlmostEqual(mean(last_picture(self.client, revision=revision)), 0.4, delta=0.03)
+        self.assert_refused("refers to itself", "update",
+                            set={"materials": {"a": {"type": "mix", "materials": ["a", "white"]}}})
+
     def test_a_pass_can_be_the_last_one(self):
         self.start(scene(), passes=1000000)
         first = self.client.request("wait", patience=10)

@@ -57,12 +57,18 @@ RenderOptions options_in(const Dict& request) {
 
 const char* name_of(InteractivePhase phase) {
   switch (phase) {
-    case InteractivePhase::preparing: return "preparing";
-    case InteractivePhase::refining: return "refining";
-    case InteractivePhase::paused: return "paused";
-    case InteractivePhase::finished: return "finished";
-    case InteractivePhase::out_of_time: return "out_of_time";
-    case InteractivePhase::failed: break;
+    case InteractivePhase::preparing:
+      return "preparing";
+    case InteractivePhase::refining:
+      return "refining";
+    case InteractivePhase::paused:
+      return "paused";
+    case InteractivePhase::finished:
+      return "finished";
+    case InteractivePhase::out_of_time:
+      return "out_of_time";
+    case InteractivePhase::failed:
+      break;
   }
   return "failed";
 }
@@ -171,8 +177,7 @@ LinkAnswer Conversation::wait(const Dict& request) {
   if (!render_) throw Error("nothing is rendered: send \"start\" first");
   const InteractiveSnapshot now = wait_for_news(after, patience);
   LinkAnswer answer{json::object()};
-  const std::optional<InteractiveDenoised> denoised =
-      now.denoised ? std::optional(*now.denoised) : std::nullopt;
+  const std::optional<InteractiveDenoised> denoised = now.denoised ? std::optional(*now.denoised) : std::nullopt;
   if (now.picture && now.number > after) answer = picture_answer(*now.picture, denoised, layers);
   answer.body["number"] = now.number;
   answer.body["phase"] = name_of(now.status.phase);

@@ -19,9 +19,8 @@ namespace {
 using plain::Dict;
 using plain::Value;
 
-const std::vector<std::string> table_names{"float_textures", "spectrum_textures", "materials", "media",
-                                           "area_lights",    "shapes",            "objects",   "instances",
-                                           "lights"};
+const std::vector<std::string> table_names{"float_textures", "spectrum_textures", "materials", "media", "area_lights",
+                                           "shapes",         "objects",           "instances", "lights"};
 const std::vector<std::string> single_names{"camera", "film", "filter", "hints", "environment", "color_space"};
 // Tables whose entries `edit_scene` replaces.
 constexpr std::array<std::string_view, 4> editable{"materials", "area_lights", "lights", "instances"};
@@ -35,6 +34,13 @@ const Dict& dict_at(const std::string& place, const Value& value) {
   const auto* dict = value.as<Dict>();
   if (dict == nullptr) throw Error(place + ": expected an object of parts by name, got " + shown(value));
   return *dict;
+}
+
+std::vector<std::string> names_of(const std::vector<description::Material>& materials) {
+  std::vector<std::string> names;
+  names.reserve(materials.size());
+  for (const description::Material& material : materials) names.push_back(material.name);
+  return names;
 }
 
 [[noreturn]] void refuse_part(const std::string& place, const std::string& name) {
@@ -91,7 +97,8 @@ Dict LinkedScene::data_of(const Parts& parts) {
   return data;
 }
 
-// Parts are in the order of their names, so that an entry that is replaced keeps its index.
+// All parts but materials, which follow those that they mix, are in the order of their names. So an entry that is
+// replaced keeps its index.
 void LinkedScene::note_edits(const SceneDescription& description, const Changes& changes) {
   const auto note = [&](const char* table, auto&& copy) {
     const auto found = changes.entries.find(table);
@@ -100,15 +107,18 @@ void LinkedScene::note_edits(const SceneDescription& description, const Changes&
     for (const std::string& name : found->second)
       copy(static_cast<description::Index>(std::distance(all.begin(), all.find(name))));
   };
-  note("materials", [&](auto i) { edits_.materials.insert_or_assign(i, description.materials[i]); });
+  if (const auto found = changes.entries.find("materials"); found != changes.entries.end())
+    for (std::size_t i = 0; i < description.materials.size(); ++i)
+      if (found->second.contains(description.materials[i].name))
+        edits_.materials.insert_or_assign(static_cast<description::Index>(i), description.materials[i]);
   note("area_lights", [&](auto i) { edits_.area_lights.insert_or_assign(i, description.area_lights[i]); });
   note("lights", [&](auto i) { edits_.lights.insert_or_assign(i, description.lights[i]); });
   note("instances", [&](auto i) { edits_.instances.insert_or_assign(i, description.instances[i].object_to_world); });
 }
 
-bool LinkedScene::can_edit(const Changes& changes) const {
+bool LinkedScene::can_edit(const SceneDescription& description, const Changes& changes) const {
   const bool has_environment = parts_.singles.contains("environment");  // adds to the lights
-  return !changes.is_other_scene && !has_environment &&
+  return !changes.is_other_scene && !has_environment && names_of(description.materials) == built_->material_names &&
          std::all_of(changes.entries.begin(), changes.entries.end(),
                      [](const auto& table) {
                        return std::find(editable.begin(), editable.end(), table.first) != editable.end();
@@ -132,8 +142,9 @@ SharedScene LinkedScene::scene_of(Built& built) {
 RenderEdit LinkedScene::change_of(SceneDescription description, const Changes& changes) {
   RenderEdit edit;
   edit.view = description.view;
-  if (!can_edit(changes)) {
-    built_ = std::make_shared<Built>(Built{std::move(description), {}, {}});
+  if (!can_edit(description, changes)) {
+    std::vector<std::string> names = names_of(description.materials);
+    built_ = std::make_shared<Built>(Built{std::move(description), {}, {}, std::move(names)});
     edits_ = {};
     edit.scene = [built = built_] { return scene_of(*built); };
   } else if (!changes.entries.empty()) {
@@ -160,8 +171,8 @@ RenderEdit LinkedScene::update(const Value* set, const Value* remove) {
 }
 
 SharedScene LinkedScene::build() {
-  const bool has_edits = !edits_.materials.empty() || !edits_.area_lights.empty() || !edits_.lights.empty() ||
-                         !edits_.instances.empty();
+  const bool has_edits =
+      !edits_.materials.empty() || !edits_.area_lights.empty() || !edits_.lights.empty() || !edits_.instances.empty();
   try {
     SharedScene scene = scene_of(*built_);
     return has_edits ? edit_scene(*scene, edits_) : scene;

@@ -9,6 +9,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "lanthorn/interactive_render.h"
 #include "lanthorn/plain_value.h"
@@ -19,8 +20,8 @@ namespace lanthorn::program {
 class LinkedScene {
  public:
   /// What an update asks for: parts to add or to replace, by table and name, and names of parts to take away; `camera`,
-  /// `film`, `filter`, `hints`, `environment` and `color_space` are parts of their own. Returns the change, for a render
-  /// of the scene as it was before. Throws Error, and leaves the scene as it was, if the result is no scene.
+  /// `film`, `filter`, `hints`, `environment` and `color_space` are parts of their own. Returns the change, for a
+  /// render of the scene as it was before. Throws Error, and leaves the scene as it was, if the result is no scene.
   RenderEdit update(const plain::Value* set, const plain::Value* remove);
 
   /// Builds the scene, if that was not done yet. Throws Error as `build_scene`.
@@ -37,7 +38,8 @@ class LinkedScene {
   struct Built {
     std::optional<SceneDescription> description;
     SharedScene scene{};
-    std::string problem{};  ///< why it could not be built
+    std::string problem{};                      ///< why it could not be built
+    std::vector<std::string> material_names{};  ///< in the description's order
   };
   struct Changes {
     std::set<std::string> singles;
@@ -48,7 +50,7 @@ class LinkedScene {
   static SharedScene scene_of(Built& built);
   static Changes merge(Parts& parts, const plain::Value* set, const plain::Value* remove);
   static plain::Dict data_of(const Parts& parts);
-  bool can_edit(const Changes& changes) const;
+  bool can_edit(const SceneDescription& description, const Changes& changes) const;
   void note_edits(const SceneDescription& description, const Changes& changes);
   RenderEdit change_of(SceneDescription description, const Changes& changes);
 

@@ -46,14 +46,22 @@ class JsonReader {
   plain::Value value(const json& data, int depth) const {
     if (depth > deepest) throw Error("expected at most " + std::to_string(deepest) + " levels of lists and objects");
     switch (data.type()) {
-      case json::value_t::boolean: return data.get<bool>();
-      case json::value_t::number_integer: return data.get<std::int64_t>();
-      case json::value_t::number_unsigned: return whole(data.get<std::uint64_t>());
-      case json::value_t::number_float: return data.get<double>();
-      case json::value_t::string: return data.get<std::string>();
-      case json::value_t::array: return list(data, depth);
-      case json::value_t::object: break;
-      default: return {};
+      case json::value_t::boolean:
+        return data.get<bool>();
+      case json::value_t::number_integer:
+        return data.get<std::int64_t>();
+      case json::value_t::number_unsigned:
+        return whole(data.get<std::uint64_t>());
+      case json::value_t::number_float:
+        return data.get<double>();
+      case json::value_t::string:
+        return data.get<std::string>();
+      case json::value_t::array:
+        return list(data, depth);
+      case json::value_t::object:
+        break;
+      default:
+        return {};
     }
     if (data.contains(array_key)) return array(data);
     return dict(data, depth);

@@ -12,8 +12,8 @@
 
 namespace lanthorn::program {
 
-/// The text of a JSON object. {"$array": "float32", "shape": [n, 3], "offset": bytes} is an array in `data`. Throws Error
-/// for text that is no JSON object, for objects nested too deeply, and for arrays that `data` does not hold.
+/// The text of a JSON object. {"$array": "float32", "shape": [n, 3], "offset": bytes} is an array in `data`. Throws
+/// Error for text that is no JSON object, for objects nested too deeply, and for arrays that `data` does not hold.
 plain::Dict dict_of_json(std::string_view text, const std::shared_ptr<const std::vector<std::byte>>& data);
 
 }  // namespace lanthorn::program

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "api/plain/description_fields.h"
-#include "api/plain/texture_order.h"
+#include "api/plain/reference_order.h"
 #include "lanthorn/error.h"
 #include "lanthorn/file.h"
 
@@ -49,11 +49,12 @@ std::string own_name(const Value& entry) {
 std::vector<TableEntry> entries_of(Reader& reader, const std::string& table, const Value& data) {
   std::vector<TableEntry> entries;
   if (const auto* list = data.as<List>()) {
-    for (const Value& value : *list) entries.push_back({"[" + std::to_string(entries.size()) + "]", own_name(value), &value});
+    for (const Value& value : *list)
+      entries.push_back({"[" + std::to_string(entries.size()) + "]", own_name(value), &value});
   } else if (const auto* dict = data.as<Dict>()) {
-    const bool is_ordered = table.ends_with("_textures");
+    const bool is_ordered = table.ends_with("_textures") || table == "materials";
     if (is_ordered)
-      for (const Dict::Entry* entry : in_texture_order(reader, *dict))
+      for (const Dict::Entry* entry : in_reference_order(reader, *dict))
         entries.push_back({"." + entry->first, entry->first, &entry->second});
     else
       for (const auto& [name, value] : dict->entries()) entries.push_back({"." + name, name, &value});

@@ -34,7 +34,8 @@ void Convert<Transform>::read(Reader& reader, const Value& data, Transform& out)
   if (m.shape != Shape{4, 4}) reader.fail("a 4 x 4 matrix", data);
   DMat4 matrix;
   for (int row = 0; row < 4; ++row)
-    for (int column = 0; column < 4; ++column) matrix[column][row] = m.values[static_cast<std::size_t>(row * 4 + column)];
+    for (int column = 0; column < 4; ++column)
+      matrix[column][row] = m.values[static_cast<std::size_t>(row * 4 + column)];
   out = Transform(matrix);
   if (out.is_singular()) reader.fail("a matrix that can be inverted", data);
   reader.mix(m.values.data(), 16 * sizeof(double));
@@ -99,7 +100,8 @@ Value Convert<description::SpectrumParameter>::write(const description::Spectrum
   return write_parameter(value);
 }
 
-void Convert<std::shared_ptr<const description::SphericalTexels>>::read(Reader& reader, const Value& data, Texels& out) {
+void Convert<std::shared_ptr<const description::SphericalTexels>>::read(Reader& reader, const Value& data,
+                                                                        Texels& out) {
   if (data.is_none()) return out.reset();
   const std::string expected = "numbers of shape (height, width, 3)";
   const NumberArray<float> array = number_array<float>(reader, data, expected);
@@ -115,4 +117,4 @@ Value Convert<std::shared_ptr<const description::SphericalTexels>>::write(const 
   return array_of(texels->rows, {static_cast<std::size_t>(texels->height), static_cast<std::size_t>(texels->width), 3});
 }
 
-}  // namespace lanthorn::python
+}  // namespace lanthorn::plain

@@ -334,7 +334,8 @@ template <>
 struct Fields<description::MixMaterial> {
   using T = description::MixMaterial;
   static constexpr const char* type = T::kind;
-  static constexpr auto list = std::tuple(reference("materials", "materials", &T::materials), field("amount", &T::amount));
+  static constexpr auto list =
+      std::tuple(reference("materials", "materials", &T::materials), field("amount", &T::amount));
 };
 template <>
 struct Fields<description::InterfaceMaterial> {
@@ -476,8 +477,8 @@ struct Fields<description::Shape> {
   static constexpr auto list = std::tuple(
       node(&T::geometry), field("object_to_world", &T::object_to_world),
       field("reverse_orientation", &T::reverse_orientation), reference("material", "materials", &T::material),
-      reference("area_light", "area_lights", &T::area_light), field("shares_power", &T::shares_power), field("alpha", &T::alpha),
-      field("pane", &T::pane), field("displacement", &T::displacement),
+      reference("area_light", "area_lights", &T::area_light), field("shares_power", &T::shares_power),
+      field("alpha", &T::alpha), field("pane", &T::pane), field("displacement", &T::displacement),
       reference("inside_medium", "media", &T::inside_medium), reference("outside_medium", "media", &T::outside_medium));
 };
 template <>
