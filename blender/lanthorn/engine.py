@@ -4,7 +4,7 @@
 import bpy
 import gpu
 
-from . import camera, passes, settings, viewport
+from . import camera, motion, passes, settings, viewport
 from .link import Link, LinkError
 from .scene_export import SceneExport
 
@@ -48,6 +48,7 @@ class FinalRender:
             self.engine.update_stats("", "Exporting the scene")
             parts = export.parts(self.depsgraph)
             view = self.view_parts(export.report)
+            motion.add_motion(self.engine, self.depsgraph, self.scene.camera, parts, view["camera"])
             changed, _ = export.changes(parts)
             link.request("update", set={**changed, **view})
             self._say(export.report.lines())

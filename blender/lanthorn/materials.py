@@ -20,10 +20,6 @@ class Look:
     alpha: object = OPAQUE
 
 
-def scaled(color, factor):
-    return [c * factor for c in color] if isinstance(color, list) else color
-
-
 def clamped(color):
     return [min(1.0, max(0.0, c)) for c in color] if isinstance(color, list) else color
 
@@ -236,7 +232,7 @@ class Materials:
                 self.report.note(owner, f"{what} of a Principled BSDF is left out")
 
     def mix(self, node, owner):
-        amount = self.textures.number(node.inputs["Fac"], owner)
+        amount = self.textures.number(node.inputs[0], owner)
         if amount in (0, 1):
             return self._input_look(node.inputs[1 + int(amount)], owner)
         first, second = (self._input_look(socket, owner) for socket in node.inputs[1:3])

@@ -10,6 +10,7 @@ from .textures import ImageFiles
 
 MESH_TYPES = {"MESH", "CURVE", "SURFACE", "META", "FONT"}
 IGNORED_TYPES = {"CAMERA", "EMPTY", "ARMATURE", "LATTICE", "SPEAKER", "LIGHT_PROBE", "GPENCIL"}
+VISIBILITIES = ("visible_camera", "visible_diffuse", "visible_glossy", "visible_transmission", "visible_shadow")
 TABLES = ("float_textures", "spectrum_textures", "materials", "media", "area_lights", "shapes", "objects", "instances",
           "lights")
 
@@ -52,12 +53,21 @@ class SceneExport:
             parts["lights"]["world"] = light
         return parts
 
+    def _note_object(self, object):
+        """What objects have beside shape, place and material."""
+        if not all(getattr(object, flag, True) for flag in VISIBILITIES):
+            self.report.note(object.name, "is seen by all rays: ray visibility has no counterpart")
+        if any(system.settings.type == "HAIR" and system.settings.render_type == "PATH"
+               for system in object.particle_systems):
+            self.report.note(object.name, "hair is left out")
+
     def _add_instance(self, parts, materials, instance):
         object, matrix = instance.object, instance.matrix_world.copy()
-        name = self._name_of(instance)
+        name = self.name_of(instance)
         if object.type == "LIGHT":
             lights.add_light(parts, name, object.data, matrix, self.report)
         elif object.type in MESH_TYPES:
+            self._note_object(object)
             key = self._mesh_key(object)
             if key not in parts["objects"]:
                 parts["objects"][key] = self._shapes(key, object, materials)
@@ -67,7 +77,8 @@ class SceneExport:
             self.report.note(object.name, f"objects of the type {object.type} are left out")
 
     @staticmethod
-    def _name_of(instance):
+    def name_of(instance):
+        """The name of an instance, or of an object that is there once; the same at every time."""
         if not instance.is_instance:
             return instance.object.name_full
         numbers = [str(i) for i in instance.persistent_id if i != 2**31 - 1]

@@ -148,6 +148,20 @@ class RenderTest(unittest.TestCase):
             first, second = (stage.read_picture(os.path.join(folder, n)) for n in names)
         self.assertGreater(abs(first - second).mean(), 0.02)
 
+    def test_motion_blur(self):
+        scene = self.blocks_in_the_sky()
+        camera = stage.add_camera((0, -4, 2), (math.radians(65), 0, 0), lens=30)
+        for thing, axis, places in ((bpy.data.objects["ball"], 2, (0.2, 1.4)), (camera, 0, (-0.3, 0.5))):
+            for frame, place in zip((1, 3), places):
+                thing.location[axis] = place
+                thing.keyframe_insert("location", frame=frame)
+            for curve in thing.animation_data.action.fcurves:
+                for key in curve.keyframe_points:
+                    key.interpolation = "LINEAR"
+        scene.frame_set(2)
+        scene.render.use_motion_blur, scene.render.motion_blur_shutter = True, 0.8
+        self.compare_blocks("motion-blur")
+
     def test_errors_name_what_to_do(self):
         scene = self.blocks_in_the_sky()
         scene.render.engine = "LANTHORN"

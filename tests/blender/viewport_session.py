@@ -6,6 +6,7 @@ Usage: xvfb-run -a blender --factory-startup --python viewport_session.py -- FOL
 Leaves screenshots in the folder, and the times of first pictures on standard output.
 """
 import os
+import subprocess
 import sys
 import time
 
@@ -63,9 +64,28 @@ def leave():
     view()[1].shading.type = "SOLID"
 
 
+def press_f12():
+    bpy.context.scene.render.resolution_x, bpy.context.scene.render.resolution_y = 320, 240
+    bpy.context.scene.lanthorn.noise = 0
+    window = bpy.context.window_manager.windows[0]
+    with bpy.context.temp_override(window=window, screen=window.screen):
+        bpy.ops.render.render("INVOKE_DEFAULT")
+
+
+def press_escape():
+    subprocess.run(["xdotool", "mousemove", "640", "400", "key", "Escape"], check=True)
+
+
+def check_render():
+    print("render runs after Escape:", bpy.app.is_job_running("RENDER"), flush=True)
+    bpy.data.images["Render Result"].save_render(os.path.join(FOLDER, "cancelled.png"))
+
+
 STEPS = [(scene, 1), (show, 2), (lambda: screenshot("first"), 12), (lambda: screenshot("refined"), 0.1), (move_lamp, 6),
          (lambda: screenshot("lamp-moved"), 0.1), (color_floor, 6), (lambda: screenshot("floor-coloured"), 0.1),
          (turn, 5), (lambda: screenshot("turned"), 0.1), (leave, 2), (lambda: screenshot("solid"), 0.1),
+         (press_f12, 12), (lambda: screenshot("f12"), 0.1),
+         (press_escape, 3), (lambda: screenshot("after-escape"), 0.1), (check_render, 0.1),
          (lambda: bpy.ops.wm.quit_blender(), 1)]
 START = time.monotonic()
 
