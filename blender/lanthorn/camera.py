@@ -1,6 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The Lanthorn authors
 # SPDX-License-Identifier: Apache-2.0
 """Blender's cameras and views as Lanthorn's."""
+import numpy
+
 
 def rows(matrix):
     return [list(row) for row in matrix]
@@ -81,8 +83,12 @@ def border_pixels(render, size):
     width, height = size
     if not render.use_border:
         return [0, 0, width, height]
-    x0, x1 = int(render.border_min_x * width), int(render.border_max_x * width)
-    y0, y1 = int(render.border_min_y * height), int(render.border_max_y * height)
+
+    def pixel(share, extent):  # in single precision, as Blender does
+        return int(numpy.float32(share) * numpy.float32(extent))
+
+    x0, x1 = pixel(render.border_min_x, width), pixel(render.border_max_x, width)
+    y0, y1 = pixel(render.border_min_y, height), pixel(render.border_max_y, height)
     return [x0, height - max(y1, y0 + 1), max(x1, x0 + 1), height - y0]
 
 
@@ -98,7 +104,6 @@ def filter_part(width):
 def axial_depth(distance, window):
     """Depth along the camera's axis, as Blender has it, from the distance along rays of a perspective camera. `window`:
     `screen_window` of the pixels of `distance`, an array with rows from the top."""
-    import numpy
     height, width = distance.shape
     x = numpy.linspace(window[0], window[1], 2 * width + 1, dtype=numpy.float32)[1::2]
     y = numpy.linspace(window[3], window[2], 2 * height + 1, dtype=numpy.float32)[1::2]

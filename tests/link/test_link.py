@@ -170,6 +170,16 @@ class LinkTest(unittest.TestCase):
         self.assert_refused("refers to itself", "update",
                             set={"materials": {"a": {"type": "mix", "materials": ["a", "white"]}}})
 
+    def test_goes_on_until_it_is_told_to_end(self):
+        self.client.request("update", set=scene())
+        self.client.request("start", options={"integrator": "path"})
+        answer = {"passes": 0}
+        number, end = 0, time.monotonic() + 60
+        while answer.get("passes", 0) <= 100 and time.monotonic() < end:  # lanthorn render would stop after 64
+            answer = self.client.request("wait", after=number, patience=1, layers=["color"])
+            number = answer["number"]
+        self.assertEqual(answer["phase"], "refining")
+
     def test_a_pass_can_be_the_last_one(self):
         self.start(scene(), passes=1000000)
         first = self.client.request("wait", patience=10)

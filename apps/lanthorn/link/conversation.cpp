@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "../estimate_json.h"
+#include "../value_types.h"
 #include "lanthorn/description_data.h"
 #include "lanthorn/error.h"
 #include "lanthorn/methods.h"
@@ -50,9 +51,12 @@ Dict without_keys(const Dict& request, const plain::Keys& keys) {
   return rest;
 }
 
+// Without passes, time and bound of the error, a render goes on until it is stopped.
 RenderOptions options_in(const Dict& request) {
-  const Value* options = request.find("options");
-  return options != nullptr ? options_of_data(*options) : RenderOptions();
+  const Value* data = request.find("options");
+  RenderOptions options = data != nullptr ? options_of_data(*data) : RenderOptions();
+  if (!options.passes && !options.pass_range && !options.seconds && !options.noise) options.passes = most_passes;
+  return options;
 }
 
 const char* name_of(InteractivePhase phase) {
