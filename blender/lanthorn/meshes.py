@@ -39,16 +39,17 @@ def triangle_meshes(mesh):
     loops = len(mesh.loops)
     vertices = _get(mesh.loops, "vertex_index", loops, numpy.int32)
     positions = _get(mesh.vertices, "co", 3 * len(mesh.vertices), numpy.float32).reshape(-1, 3)
-    is_smooth, uvs = _is_smooth(mesh), mesh.uv_layers.active
+    is_smooth = _is_smooth(mesh)
     triangles = _get(mesh.loop_triangles, "loops", 3 * count, numpy.int32).reshape(-1, 3)
     slots = _get(mesh.loop_triangles, "material_index", count, numpy.int32)
-    if not is_smooth and uvs is None:
+    if not is_smooth and mesh.uv_layers.active is None:
         corners = {"positions": positions}
         triangles = vertices[triangles]
     else:
         corners = {"positions": positions[vertices]}
         if is_smooth:
             corners["normals"] = _corner_normals(mesh, loops)
+        uvs = mesh.uv_layers.active  # not before: the normals add a layer, which moves the others
         if uvs is not None:
             corners["uvs"] = _get(uvs.data, "uv", 2 * loops, numpy.float32).reshape(-1, 2)
     return {int(slot): _subset(triangles[slots == slot], corners) for slot in numpy.unique(slots)}
