@@ -209,6 +209,9 @@ class LinkTest(unittest.TestCase):
         self.assert_refused("did you mean start?", "strat")
         self.assert_refused("passes: expected a whole number", "start", options={"passes": "all"})
         self.assertAlmostEqual(mean(last_picture(self.client)), 0.5, delta=0.03)
+        # Nothing of what was refused is left.
+        revision = self.client.request("update", set={"film": {"width": 10, "height": 10}})["revision"]
+        self.assertAlmostEqual(mean(last_picture(self.client, revision=revision)), 0.5, delta=0.03)
 
     def test_a_scene_that_cannot_be_built_leaves_the_picture(self):
         self.start(scene())
