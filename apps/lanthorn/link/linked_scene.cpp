@@ -56,33 +56,39 @@ std::string text_at(const std::string& place, const Value& value) {
 
 }  // namespace
 
+void LinkedScene::take_away(Parts& parts, const Dict& remove, Changes& changes) {
+  for (const auto& [table, names] : remove.entries()) {
+    if (!is_table(table)) refuse_part("remove", table);
+    const auto* list = names.as<plain::List>();
+    if (list == nullptr) throw Error("remove." + table + ": expected a list of names, got " + shown(names));
+    for (const Value& name : *list) {
+      const std::string text = text_at("remove." + table, name);
+      if (parts.tables[table].erase(text) == 0)
+        throw Error("remove." + table + ": there is no part " + in_quotes(text));
+      changes.is_other_scene = true;
+    }
+  }
+}
+
+void LinkedScene::put(Parts& parts, const Dict& set, Changes& changes) {
+  for (const auto& [name, value] : set.entries()) {
+    if (!is_table(name)) {
+      if (std::find(single_names.begin(), single_names.end(), name) == single_names.end()) refuse_part("set", name);
+      parts.singles.insert_or_assign(name, value);
+      changes.singles.insert(name);
+      continue;
+    }
+    for (const auto& [entry, part] : dict_at("set." + name, value).entries()) {
+      if (parts.tables[name].insert_or_assign(entry, part).second) changes.is_other_scene = true;
+      changes.entries[name].insert(entry);
+    }
+  }
+}
+
 LinkedScene::Changes LinkedScene::merge(Parts& parts, const Value* set, const Value* remove) {
   Changes changes;
-  if (remove != nullptr)
-    for (const auto& [table, names] : dict_at("remove", *remove).entries()) {
-      if (!is_table(table)) refuse_part("remove", table);
-      const auto* list = names.as<plain::List>();
-      if (list == nullptr) throw Error("remove." + table + ": expected a list of names, got " + shown(names));
-      for (const Value& name : *list) {
-        const std::string text = text_at("remove." + table, name);
-        if (parts.tables[table].erase(text) == 0)
-          throw Error("remove." + table + ": there is no part " + in_quotes(text));
-        changes.is_other_scene = true;
-      }
-    }
-  if (set != nullptr)
-    for (const auto& [name, value] : dict_at("set", *set).entries()) {
-      if (!is_table(name)) {
-        if (std::find(single_names.begin(), single_names.end(), name) == single_names.end()) refuse_part("set", name);
-        parts.singles.insert_or_assign(name, value);
-        changes.singles.insert(name);
-        continue;
-      }
-      for (const auto& [entry, part] : dict_at("set." + name, value).entries()) {
-        if (parts.tables[name].insert_or_assign(entry, part).second) changes.is_other_scene = true;
-        changes.entries[name].insert(entry);
-      }
-    }
+  if (remove != nullptr) take_away(parts, dict_at("remove", *remove), changes);
+  if (set != nullptr) put(parts, dict_at("set", *set), changes);
   return changes;
 }
 

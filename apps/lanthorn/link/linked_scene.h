@@ -48,6 +48,8 @@ class LinkedScene {
   };
 
   static SharedScene scene_of(Built& built);
+  static void take_away(Parts& parts, const plain::Dict& remove, Changes& changes);
+  static void put(Parts& parts, const plain::Dict& set, Changes& changes);
   static Changes merge(Parts& parts, const plain::Value* set, const plain::Value* remove);
   static plain::Dict data_of(const Parts& parts);
   bool can_edit(const SceneDescription& description, const Changes& changes) const;
