@@ -19,16 +19,13 @@ SceneDescription description_of_data(const plain::Value& data);
 /// The description as a dict of lists, seen like this.
 plain::Value data_of_description(const SceneDescription& description, const ViewDescription& view);
 
-/// The members `camera`, `film` and `filter` of the dict, upon `view`. `scene`: whose media cameras name.
-ViewDescription view_of_data(const plain::Dict& data, ViewDescription view, const SceneDescription& scene);
-
 /// What a dict of edits asks for.
 struct DescriptionEdits {
   ViewDescription view;
   std::optional<SceneEdits> scene{};  ///< none: only the view changes
 };
-/// Keys: those of `view_of_data`, and `materials`, `lights`, `area_lights` and `instances`, which are dicts of entries
-/// by name or index, and `environment`. Members that an entry does not have stay as they are in `scene`.
+/// Keys: `camera`, `film` and `filter`, and `materials`, `lights`, `area_lights` and `instances`, which are dicts of
+/// entries by name or index, and `environment`. Members that an entry does not have stay as they are in `scene`.
 DescriptionEdits edits_of_data(const plain::Value& data, const SceneDescription& scene, const ViewDescription& view);
 
 /// A source, or a dict of the members of EnvironmentChoice.

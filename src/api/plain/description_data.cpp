@@ -202,13 +202,6 @@ Value data_of_description(const SceneDescription& description, const ViewDescrip
   return data;
 }
 
-ViewDescription view_of_data(const Dict& data, ViewDescription view, const SceneDescription& scene) {
-  Reader reader = reader_for(scene);
-  Keys known;
-  read_listed(reader, data, view, view_members, known);
-  return view;
-}
-
 EnvironmentChoice environment_of_data(const Value& data) {
   if (data.as<std::string>() != nullptr) return {.source = *data.as<std::string>()};
   Reader reader;
