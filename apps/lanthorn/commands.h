@@ -12,6 +12,7 @@ namespace lanthorn::program {
 
 void add_render(CLI::App& app);
 void add_serve(CLI::App& app);
+void add_link(CLI::App& app);
 void add_view(CLI::App& app);
 void add_ibl(CLI::App& app);
 void add_info(CLI::App& app);

@@ -65,6 +65,7 @@ int run(int argc, char** argv) {
   add_render(app);
   add_serve(app);
   add_view(app);
+  add_link(app);
   add_info(app);
   add_compare(app);
   add_converge(app);

@@ -28,13 +28,11 @@ void call(const std::string& name, const SharedScene& scene, const EyeRays& eye,
   const py::object answer = functions().at(name)(SeenScene{scene, description_of(*scene).view}, write(origins),
                                                  write(directions), eye.random_key);
   Reader reader;
-  const auto count = static_cast<py::ssize_t>(radiance.size());
-  const std::string expected = "numbers of shape (" + std::to_string(count) + ", 3)";
+  const std::string expected = "numbers of shape (" + std::to_string(radiance.size()) + ", 3)";
   reader.at(name + ".radiance", [&] {
-    const py::array_t<float> values = number_array<float>(reader, answer, expected);
-    if (values.ndim() != 2 || values.shape(0) != count || values.shape(1) != 3)
-      reader.fail("expected " + expected + ", got shape " + py::str(values.attr("shape")).cast<std::string>());
-    std::memcpy(static_cast<void*>(radiance.data()), values.data(), radiance.size_bytes());
+    const auto values = plain::number_array<float>(reader, value_of(answer), expected);
+    if (values.shape != plain::Shape{radiance.size(), 3}) reader.fail(expected, value_of(answer));
+    std::memcpy(static_cast<void*>(radiance.data()), values.values.data(), radiance.size_bytes());
   });
 }
 

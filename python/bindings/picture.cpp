@@ -12,13 +12,17 @@
 #include "lanthorn/text.h"
 #include "plain_data.h"
 
-namespace lanthorn::python {
+namespace lanthorn::plain {
 
 template <>
 struct Names<ToneCurve> {
   static constexpr std::array<std::pair<std::string_view, ToneCurve>, 3> list{
       {{"none", ToneCurve::none}, {"filmic", ToneCurve::filmic}, {"agx", ToneCurve::agx}}};
 };
+
+}  // namespace lanthorn::plain
+
+namespace lanthorn::python {
 
 Picture picture_of_state(const RenderState& state, bool with_noise_layers) {
   MeasuredPicture measured = measured_picture_of(state);
@@ -85,18 +89,18 @@ py::array whole_array(const py::object& owner) {
 
 Picture picture_of_array(const py::object& data, const std::optional<std::vector<std::string>>& names) {
   Reader reader;
-  const py::array_t<float> array = number_array<float>(reader, data, "numbers of shape (height, width, channels)");
-  if (array.ndim() != 2 && array.ndim() != 3)
+  const auto array = plain::number_array<float>(reader, value_of(data), "numbers of shape (height, width, channels)");
+  if (array.shape.size() != 2 && array.shape.size() != 3)
     reader.fail("expected numbers of shape (height, width, channels) or (height, width), got " +
-                std::to_string(array.ndim()) + " dimensions");
-  const py::ssize_t count = array.ndim() == 3 ? array.shape(2) : 1;
+                std::to_string(array.shape.size()) + " dimensions");
+  const std::size_t count = array.shape.size() == 3 ? array.shape[2] : 1;
   std::vector<std::string> channels = names.value_or(count == 3   ? std::vector<std::string>{"R", "G", "B"}
                                                      : count == 1 ? std::vector<std::string>{"Y"}
                                                                   : std::vector<std::string>{});
-  if (static_cast<py::ssize_t>(channels.size()) != count)
+  if (channels.size() != count)
     reader.fail("expected " + std::to_string(count) + " names in `channels`, got " + std::to_string(channels.size()));
-  Image image(static_cast<int>(array.shape(1)), static_cast<int>(array.shape(0)), std::move(channels));
-  std::copy_n(array.data(), array.size(), image.pixels.begin());
+  Image image(static_cast<int>(array.shape[1]), static_cast<int>(array.shape[0]), std::move(channels));
+  image.pixels = array.values;
   return {.image = std::move(image)};
 }
 

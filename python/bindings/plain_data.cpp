@@ -2,158 +2,146 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "plain_data.h"
 
-#include <algorithm>
+#include <optional>
+#include <vector>
 
 #include "lanthorn/error.h"
-#include "lanthorn/text.h"
 
 namespace lanthorn::python {
 
+using plain::Array;
+using plain::Dict;
+using plain::List;
+using plain::Scalar;
+using plain::Value;
+
 namespace {
 
-template <class Parameter>
-void read_parameter(Reader& reader, py::handle data, const char* table, Parameter& out) {
-  if (!py::isinstance<py::dict>(data) || !data.contains("texture")) {
-    out.texture.reset();
-    return read(reader, data, out.value);
-  }
-  const auto dict = py::reinterpret_borrow<py::dict>(data);
-  reader.at(".texture", [&] { read_reference(reader, dict["texture"], table, out.texture.emplace()); });
-  if (dict.contains("value")) reader.at(".value", [&] { read(reader, dict["value"], out.value); });
-  refuse_other_keys(reader, dict, {"texture", "value"});
+std::string repr_of(py::handle object) { return py::repr(object).cast<std::string>(); }
+
+// Keeps a Python object. The last copy may go where no Python code runs.
+std::shared_ptr<const void> keeper_of(const py::object& object) {
+  return {object.ptr(), [kept = object](const void*) mutable {
+            const py::gil_scoped_acquire acquire;
+            kept = py::object();
+          }};
 }
-template <class Parameter>
-py::object write_parameter(const Parameter& parameter) {
-  if (!parameter.texture) return write(parameter.value);
-  py::dict data;
-  data["texture"] = *parameter.texture;
-  data["value"] = write(parameter.value);
-  return data;
+
+std::optional<Scalar> scalar_of(const py::dtype& type) {
+  const bool is_wide = type.itemsize() == 8;
+  switch (type.kind()) {
+    case 'f':
+      return is_wide ? Scalar::float64 : Scalar::float32;
+    case 'i':
+      return is_wide                ? Scalar::int64
+             : type.itemsize() == 4 ? Scalar::int32
+             : type.itemsize() == 2 ? Scalar::int16
+                                    : Scalar::int8;
+    case 'u':
+      return is_wide                ? Scalar::uint64
+             : type.itemsize() == 4 ? Scalar::uint32
+             : type.itemsize() == 2 ? Scalar::uint16
+                                    : Scalar::uint8;
+    default:
+      return std::nullopt;
+  }
+}
+
+// Halves and long doubles become doubles.
+Value value_of_array(const py::array& any) {
+  py::array array = py::array::ensure(any, py::array::c_style);
+  const char kind = array.dtype().kind();
+  const bool is_odd = kind == 'f' && array.itemsize() != 4 && array.itemsize() != 8;
+  if (is_odd || !array.dtype().attr("isnative").cast<bool>())
+    array = py::array_t<double, py::array::c_style | py::array::forcecast>(array);
+  const std::optional<Scalar> scalar = scalar_of(array.dtype());
+  if (!scalar) return plain::Other{repr_of(any)};
+  Array value{*scalar, {}, keeper_of(array), static_cast<const std::byte*>(array.data())};
+  for (py::ssize_t i = 0; i < array.ndim(); ++i) value.shape.push_back(static_cast<std::size_t>(array.shape(i)));
+  return value;
+}
+
+Value value_of_whole(const py::object& whole, py::handle object) {
+  int overflow = 0;
+  const long long number = PyLong_AsLongLongAndOverflow(whole.ptr(), &overflow);
+  if (overflow == 0) return static_cast<std::int64_t>(number);
+  const unsigned long long large = PyLong_AsUnsignedLongLong(whole.ptr());
+  if (!PyErr_Occurred()) return static_cast<std::uint64_t>(large);
+  PyErr_Clear();
+  return plain::Other{repr_of(object)};
+}
+
+Value value_of_dict(const py::dict& data) {
+  Dict dict;
+  for (const auto& [key, value] : data) {
+    if (!py::isinstance<py::str>(key) && !py::isinstance<py::int_>(key))
+      throw Error("expected keys that are text, got " + repr_of(key));
+    dict.set(py::str(key).cast<std::string>(), value_of(value));
+  }
+  return dict;
+}
+
+// A number, or what numpy makes an array of.
+Value value_of_other(py::handle object) {
+  const bool is_extended = py::hasattr(object, "ndim") && object.attr("ndim").cast<int>() > 0;
+  if (!is_extended && !py::isinstance<py::bool_>(object)) {
+    if (PyIndex_Check(object.ptr()) != 0) {
+      const auto whole = py::reinterpret_steal<py::object>(PyNumber_Index(object.ptr()));
+      if (whole) return value_of_whole(whole, object);
+      PyErr_Clear();
+    }
+    const double number = PyFloat_AsDouble(object.ptr());
+    if (!PyErr_Occurred()) return number;
+    PyErr_Clear();
+  }
+  const bool has_array = py::hasattr(object, "__array__") || py::hasattr(object, "__array_interface__") ||
+                         PyObject_CheckBuffer(object.ptr()) != 0;
+  const py::array array = has_array ? py::array::ensure(object) : py::array();
+  if (has_array && array) return value_of_array(array);
+  PyErr_Clear();
+  return plain::Other{repr_of(object)};
 }
 
 }  // namespace
 
-void Reader::fail(const std::string& expected, py::handle got) const {
-  std::string shown = excerpt(py::repr(got).cast<std::string>());
-  fail("expected " + expected + ", got " + shown);
-}
-void Reader::fail(const std::string& message) const {
-  const std::size_t start = path_.starts_with('.') ? 1 : 0;
-  throw Error(path_.empty() ? message : path_.substr(start) + ": " + message);
-}
-
-void require_dict(Reader& reader, py::handle data) {
-  if (!py::isinstance<py::dict>(data)) reader.fail("a dict", data);
-}
-
-void refuse_other_keys(Reader& reader, const py::dict& data, const Keys& known) {
-  for (const auto& [key, value] : data) {
-    if (!py::isinstance<py::str>(key)) reader.fail("keys that are text", key);
-    const auto name = key.cast<std::string>();
-    if (std::find(known.begin(), known.end(), name) == known.end())
-      reader.fail("unknown key " + in_quotes(name) + did_you_mean(name, known));
+Value value_of(py::handle object) {
+  if (object.is_none()) return {};
+  if (py::isinstance<py::bool_>(object)) return object.cast<bool>();
+  if (py::isinstance<py::str>(object)) return object.cast<std::string>();
+  if (py::isinstance<py::dict>(object)) return value_of_dict(py::reinterpret_borrow<py::dict>(object));
+  if (py::isinstance<py::list>(object) || py::isinstance<py::tuple>(object)) {
+    List list;
+    for (const py::handle& item : py::reinterpret_borrow<py::sequence>(object)) list.push_back(value_of(item));
+    return list;
   }
+  return value_of_other(object);
 }
 
-void read_reference(Reader& reader, py::handle data, const char* table, Index& out) {
-  if (!py::isinstance<py::str>(data)) return read(reader, data, out);
-  const auto name = data.cast<std::string>();
-  const std::map<std::string, Index>& known = reader.names[table];
-  if (const auto found = known.find(name); found != known.end()) {
-    out = found->second;
-    return reader.mix(&out, sizeof(out));
+py::object object_of(const Value& value) {
+  if (const auto* flag = value.as<bool>()) return py::bool_(*flag);
+  if (const auto* whole = value.as<std::int64_t>()) return py::int_(*whole);
+  if (const auto* large = value.as<std::uint64_t>()) return py::int_(*large);
+  if (const auto* number = value.as<double>()) return py::float_(*number);
+  if (const auto* text = value.as<std::string>()) return py::str(*text);
+  if (const auto* list = value.as<List>()) {
+    py::list items;
+    for (const Value& item : *list) items.append(object_of(item));
+    return items;
   }
-  Keys all;
-  for (const auto& [other, index] : known) all.push_back(other);
-  reader.fail("there is no entry named " + in_quotes(name) + " in \"" + table + "\"" + did_you_mean(name, all));
-}
-
-void Convert<Transform>::read(Reader& reader, py::handle data, Transform& out) {
-  const py::array_t<double> m = number_array<double>(reader, data, "a 4 x 4 matrix");
-  if (m.ndim() != 2 || m.shape(0) != 4 || m.shape(1) != 4) reader.fail("a 4 x 4 matrix", data);
-  DMat4 matrix;
-  for (int row = 0; row < 4; ++row)
-    for (int column = 0; column < 4; ++column) matrix[column][row] = m.at(row, column);
-  out = Transform(matrix);
-  if (out.is_singular()) reader.fail("a matrix that can be inverted", data);
-  reader.mix(m.data(), 16 * sizeof(double));
-}
-py::object Convert<Transform>::write(const Transform& map) {
-  py::array_t<double> m({4, 4});
-  for (int row = 0; row < 4; ++row)
-    for (int column = 0; column < 4; ++column) m.mutable_at(row, column) = map.matrix[column][row];
-  return m;
-}
-
-void Convert<AnimatedTransform>::read(Reader& reader, py::handle data, AnimatedTransform& out) {
-  if (!py::isinstance<py::dict>(data)) {
-    Transform fixed;
-    python::read(reader, data, fixed);
-    out = AnimatedTransform(fixed);
-    return;
+  if (const auto* dict = value.as<Dict>()) {
+    py::dict data;
+    for (const auto& [key, item] : dict->entries()) data[py::str(key)] = object_of(item);
+    return data;
   }
-  const auto dict = py::reinterpret_borrow<py::dict>(data);
-  constexpr auto members =
-      std::tuple(field("start", &AnimatedTransform::start), field("end", &AnimatedTransform::end),
-                 field("start_time", &AnimatedTransform::start_time), field("end_time", &AnimatedTransform::end_time));
-  Keys known;
-  std::apply([&](const auto&... member) { (read_member(reader, dict, out, member, known), ...); }, members);
-  refuse_other_keys(reader, dict, known);
-}
-py::object Convert<AnimatedTransform>::write(const AnimatedTransform& map) {
-  if (!map.is_moving()) return python::write(map.start);
-  py::dict data;
-  data["start"] = python::write(map.start);
-  data["end"] = python::write(map.end);
-  data["start_time"] = map.start_time;
-  data["end_time"] = map.end_time;
-  return data;
-}
-
-void Convert<Mat2>::read(Reader& reader, py::handle data, Mat2& out) {
-  const py::array_t<float> m = number_array<float>(reader, data, "a 2 x 2 matrix");
-  if (m.ndim() != 2 || m.shape(0) != 2 || m.shape(1) != 2) reader.fail("a 2 x 2 matrix", data);
-  for (int row = 0; row < 2; ++row)
-    for (int column = 0; column < 2; ++column) out[column][row] = m.at(row, column);
-  reader.mix(m.data(), 4 * sizeof(float));
-}
-py::object Convert<Mat2>::write(const Mat2& map) {
-  py::array_t<float> m({2, 2});
-  for (int row = 0; row < 2; ++row)
-    for (int column = 0; column < 2; ++column) m.mutable_at(row, column) = map[column][row];
-  return m;
-}
-
-void Convert<description::FloatParameter>::read(Reader& reader, py::handle data, description::FloatParameter& out) {
-  read_parameter(reader, data, "float_textures", out);
-}
-py::object Convert<description::FloatParameter>::write(const description::FloatParameter& value) {
-  return write_parameter(value);
-}
-void Convert<description::SpectrumParameter>::read(Reader& reader, py::handle data,
-                                                   description::SpectrumParameter& out) {
-  read_parameter(reader, data, "spectrum_textures", out);
-}
-py::object Convert<description::SpectrumParameter>::write(const description::SpectrumParameter& value) {
-  return write_parameter(value);
-}
-
-void Convert<std::shared_ptr<const description::SphericalTexels>>::read(Reader& reader, py::handle data, Texels& out) {
-  if (data.is_none()) return out.reset();
-  const std::string expected = "numbers of shape (height, width, 3)";
-  const py::array_t<float> array = number_array<float>(reader, data, expected);
-  if (array.ndim() != 3 || array.shape(2) != 3 || array.size() == 0) reader.fail(expected, data);
-  description::SphericalTexels texels{static_cast<int>(array.shape(1)), static_cast<int>(array.shape(0)), {}};
-  texels.rows.resize(static_cast<std::size_t>(array.size() / 3));
-  std::memcpy(static_cast<void*>(texels.rows.data()), array.data(), texels.rows.size() * sizeof(Rgb));
-  reader.mix(texels.rows.data(), texels.rows.size() * sizeof(Rgb));
-  out = std::make_shared<const description::SphericalTexels>(std::move(texels));
-}
-py::object Convert<std::shared_ptr<const description::SphericalTexels>>::write(const Texels& texels) {
-  if (!texels) return py::none();
-  py::array_t<float> array({texels->height, texels->width, 3});
-  std::memcpy(array.mutable_data(), texels->rows.data(), texels->rows.size() * sizeof(Rgb));
-  return array;
+  const auto* array = value.as<Array>();
+  if (array == nullptr) return py::none();
+  auto* owner = new std::shared_ptr<const void>(array->owner);
+  const py::capsule capsule(owner, [](void* kept) { delete static_cast<std::shared_ptr<const void>*>(kept); });
+  return with_type(array->type, [&](const auto* type) -> py::object {
+    using Number = std::decay_t<decltype(*type)>;
+    const std::vector<py::ssize_t> shape(array->shape.begin(), array->shape.end());
+    return py::array_t<Number>(shape, reinterpret_cast<const Number*>(array->data), capsule);
+  });
 }
 
 }  // namespace lanthorn::python

@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The members of a scene description as Python's dicts have them: the names of include/lanthorn/scene_description.h.
-// Left out: places in files (Python's data has none) and measured BRDFs, which only files bring.
+// The members of a scene description as plain data have them: the names of include/lanthorn/scene_description.h.
+// Left out: places in files (plain data have none) and measured BRDFs, which only files bring.
 #pragma once
 
-#include "plain_data.h"
+#include "lanthorn/plain_data.h"
 
-namespace lanthorn::python {
+namespace lanthorn::plain {
 
 template <>
 struct Names<ColorSpace> {
@@ -64,6 +64,34 @@ struct Names<description::FilterKind> {
 };
 
 // Spectra.
+
+/// A number; three numbers, which are R, G, B; or a dict: {"rgb": ..., "space": ...}, {"blackbody": kelvin},
+/// {"named": name}, {"nm": ..., "values": ...}.
+template <>
+struct Convert<description::SpectrumValue> {
+  static void read(Reader& reader, const Value& data, description::SpectrumValue& out);
+  static Value write(const description::SpectrumValue& value);
+};
+/// The value, or {"texture": index or name, "value": ...}.
+template <>
+struct Convert<description::FloatParameter> {
+  static void read(Reader& reader, const Value& data, description::FloatParameter& out);
+  static Value write(const description::FloatParameter& value);
+};
+template <>
+struct Convert<description::SpectrumParameter> {
+  static void read(Reader& reader, const Value& data, description::SpectrumParameter& out);
+  static Value write(const description::SpectrumParameter& value);
+};
+
+/// An environment's colours as an array (height, width, 3).
+template <>
+struct Convert<std::shared_ptr<const description::SphericalTexels>> {
+  using Texels = std::shared_ptr<const description::SphericalTexels>;
+  static void read(Reader& reader, const Value& data, Texels& out);
+  static Value write(const Texels& texels);
+};
+
 template <>
 struct Fields<description::SampledSpectrum> {
   using T = description::SampledSpectrum;
@@ -306,7 +334,8 @@ template <>
 struct Fields<description::MixMaterial> {
   using T = description::MixMaterial;
   static constexpr const char* type = T::kind;
-  static constexpr auto list = std::tuple(field("materials", &T::materials), field("amount", &T::amount));
+  static constexpr auto list =
+      std::tuple(reference("materials", "materials", &T::materials), field("amount", &T::amount));
 };
 template <>
 struct Fields<description::InterfaceMaterial> {
@@ -448,8 +477,8 @@ struct Fields<description::Shape> {
   static constexpr auto list = std::tuple(
       node(&T::geometry), field("object_to_world", &T::object_to_world),
       field("reverse_orientation", &T::reverse_orientation), reference("material", "materials", &T::material),
-      field("area_light", &T::area_light), field("shares_power", &T::shares_power), field("alpha", &T::alpha),
-      field("pane", &T::pane), field("displacement", &T::displacement),
+      reference("area_light", "area_lights", &T::area_light), field("shares_power", &T::shares_power),
+      field("alpha", &T::alpha), field("pane", &T::pane), field("displacement", &T::displacement),
       reference("inside_medium", "media", &T::inside_medium), reference("outside_medium", "media", &T::outside_medium));
 };
 template <>
@@ -604,21 +633,21 @@ struct Fields<description::RenderHints> {
 template <>
 struct Convert<std::variant<description::TextureMapping, description::SolidMapping>> {
   using Mapping = std::variant<description::TextureMapping, description::SolidMapping>;
-  static void read(Reader& reader, py::handle data, Mapping& out) {
-    require_dict(reader, data);
-    const bool is_solid = data.contains("type") && py::isinstance<py::str>(data["type"]) &&
-                          data["type"].cast<std::string>() == Fields<description::SolidMapping>::type;
+  static void read(Reader& reader, const Value& data, Mapping& out) {
+    const Value* type = dict_of(reader, data).find("type");
+    const bool is_solid = type != nullptr && type->as<std::string>() != nullptr &&
+                          *type->as<std::string>() == Fields<description::SolidMapping>::type;
     if (is_solid) {
       std::variant<description::SolidMapping> solid;
-      python::read(reader, data, solid);
+      plain::read(reader, data, solid);
       out = std::get<0>(solid);
     } else
-      python::read(reader, data, out.emplace<0>());
+      plain::read(reader, data, out.emplace<0>());
   }
-  static py::object write(const Mapping& mapping) {
-    if (const auto* surface = std::get_if<description::TextureMapping>(&mapping)) return python::write(*surface);
-    return python::write(std::variant<description::SolidMapping>(std::get<description::SolidMapping>(mapping)));
+  static Value write(const Mapping& mapping) {
+    if (const auto* surface = std::get_if<description::TextureMapping>(&mapping)) return plain::write(*surface);
+    return plain::write(std::variant<description::SolidMapping>(std::get<description::SolidMapping>(mapping)));
   }
 };
 
-}  // namespace lanthorn::python
+}  // namespace lanthorn::plain

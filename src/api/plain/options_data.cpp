@@ -3,16 +3,23 @@
 #include <algorithm>
 #include <array>
 
-#include "bindings.h"
-#include "plain_data.h"
+#include "lanthorn/description_data.h"
+#include "lanthorn/error.h"
+#include "lanthorn/plain_data.h"
 
-namespace lanthorn::python {
+namespace lanthorn {
+
+namespace plain {
 
 template <>
 struct Names<ColorMode> {
   static constexpr std::array<std::pair<std::string_view, ColorMode>, 2> list{
       {{"rgb", ColorMode::rgb}, {"spectral", ColorMode::spectral}}};
 };
+
+}  // namespace plain
+
+using namespace plain;
 
 namespace {
 
@@ -27,42 +34,36 @@ constexpr auto option_members =
                field("memory", &RenderOptions::memory));
 
 // As the command line has it.
-std::string parameter_text(py::handle value) {
-  if (py::isinstance<py::bool_>(value)) return value.cast<bool>() ? "true" : "false";
-  return py::str(value).cast<std::string>();
+std::string parameter_text(const Value& value) {
+  if (const auto* flag = value.as<bool>()) return *flag ? "true" : "false";
+  if (const auto* text = value.as<std::string>()) return *text;
+  return shown(value);
 }
 
 }  // namespace
 
-RenderOptions options_of(const py::dict& keywords) {
+RenderOptions options_of_data(const Value& data) {
   Reader reader;
+  const Dict& dict = dict_of(reader, data);
   RenderOptions options;
   Keys known{"pass_range"};
-  std::apply([&](const auto&... member) { (read_member(reader, keywords, options, member, known), ...); },
-             option_members);
-  if (keywords.contains("pass_range") && !keywords["pass_range"].is_none()) {
+  std::apply([&](const auto&... member) { (read_member(reader, dict, options, member, known), ...); }, option_members);
+  const Value* range = dict.find("pass_range");
+  if (range != nullptr && !range->is_none()) {
     reader.at("pass_range", [&] {
-      std::array<std::uint64_t, 2> range{};
-      read(reader, keywords["pass_range"], range);
-      options.pass_range = PassRange{range[0], range[1]};
+      std::array<std::uint64_t, 2> passes{};
+      read(reader, *range, passes);
+      options.pass_range = PassRange{passes[0], passes[1]};
     });
   }
-  for (const auto& [key, value] : keywords) {
-    const auto name = key.cast<std::string>();
-    if (std::find(known.begin(), known.end(), name) == known.end()) {
-      // Parameters have hyphens where Python has underscores.
-      std::string parameter = name;
-      std::replace(parameter.begin(), parameter.end(), '_', '-');
-      options.set[parameter] = parameter_text(value);
-    }
+  for (const auto& [name, value] : dict.entries()) {
+    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
+    // Parameters have hyphens where Python has underscores.
+    std::string parameter = name;
+    std::replace(parameter.begin(), parameter.end(), '_', '-');
+    options.set[parameter] = parameter_text(value);
   }
   return options;
 }
 
-py::list texts_of(const std::vector<description::Warning>& warnings) {
-  py::list texts;
-  for (const description::Warning& warning : warnings) texts.append(Error(warning.location, warning.message).what());
-  return texts;
-}
-
-}  // namespace lanthorn::python
+}  // namespace lanthorn

@@ -1,0 +1,107 @@
+# SPDX-FileCopyrightText: 2026 The Lanthorn authors
+# SPDX-License-Identifier: Apache-2.0
+"""Blender's lamps. The factors make the same light as Cycles does: tests/blender/test_lights.py measures them."""
+import math
+
+# What stands in for a lamp without a size, whose light Cycles takes from a point.
+SMALLEST_RADIUS = 1e-4
+WIDE_SPOT = 0.85  # cosine of half the cone from which the approximation of its profile is told
+
+
+def _color(light):
+    return list(light.color)
+
+
+def _strength(light, power, report):
+    """Power times the strength of an Emission node, if the lamp has nodes."""
+    color = _color(light)
+    if light.use_nodes and light.node_tree:
+        node = next((n for n in light.node_tree.nodes if n.type == "EMISSION"), None)
+        others = [n for n in light.node_tree.nodes if n.type not in {"EMISSION", "OUTPUT_LIGHT"}]
+        if others:
+            report.note(light.name, "of the nodes of lamps, the Emission node's color and strength alone are used")
+        if node:
+            factor = node.inputs["Strength"].default_value
+            color = [c * e * factor for c, e in zip(color, node.inputs["Color"].default_value)]
+    return [power * c for c in color]
+
+
+def _point(light, matrix, report):
+    # A sphere of radius r whose radiance is P / (4 pi^2 r^2) has the intensity P / 4 pi.
+    power = _strength(light, light.energy, report)
+    radius = light.shadow_soft_size
+    place = list(matrix.translation)
+    if radius < SMALLEST_RADIUS:
+        intensity = [p / (4 * math.pi) for p in power]
+        return {"light": {"type": "point", "from": place, "intensity": {"spectrum": intensity}}}
+    radiance = [p / (4 * math.pi**2 * radius**2) for p in power]
+    return {"shape": {"type": "sphere", "radius": radius,
+                      "object_to_world": [[1, 0, 0, place[0]], [0, 1, 0, place[1]], [0, 0, 1, place[2]], [0, 0, 0, 1]]},
+            "radiance": radiance}
+
+
+def _spot(light, matrix, report):
+    # Cycles multiplies the intensity P / 4 pi by the cosine to the axis; here, its mean over the cone stands for it.
+    power = _strength(light, light.energy, report)
+    if light.shadow_soft_size >= SMALLEST_RADIUS:
+        report.note(light.name, "a spot light has no size: its shadows and caustics are sharp")
+    outer = math.degrees(light.spot_size) / 2
+    # Cycles: smoothstep of (cos(angle) - cos(outer)) / ((1 - cos(outer)) blend).
+    cosine = math.cos(light.spot_size / 2)
+    mean_cosine = (1 + cosine) / 2
+    if cosine < WIDE_SPOT:
+        report.note(light.name, "a wide spot light is evenly bright: Cycles' are darker to the edge")
+    inner = math.degrees(math.acos(min(1, cosine + (1 - cosine) * light.spot_blend)))
+    place = matrix.translation
+    target = place - matrix.to_3x3().normalized().col[2]
+    return {"light": {"type": "spot", "from": list(place), "to": list(target), "cone_angle": outer,
+                      "cone_delta_angle": outer - inner,
+                      "intensity": {"spectrum": [mean_cosine * p / (4 * math.pi) for p in power]}}}
+
+
+def _sun(light, matrix, report):
+    if light.angle > math.radians(1):
+        report.note(light.name, "a sun has no size: its shadows and caustics are sharp")
+    direction = matrix.to_3x3().normalized().col[2]
+    return {"light": {"type": "distant", "from": list(direction), "to": [0, 0, 0],
+                      "radiance": {"spectrum": _strength(light, light.energy, report)}}}
+
+
+def _rectangle(width, height):
+    x, y = width / 2, height / 2
+    return {"type": "triangles", "positions": [[-x, -y, 0], [-x, y, 0], [x, y, 0], [x, -y, 0]],
+            "triangles": [[0, 1, 2], [0, 2, 3]]}
+
+
+def _area(light, matrix, report):
+    # Cycles: radiance P / 4 A, on the side of -z. (A Lambertian emitter of P watts would have P / pi A.)
+    width = light.size
+    height = light.size_y if light.shape in {"RECTANGLE", "ELLIPSE"} else light.size
+    scale = matrix.to_scale()
+    is_round = light.shape in {"DISK", "ELLIPSE"}
+    area = width * scale.x * height * scale.y * (math.pi / 4 if is_round else 1)
+    power = _strength(light, light.energy, report)
+    if light.spread < math.radians(179):
+        report.note(light.name, "the spread of an area light has no counterpart: it emits to all sides")
+    shape = _rectangle(width, height)
+    to_world = [list(row) for row in matrix]
+    if is_round:
+        shape = {"type": "disk", "radius": 0.5, "reverse_orientation": True}
+        to_world = [[row[0] * width, row[1] * height, row[2], row[3]] for row in to_world]
+    return {"shape": {**shape, "object_to_world": to_world},
+            "radiance": [p / (4 * max(area, 1e-12)) for p in power]}
+
+
+KINDS = {"POINT": _point, "SPOT": _spot, "SUN": _sun, "AREA": _area}
+
+
+def add_light(parts, name, light, matrix, report):
+    """Adds the lamp to the parts of a scene: a light, or a shape that emits."""
+    made = KINDS[light.type](light, matrix, report)
+    if "light" in made:
+        parts["lights"][name] = made["light"]
+        return
+    parts["area_lights"][name] = {"radiance": made["radiance"]}
+    # A lamp does not stop the light of others: its surface lets all of it pass.
+    parts["materials"].setdefault("lamp", {"type": "thindielectric", "eta": 1.0})
+    parts["shapes"][name] = {**made["shape"], "material": "lamp", "area_light": name}

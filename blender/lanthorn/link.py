@@ -1,0 +1,146 @@
+# SPDX-FileCopyrightText: 2026 The Lanthorn authors
+# SPDX-License-Identifier: Apache-2.0
+"""A client of `lanthorn link`: the program in a process of its own, and messages to and from it (docs/protocol.md).
+
+Needs the standard library alone, and knows nothing of Blender.
+"""
+import array
+import json
+import struct
+import subprocess
+import tempfile
+
+PROTOCOL = 1
+HEADER = struct.Struct("<4sIQ")
+MAGIC = b"LNTH"
+TYPE_NAMES = {"b": "int8", "B": "uint8", "h": "int16", "H": "uint16", "i": "int32", "I": "uint32", "q": "int64",
+              "Q": "uint64", "f": "float32", "d": "float64"}
+
+
+class LinkError(Exception):
+    """The program refuses a request, with its reason; or it cannot be started, or has ended."""
+
+
+class Array:
+    """Numbers of an answer: `type` ("float32"), `shape`, and `bytes`, a memoryview; the last index runs fastest."""
+
+    def __init__(self, type, shape, data):
+        self.type, self.shape, self.bytes = type, tuple(shape), data
+
+
+class _Packer:
+    """A request as JSON, with its arrays (numpy's, or the standard library's) collected as bytes."""
+
+    def __init__(self):
+        self.parts, self.size = [], 0
+
+    def pack(self, value):
+        if isinstance(value, dict):
+            return {key: self.pack(item) for key, item in value.items()}
+        if isinstance(value, (list, tuple)):
+            return [self.pack(item) for item in value]
+        if isinstance(value, array.array):
+            return self._add(TYPE_NAMES[value.typecode], [len(value)], value.tobytes())
+        if hasattr(value, "dtype") and getattr(value, "ndim", 0) > 0:
+            return self._add(value.dtype.name, value.shape, value.tobytes())
+        if hasattr(value, "item"):  # a number of numpy
+            return value.item()
+        return value
+
+    def _add(self, type_name, shape, data):
+        offset = self.size
+        self.parts.append(data)
+        self.size += len(data)
+        return {"$array": type_name, "shape": list(shape), "offset": offset}
+
+
+def _unpack(value, data):
+    if isinstance(value, list):
+        return [_unpack(item, data) for item in value]
+    if not isinstance(value, dict):
+        return value
+    if "$array" not in value:
+        return {key: _unpack(item, data) for key, item in value.items()}
+    count = struct.calcsize({name: code for code, name in TYPE_NAMES.items()}[value["$array"]])
+    for extent in value["shape"]:
+        count *= extent
+    return Array(value["$array"], value["shape"], data[value["offset"]:value["offset"] + count])
+
+
+class Link:
+    """The program, from the start to `close`. Not for several threads at a time."""
+
+    def __init__(self, program="lanthorn", arguments=()):
+        self._messages = tempfile.TemporaryFile()
+        try:
+            self.process = subprocess.Popen([program, "link", *arguments], stdin=subprocess.PIPE,
+                                            stdout=subprocess.PIPE, stderr=self._messages, bufsize=0)
+        except OSError as error:
+            self._messages.close()
+            raise LinkError(f"the program {program!r} cannot be started: {error.strerror}") from None
+        try:
+            self.about = self.request("hello", protocol=PROTOCOL)
+        except LinkError:
+            self.close()
+            raise
+
+    def request(self, name, **members):
+        """Sends a request and waits for its answer, a dict. Raises LinkError."""
+        packer = _Packer()
+        text = json.dumps(packer.pack({"request": name, **members}), allow_nan=False).encode()
+        try:
+            self._write(HEADER.pack(MAGIC, len(text), packer.size) + text)
+            for part in packer.parts:
+                self._write(part)
+            magic, json_size, data_size = HEADER.unpack(self._read(HEADER.size))
+            if magic != MAGIC:
+                raise LinkError("the program does not speak lanthorn's protocol")
+            body = json.loads(bytes(self._read(json_size)))
+            data = self._read(data_size)
+        except (EOFError, OSError, ValueError):
+            raise LinkError(self._reason_of_end()) from None
+        if body["answer"] == "error":
+            raise LinkError(body["message"])
+        return _unpack(body, data)
+
+    def close(self):
+        """Ends the program, whatever it is doing."""
+        self.process.stdin.close()
+        try:
+            self.process.wait(timeout=1)
+        except subprocess.TimeoutExpired:
+            self.process.kill()
+            self.process.wait()
+        self.process.stdout.close()
+        self._messages.close()
+
+    def _write(self, data):
+        view = memoryview(data)
+        while len(view):
+            view = view[self.process.stdin.write(view):]
+
+    def _read(self, count):
+        data = bytearray(count)
+        view = memoryview(data)
+        while len(view):
+            got = self.process.stdout.readinto(view)
+            if not got:
+                raise EOFError
+            view = view[got:]
+        return memoryview(data)
+
+    def _reason_of_end(self):
+        try:
+            code = self.process.wait(timeout=5)
+        except subprocess.TimeoutExpired:
+            return "the program does not answer"
+        self._messages.seek(0)
+        said = self._messages.read().decode(errors="replace").strip().splitlines()
+        why = said[-1] if said else f"killed by signal {-code}" if code < 0 else f"exit code {code}"
+        return f"the program has ended: {why}"
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.close()

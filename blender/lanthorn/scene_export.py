@@ -1,0 +1,137 @@
+# SPDX-FileCopyrightText: 2026 The Lanthorn authors
+# SPDX-License-Identifier: Apache-2.0
+"""A depsgraph as the parts of a scene that `lanthorn link` takes."""
+import tempfile
+
+from . import camera, lights, meshes, world
+from .materials import Materials
+from .report import Report
+from .textures import ImageFiles
+
+MESH_TYPES = {"MESH", "CURVE", "SURFACE", "META", "FONT"}
+IGNORED_TYPES = {"CAMERA", "EMPTY", "ARMATURE", "LATTICE", "SPEAKER", "LIGHT_PROBE", "GPENCIL"}
+VISIBILITIES = ("visible_camera", "visible_diffuse", "visible_glossy", "visible_transmission", "visible_shadow")
+TABLES = ("float_textures", "spectrum_textures", "materials", "media", "area_lights", "shapes", "objects", "instances",
+          "lights")
+
+
+def empty_parts():
+    return {table: {} for table in TABLES}
+
+
+class SceneExport:
+    """Keeps what it has exported, so that `changes` sends what is new alone. Pictures that are no files go to a
+    folder that lives as long as this."""
+
+    def __init__(self):
+        self.folder = tempfile.TemporaryDirectory(prefix="lanthorn-")
+        self.report = Report()
+        self._images = ImageFiles(self.folder.name)
+        self._sent = empty_parts()
+        self._meshes = {}  # triangles by material slot, by key; kept until `forget`
+
+    def forget(self, depsgraph):
+        """Drops the meshes that have changed since the last export."""
+        names = {update.id.name_full for update in depsgraph.updates if update.is_updated_geometry}
+        if names:
+            self._meshes = {key: made for key, made in self._meshes.items() if not names & made[0]}
+
+    def close(self):
+        self.folder.cleanup()
+
+    def parts(self, depsgraph, space=None):
+        """All objects, materials and lights that are seen; without the camera. `space`: of a viewport."""
+        parts = empty_parts()
+        self.report = Report()
+        materials = Materials(parts, self.report, self._images)
+        for instance in depsgraph.object_instances:
+            if instance.show_self and (space is None or instance.object.visible_in_viewport_get(space)):
+                self._add_instance(parts, materials, instance)
+        scene_world = depsgraph.scene_eval.world
+        light = world.light_of_world(scene_world, self.report) if scene_world is not None else None
+        if light is not None:
+            parts["lights"]["world"] = light
+        return parts
+
+    def _note_object(self, object):
+        """What objects have beside shape, place and material."""
+        if not all(getattr(object, flag, True) for flag in VISIBILITIES):
+            self.report.note(object.name, "is seen by all rays: ray visibility has no counterpart")
+        if any(system.settings.type == "HAIR" and system.settings.render_type == "PATH"
+               for system in object.particle_systems):
+            self.report.note(object.name, "hair is left out")
+
+    def _add_instance(self, parts, materials, instance):
+        object, matrix = instance.object, instance.matrix_world.copy()
+        name = self.name_of(instance)
+        if object.type == "LIGHT":
+            lights.add_light(parts, name, object.data, matrix, self.report)
+        elif object.type in MESH_TYPES:
+            self._note_object(object)
+            key = self._mesh_key(object)
+            if key not in parts["objects"]:
+                parts["objects"][key] = self._shapes(key, object, materials)
+            if parts["objects"][key]["shapes"]:
+                parts["instances"][name] = {"object": key, "object_to_world": camera.rows(matrix)}
+        elif object.type not in IGNORED_TYPES:
+            self.report.note(object.name, f"objects of the type {object.type} are left out")
+
+    @staticmethod
+    def name_of(instance):
+        """The name of an instance, or of an object that is there once; the same at every time."""
+        if not instance.is_instance:
+            return instance.object.name_full
+        numbers = [str(i) for i in instance.persistent_id if i != 2**31 - 1]
+        return f"{instance.parent.name_full}/{instance.object.name_full}/{'.'.join(numbers)}"
+
+    @staticmethod
+    def _mesh_key(object):
+        """Objects of one key have the same mesh and the same materials."""
+        slots = ",".join(slot.material.name_full if slot.material else "" for slot in object.material_slots)
+        is_shared = object.type == "MESH" and not object.modifiers and object.data is not None
+        return f"{object.data.name_full if is_shared else object.name_full}|{object.type}|{slots}"
+
+    def _shapes(self, key, object, materials):
+        if key not in self._meshes:
+            names = {object.name_full, object.data.name_full}
+            self._meshes[key] = names, self._triangles(object)
+        slots, shapes = object.material_slots, []
+        for slot, triangles in sorted(self._meshes[key][1].items()):
+            material = slots[min(slot, len(slots) - 1)].material if len(slots) else None
+            shapes.append({"type": "triangles", **triangles, **materials.shape_members(material)})
+        return {"shapes": shapes}
+
+    @staticmethod
+    def _triangles(object):
+        mesh = object.to_mesh()
+        try:
+            return meshes.triangle_meshes(mesh) if mesh is not None else {}
+        finally:
+            object.to_mesh_clear()
+
+    def changes(self, parts):
+        """The members `set` and `remove` of an update that leads from what was sent to these parts."""
+        changed, gone = {}, {}
+        for table in TABLES:
+            old, new = self._sent[table], parts[table]
+            differing = {name: part for name, part in new.items() if name not in old or not is_equal(old[name], part)}
+            if differing:
+                changed[table] = differing
+            missing = [name for name in old if name not in new]
+            if missing:
+                gone[table] = missing
+        self._sent = parts
+        return changed, gone
+
+
+def is_equal(a, b):
+    """Whether two parts are the same, arrays included."""
+    if a is b:
+        return True
+    if isinstance(a, dict) and isinstance(b, dict):
+        return a.keys() == b.keys() and all(is_equal(a[key], b[key]) for key in a)
+    if isinstance(a, (list, tuple)) and isinstance(b, (list, tuple)):
+        return len(a) == len(b) and all(is_equal(x, y) for x, y in zip(a, b))
+    if hasattr(a, "dtype") and hasattr(b, "dtype"):
+        return a.shape == b.shape and bool((a == b).all())
+    return type(a) is type(b) and a == b

@@ -1,0 +1,128 @@
+# SPDX-FileCopyrightText: 2026 The Lanthorn authors
+# SPDX-License-Identifier: Apache-2.0
+"""The rendered viewport: a thread talks to the program, the interface draws the picture that it has."""
+import collections
+import threading
+
+import gpu
+import numpy
+from gpu_extras.presets import draw_texture_2d
+
+from . import camera, passes
+from .link import LinkError
+from .scene_export import SceneExport
+
+PATIENCE = 0.1  # seconds that the thread waits for a picture before it looks for edits
+
+
+class Viewport:
+    """`edit` and `draw` are called by Blender, the rest belongs to the thread."""
+
+    def __init__(self, link, redraw, options, denoises):
+        self._link, self._redraw = link, redraw
+        self._options, self._denoises = options, denoises
+        self._edits = collections.deque()  # None at the end
+        self._lock = threading.Condition()
+        self._answer, self._texture = None, None
+        self.problem = ""
+        self.status = "Loading"
+        self._export = SceneExport()
+        self._view = None
+        self._thread = threading.Thread(target=self._run, daemon=True)
+        self._is_started = False
+
+    # Blender's side.
+
+    def update_scene(self, context, depsgraph):
+        self._export.forget(depsgraph)
+        changed, gone = self._export.changes(self._export.parts(depsgraph, context.space_data))
+        self.update_view(context, changed, gone)
+
+    def update_view(self, context, changed=None, gone=None):
+        """Sends what has changed, if anything has."""
+        region = context.region
+        size = max(1, region.width), max(1, region.height)
+        view = {"camera": camera.view_part(context.region_data), "film": camera.film_part(size),
+                "filter": camera.filter_part(context.scene.render.filter_size)}
+        is_moved = view != self._view
+        if not (changed or gone or is_moved):
+            return
+        self._view = view
+        self._put({"set": {**(changed or {}), **view}, "remove": gone or {}, "is_moving": not (changed or gone)})
+        if not self._is_started:
+            self._is_started = True
+            self._thread.start()
+
+    def notes(self):
+        return self._export.report.lines()
+
+    def draw(self, width, height):
+        with self._lock:
+            answer, self._answer = self._answer, None
+        if answer is not None:
+            self._texture = texture_of(answer)
+        if self._texture is not None:
+            draw_texture_2d(self._texture, (0, 0), width, height)
+
+    def _put(self, edit):
+        with self._lock:
+            self._edits.append(edit)
+            self._lock.notify_all()
+
+    def close(self):
+        self._put(None)
+        if self._is_started:
+            self._thread.join(timeout=5)
+        self._link.close()
+        self._export.close()
+
+    # The thread's side.
+
+    def _run(self):
+        try:
+            self._serve()
+        except LinkError as error:
+            self.problem = str(error)
+        self._redraw()
+
+    def _serve(self):
+        number, is_running = 0, False
+        while True:
+            edit = self._next_edit(is_running)
+            if edit is None:
+                return
+            if edit:
+                self._link.request("update", **edit)
+            if not is_running:
+                self._link.request("start", options=self._options, is_interactive=True, denoise=self._denoises)
+                is_running = True
+            answer = self._link.request("wait", after=number, patience=PATIENCE, layers=["color"])
+            number = answer["number"]
+            self.status = describe(answer)
+            if "pixels" in answer:
+                with self._lock:
+                    self._answer = answer
+                self._redraw()
+
+    def _next_edit(self, is_running):
+        """The next edit; an empty one if there is none; None at the end. Of several views, only the last one counts."""
+        with self._lock:
+            while not self._edits and not is_running:
+                self._lock.wait()
+            edit = self._edits.popleft() if self._edits else {}
+            while edit and edit["is_moving"] and self._edits and self._edits[0] and self._edits[0]["is_moving"]:
+                edit = self._edits.popleft()
+            return edit
+
+
+def describe(answer):
+    if answer["phase"] == "failed":
+        return answer["problem"]
+    return f"{answer['passes']} passes" if "passes" in answer else answer["phase"].capitalize()
+
+
+def texture_of(answer):
+    pixels = numpy.ascontiguousarray(passes.Picture(answer).combined(False)[::-1])
+    height, width = pixels.shape[:2]
+    buffer = gpu.types.Buffer("FLOAT", width * height * 4, pixels.ravel())
+    return gpu.types.GPUTexture((width, height), format="RGBA16F", data=buffer)

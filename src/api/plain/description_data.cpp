@@ -1,0 +1,256 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "lanthorn/description_data.h"
+
+#include <utility>
+
+#include "api/plain/description_fields.h"
+#include "api/plain/reference_order.h"
+#include "lanthorn/error.h"
+#include "lanthorn/file.h"
+
+namespace lanthorn {
+
+using namespace plain;
+
+namespace {
+
+using NameTable = std::map<std::string, Index>;
+
+constexpr auto view_members =
+    std::tuple(field("camera", &ViewDescription::camera), field("film", &ViewDescription::film),
+               field("filter", &ViewDescription::filter));
+constexpr auto single_members =
+    std::tuple(field("hints", &SceneDescription::hints), field("color_space", &SceneDescription::color_space));
+constexpr auto table_members = std::tuple(
+    field("float_textures", &SceneDescription::float_textures),
+    field("spectrum_textures", &SceneDescription::spectrum_textures), field("media", &SceneDescription::media),
+    field("materials", &SceneDescription::materials), field("area_lights", &SceneDescription::area_lights),
+    field("shapes", &SceneDescription::shapes), field("objects", &SceneDescription::objects),
+    field("instances", &SceneDescription::instances), field("lights", &SceneDescription::lights));
+
+template <class T, class Members>
+void read_listed(Reader& reader, const Dict& data, T& out, const Members& members, Keys& known) {
+  std::apply([&](const auto&... member) { (read_member(reader, data, out, member, known), ...); }, members);
+}
+
+// An entry of a table, and what it is called in messages and, unless it is of a list, in references.
+struct TableEntry {
+  std::string step, name;
+  const Value* value = nullptr;
+};
+
+std::string own_name(const Value& entry) {
+  const auto* dict = entry.as<Dict>();
+  const Value* name = dict != nullptr ? dict->find("name") : nullptr;
+  return name != nullptr && name->as<std::string>() != nullptr ? *name->as<std::string>() : "";
+}
+
+std::vector<TableEntry> entries_of(Reader& reader, const std::string& table, const Value& data) {
+  std::vector<TableEntry> entries;
+  if (const auto* list = data.as<List>()) {
+    for (const Value& value : *list)
+      entries.push_back({"[" + std::to_string(entries.size()) + "]", own_name(value), &value});
+  } else if (const auto* dict = data.as<Dict>()) {
+    const bool is_ordered = table.ends_with("_textures") || table == "materials";
+    if (is_ordered)
+      for (const Dict::Entry* entry : in_reference_order(reader, *dict))
+        entries.push_back({"." + entry->first, entry->first, &entry->second});
+    else
+      for (const auto& [name, value] : dict->entries()) entries.push_back({"." + name, name, &value});
+  } else {
+    reader.fail("a list", data);
+  }
+  return entries;
+}
+
+using Tables = std::map<std::string, std::vector<TableEntry>>;
+
+Tables tables_of(Reader& reader, const Dict& data) {
+  Tables tables;
+  const auto add = [&](const char* name) {
+    if (const Value* table = data.find(name))
+      reader.at(name, [&] { tables.emplace(name, entries_of(reader, name, *table)); });
+  };
+  std::apply([&](const auto&... member) { (add(member.name), ...); }, table_members);
+  for (const auto& [table, entries] : tables) {
+    NameTable& names = reader.names[table];
+    for (std::size_t i = 0; i < entries.size(); ++i)
+      if (!entries[i].name.empty()) names.emplace(entries[i].name, static_cast<Index>(i));
+  }
+  return tables;
+}
+
+template <class T, class M>
+void read_table(Reader& reader, const Tables& tables, T& out, const Member<T, M>& member) {
+  const auto found = tables.find(member.name);
+  if (found == tables.end()) return;
+  auto& vector = out.*member.member;
+  vector.reserve(found->second.size());
+  reader.at(member.name, [&] {
+    for (const TableEntry& entry : found->second)
+      reader.at(entry.step, [&] {
+        auto& part = vector.emplace_back();
+        read(reader, *entry.value, part);
+        if constexpr (requires { part.name; }) part.name = entry.name;
+      });
+  });
+}
+
+template <class T>
+NameTable names_of(const std::vector<T>& items) {
+  NameTable names;
+  for (std::size_t i = 0; i < items.size(); ++i)
+    if (!items[i].name.empty()) names.emplace(items[i].name, static_cast<Index>(i));
+  return names;
+}
+
+Reader reader_for(const SceneDescription& scene) {
+  Reader reader;
+  reader.names["materials"] = names_of(scene.materials);
+  reader.names["media"] = names_of(scene.media);
+  reader.names["objects"] = names_of(scene.objects);
+  for (std::size_t i = 0; i < scene.lights.size(); ++i)
+    reader.names["lights"].emplace(name_of_light(static_cast<Index>(i)), static_cast<Index>(i));
+  for (std::size_t i = 0; i < scene.area_lights.size(); ++i)
+    reader.names["area_lights"].emplace(name_of_area_light(static_cast<Index>(i)), static_cast<Index>(i));
+  return reader;
+}
+
+// States belong to the files that the scene names, too.
+void mix_files(Reader& reader, const SceneDescription& scene) {
+  const auto mix = [&](const std::string& name) {
+    if (!name.empty() && !scene.access.is_missing(name)) reader.mix(scene.access.read(name));
+  };
+  const auto mix_image = [&](const auto& textures) {
+    for (const auto& texture : textures)
+      if (const auto* image = std::get_if<description::ImageTexture>(&texture.node)) mix(image->filename);
+  };
+  mix_image(scene.float_textures);
+  mix_image(scene.spectrum_textures);
+  for (const description::Light& light : scene.lights)
+    if (const auto* infinite = std::get_if<description::InfiniteLight>(&light.node)) mix(infinite->image.value_or(""));
+}
+
+bool is_whole_number(const std::string& text) {
+  return !text.empty() && text.size() < 10 && text.find_first_not_of("0123456789") == std::string::npos;
+}
+
+// The entry of a table that an edit means: by the name that it has, or else by its index.
+Index edited_entry(Reader& reader, const std::string& key, const char* table) {
+  Index index = 0;
+  const bool is_index = is_whole_number(key) && !reader.names[table].contains(key);
+  read_reference(reader, is_index ? Value(static_cast<std::int64_t>(std::stol(key))) : Value(key), table, index);
+  return index;
+}
+
+// Each edit starts from what is there: keys that are missing stay as they are.
+template <class T>
+void read_edits(Reader& reader, const Dict& edits, const char* table, const std::vector<T>& old,
+                std::map<Index, T>& out) {
+  const Value* data = edits.find(table);
+  if (data == nullptr) return;
+  reader.at(table, [&] {
+    for (const auto& edit : dict_of(reader, *data).entries()) {  // no structured binding: Clang 14 cannot capture it
+      const std::string& key = edit.first;
+      reader.at("[" + (is_whole_number(key) ? key : "'" + key + "'") + "]", [&] {
+        const Index index = edited_entry(reader, key, table);
+        if (index >= old.size())
+          reader.fail("expected an index below " + std::to_string(old.size()) + ", got " + std::to_string(index));
+        T entry = old[index];
+        read(reader, edit.second, entry);
+        out.emplace(index, std::move(entry));
+      });
+    }
+  });
+}
+
+void mix_environment(Reader& reader, const EnvironmentChoice& choice) {
+  reader.mix(choice.source);
+  reader.mix(&choice.rotation, sizeof(choice.rotation));
+  reader.mix(&choice.scale, sizeof(choice.scale));
+}
+
+}  // namespace
+
+SceneDescription description_of_data(const Value& value) {
+  Reader reader;
+  const Dict& data = dict_of(reader, value);
+  SceneDescription scene;
+  const Tables tables = tables_of(reader, data);
+  Keys known{"environment"};
+  std::apply([&](const auto&... member) { (known.emplace_back(member.name), ...); }, table_members);
+  read_listed(reader, data, scene.view, view_members, known);
+  read_listed(reader, data, scene, single_members, known);
+  refuse_other_keys(reader, data, known);
+  std::apply([&](const auto&... member) { (read_table(reader, tables, scene, member), ...); }, table_members);
+  if (scene.materials.empty()) scene.materials.emplace_back();
+  mix_files(reader, scene);
+  scene.hash = reader.hash;
+  if (const Value* environment = data.find("environment"))
+    replace_environment(scene, environment_of_data(*environment));
+  return scene;
+}
+
+Value data_of_description(const SceneDescription& description, const ViewDescription& view) {
+  Dict data;
+  const auto write_listed = [&](const auto& value, const auto& members) {
+    std::apply([&](const auto&... member) { (write_member(data, value, member), ...); }, members);
+  };
+  write_listed(view, view_members);
+  write_listed(description, single_members);
+  write_listed(description, table_members);
+  return data;
+}
+
+EnvironmentChoice environment_of_data(const Value& data) {
+  if (data.as<std::string>() != nullptr) return {.source = *data.as<std::string>()};
+  Reader reader;
+  EnvironmentChoice choice;
+  constexpr auto members =
+      std::tuple(field("source", &EnvironmentChoice::source), field("rotation", &EnvironmentChoice::rotation),
+                 field("scale", &EnvironmentChoice::scale));
+  Keys known{"up"};
+  reader.at("environment", [&] {
+    const Dict& dict = dict_of(reader, data);
+    read_listed(reader, dict, choice, members, known);
+    if (const Value* value = dict.find("up")) {
+      std::string up;
+      read(reader, *value, up);
+      if (up != "y" && up != "z") reader.fail("one of 'y', 'z'", *value);
+      choice.up = up == "y" ? UpAxis::y : UpAxis::z;
+    }
+    refuse_other_keys(reader, dict, known);
+  });
+  return choice;
+}
+
+DescriptionEdits edits_of_data(const Value& value, const SceneDescription& scene, const ViewDescription& view) {
+  Reader reader = reader_for(scene);
+  const Dict& data = dict_of(reader, value);
+  DescriptionEdits result{.view = view};
+  Keys known{"materials", "lights", "area_lights", "instances", "environment"};
+  read_listed(reader, data, result.view, view_members, known);
+  refuse_other_keys(reader, data, known);
+
+  SceneEdits changes;
+  // What the view has read is part of the view's own identity.
+  reader.hash = scene.hash;
+  read_edits(reader, data, "materials", scene.materials, changes.materials);
+  read_edits(reader, data, "lights", scene.lights, changes.lights);
+  read_edits(reader, data, "area_lights", scene.area_lights, changes.area_lights);
+  std::vector<AnimatedTransform> places;
+  for (const description::Instance& instance : scene.instances) places.push_back(instance.object_to_world);
+  read_edits(reader, data, "instances", places, changes.instances);
+  if (const Value* environment = data.find("environment")) {
+    changes.environment = environment_of_data(*environment);
+    mix_environment(reader, *changes.environment);
+  }
+  changes.hash = reader.hash;
+  if (!changes.materials.empty() || !changes.lights.empty() || !changes.area_lights.empty() ||
+      !changes.instances.empty() || changes.environment)
+    result.scene = std::move(changes);
+  return result;
+}
+
+}  // namespace lanthorn

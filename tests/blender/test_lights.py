@@ -1,0 +1,110 @@
+# SPDX-FileCopyrightText: 2026 The Lanthorn authors
+# SPDX-License-Identifier: Apache-2.0
+"""Each kind of lamp on a diffuse plane: the mean of Lanthorn's picture and of Cycles' differ by less than 2 %, and so
+do the means of its quarters."""
+import math
+import os
+import sys
+import unittest
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import bpy
+import numpy
+import stage
+
+TOLERANCE = 0.02
+FOLDER = sys.argv[sys.argv.index("--") + 1] if sys.argv[-1] != "--" and "--" in sys.argv else None
+
+
+def block_means(picture, blocks=4):
+    height, width = picture.shape[:2]
+    cut = picture[:height // blocks * blocks, :width // blocks * blocks, :3]
+    return cut.reshape(blocks, height // blocks, blocks, width // blocks, 3).mean(axis=(1, 3))
+
+
+class LightTest(unittest.TestCase):
+    def setUp(self):
+        stage.empty_scene()
+        stage.camera_from_above(height=3)
+        stage.add_plane(size=8)
+
+    def compare(self, name, tolerance=TOLERANCE, samples=256):
+        # A light path of one scattering: nothing else differs.
+        cycles = stage.render("CYCLES", samples=samples, max_bounces=0)
+        ours = stage.render("LANTHORN", method="path", max_depth=1, noise=0, seconds=0, passes=256)
+        ratio = ours[:, :, :3].mean() / cycles[:, :, :3].mean()
+        lit = block_means(cycles) > 0.05 * cycles[:, :, :3].max()
+        blocks = block_means(ours)[lit] / block_means(cycles)[lit]
+        print(f"{name}: lanthorn / cycles {ratio:.4f}; blocks {blocks.min():.4f} to {blocks.max():.4f}; "
+              f"mean of cycles {cycles[:, :, :3].mean():.5f}")
+        if FOLDER:
+            stage.save_png(os.path.join(FOLDER, f"light-{name}.png"), cycles, ours,
+                           exposure=0.5 / cycles[:, :, :3].max())
+        self.assertAlmostEqual(ratio, 1, delta=tolerance)
+        self.assertLess(abs(blocks - 1).max(), 2 * tolerance)
+
+    def test_point_of_no_size(self):
+        stage.add_light("POINT", 100, (0.5, 0, 2), shadow_soft_size=0)
+        self.compare("point-0")
+
+    def test_point(self):
+        # Outside of the picture: our camera sees lamps, that of Cycles does not.
+        stage.add_light("POINT", 100, (2.5, 0.4, 1), shadow_soft_size=0.25, color=(1, 0.5, 0.2))
+        self.compare("point")
+
+    def test_sun(self):
+        stage.add_light("SUN", 3, rotation=(0.5, 0.3, 0), angle=0)
+        self.compare("sun")
+
+    def test_spot(self):
+        stage.add_light("SPOT", 100, (0.3, 0, 2), (0.2, 0, 0), shadow_soft_size=0, spot_size=math.radians(40),
+                        spot_blend=0.3)
+        self.compare("spot")
+
+    def test_area(self):
+        for shape in ("SQUARE", "RECTANGLE", "DISK", "ELLIPSE"):
+            with self.subTest(shape):
+                self.setUp()
+                stage.add_light("AREA", 100, (2.2, 0.2, 1), (0.4, 0.9, 0), shape=shape, size=0.6, size_y=0.3)
+                self.compare(f"area-{shape.lower()}")
+
+    def test_area_that_is_scaled(self):
+        light = stage.add_light("AREA", 100, (2.4, 0, 1), (0, 0.8, 0), shape="RECTANGLE", size=0.6, size_y=0.3)
+        light.scale = (2, 0.5, 1)
+        self.compare("area-scaled")
+
+    def test_mesh(self):
+        glow = stage.node_material("glow", "ShaderNodeEmission", Color=(1, 0.8, 0.6, 1), Strength=20)
+        stage.add_ball(radius=0.2, location=(3, 0, 1.5), material=glow)
+        self.compare("mesh")
+
+    def test_world_color(self):
+        bpy.context.scene.world.color = (0.5, 0.7, 1)
+        self.compare("world-color")
+
+    def test_world_texture(self):
+        image = bpy.data.images.new("sky", 64, 32, float_buffer=True)
+        y, x = numpy.mgrid[0:32, 0:64]
+        pixels = numpy.ones((32, 64, 4), dtype=numpy.float32)
+        # Bright in one direction, so that a picture that is turned or mirrored shows.
+        pixels[:, :, 0] = numpy.exp(-((x - 14) ** 2 + (y - 22) ** 2) / 30) * 20
+        pixels[:, :, 1] = numpy.where(x > 40, 1.0, 0.1)
+        pixels[:, :, 2] = 0.2
+        image.pixels.foreach_set(pixels.ravel())
+        world = bpy.context.scene.world
+        world.use_nodes = True
+        nodes, links = world.node_tree.nodes, world.node_tree.links
+        texture = nodes.new("ShaderNodeTexEnvironment")
+        texture.image = image
+        background = next(n for n in nodes if n.type == "BACKGROUND")
+        background.inputs["Strength"].default_value = 0.7
+        links.new(texture.outputs[0], background.inputs["Color"])
+        # A tent, which tells directions.
+        stage.add_ball(radius=0.6, location=(0, 0, 0.3), material=stage.diffuse(), is_smooth=False)
+        self.compare("world-texture")
+
+
+if __name__ == "__main__":
+    stage.enable_addon()
+    arguments = sys.argv[sys.argv.index("--") + 2:] if "--" in sys.argv else []
+    unittest.main(argv=["test_lights", *arguments])

@@ -1,0 +1,129 @@
+# SPDX-FileCopyrightText: 2026 The Lanthorn authors
+# SPDX-License-Identifier: Apache-2.0
+"""Each shader on a ball on a floor, in an even sky and under an area lamp: means beside Cycles."""
+import math
+import os
+import sys
+import unittest
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import bpy
+import numpy
+import stage
+
+TOLERANCE = 0.03  # of the mean of the picture
+LARGEST_OF_BALL = 0.12  # of a colour of the ball: Glossy is a metal here, whose edge is white; rough glass is darker
+FOLDER = sys.argv[sys.argv.index("--") + 1] if sys.argv[-1] != "--" and "--" in sys.argv else None
+
+
+def shader(kind, **inputs):
+    return lambda: stage.node_material("test", kind, **inputs)
+
+
+def mixed(first, second, amount=0.3, kind="ShaderNodeMixShader"):
+    """Two shaders in one material."""
+    def make():
+        material = stage.node_material("test", first[0], **first[1])
+        nodes, links = material.node_tree.nodes, material.node_tree.links
+        output = next(n for n in nodes if n.type == "OUTPUT_MATERIAL")
+        one = output.inputs["Surface"].links[0].from_node
+        two, mix = nodes.new(second[0]), nodes.new(kind)
+        for key, value in second[1].items():
+            two.inputs[key].default_value = value
+        if kind == "ShaderNodeMixShader":
+            mix.inputs[0].default_value = amount
+        links.new(one.outputs[0], mix.inputs[-2])
+        links.new(two.outputs[0], mix.inputs[-1])
+        links.new(mix.outputs[0], output.inputs["Surface"])
+        return material
+    return make
+
+
+def textured(colorspace="sRGB", scale=(2, 1, 1), rotation=0.3):
+    def make():
+        material = stage.diffuse("test")
+        nodes, links = material.node_tree.nodes, material.node_tree.links
+        image = bpy.data.images.new("checks", 16, 16)
+        image.colorspace_settings.name = colorspace
+        y, x = numpy.mgrid[0:16, 0:16]
+        pixels = numpy.ones((16, 16, 4), dtype=numpy.float32)
+        pixels[:, :, 0], pixels[:, :, 1], pixels[:, :, 2] = x / 15, y / 15, ((x // 4 + y // 4) % 2) * 0.8
+        image.pixels.foreach_set(pixels.ravel())
+        texture, mapping, place = (nodes.new(f"ShaderNode{n}") for n in ("TexImage", "Mapping", "TexCoord"))
+        texture.image = image
+        mapping.inputs["Scale"].default_value = scale
+        mapping.inputs["Rotation"].default_value = (0, 0, rotation)
+        mapping.inputs["Location"].default_value = (0.1, 0.2, 0)
+        links.new(place.outputs["UV"], mapping.inputs["Vector"])
+        links.new(mapping.outputs["Vector"], texture.inputs["Vector"])
+        links.new(texture.outputs["Color"], next(n for n in nodes if n.type == "BSDF_DIFFUSE").inputs["Color"])
+        return material
+    return make
+
+
+RED = (0.8, 0.2, 0.1, 1)
+DIFFUSE, GLOSSY, EMISSION = "ShaderNodeBsdfDiffuse", "ShaderNodeBsdfGlossy", "ShaderNodeEmission"
+PRINCIPLED, GLASS, HOLE = "ShaderNodeBsdfPrincipled", "ShaderNodeBsdfGlass", "ShaderNodeBsdfTransparent"
+BASE = {"Base Color": RED}
+MATERIALS = {
+    "diffuse": (shader(DIFFUSE, Color=RED), TOLERANCE),
+    "translucent": (shader("ShaderNodeBsdfTranslucent", Color=RED), TOLERANCE),
+    "glossy": (shader(GLOSSY, Color=RED, Roughness=0.3), TOLERANCE),
+    "mirror": (shader(GLOSSY, Color=RED, Roughness=0.0), TOLERANCE),
+    "glass": (shader(GLASS, Color=(0.8, 0.9, 1, 1), IOR=1.5, Roughness=0.0), TOLERANCE),
+    "rough-glass": (shader(GLASS, IOR=1.5, Roughness=0.4), 0.06),
+    "hole": (mixed((DIFFUSE, {"Color": RED}), (HOLE, {})), TOLERANCE),
+    "mix": (mixed((DIFFUSE, {"Color": RED}), (GLOSSY, {"Roughness": 0.2})), TOLERANCE),
+    "emission": (shader(EMISSION, Color=RED, Strength=3.0), TOLERANCE),
+    "diffuse-emission": (mixed((DIFFUSE, {"Color": RED}), (EMISSION, {"Strength": 0.5}), kind="ShaderNodeAddShader"),
+                         TOLERANCE),
+    "principled": (shader(PRINCIPLED, **BASE, Roughness=0.4, Specular=0.5), 0.05),
+    "principled-metal": (shader(PRINCIPLED, **BASE, Roughness=0.3, Metallic=1.0), 0.05),
+    "principled-glass": (shader(PRINCIPLED, **BASE, Roughness=0.0, Transmission=1.0, IOR=1.45), 0.05),
+    "texture": (textured(), TOLERANCE),
+    "texture-linear": (textured(colorspace="Non-Color"), TOLERANCE),
+}
+
+
+class MaterialTest(unittest.TestCase):
+    def build(self, make):
+        scene = stage.empty_scene(64, 64)
+        stage.add_camera((0, -4, 1.2), (math.radians(80), 0, 0), lens=50)
+        stage.add_plane(size=12, material=stage.diffuse("floor", (0.4, 0.4, 0.4)))
+        scene.world.color = (0.6, 0.7, 0.8)
+        stage.add_light("AREA", 300, (2, -3, 4), (0.6, 0.35, 0), size=1)
+        stage.add_ball(radius=0.8, location=(0, 0, 0.8), material=make())
+        # Texture coordinates.
+        ball = bpy.data.objects["ball"].data
+        layer = ball.uv_layers.new()
+        for loop, uv in zip(ball.loops, layer.data):
+            p = ball.vertices[loop.vertex_index].co
+            uv.uv = (0.5 + p.x, 0.5 + p.z)
+
+    def test_each(self):
+
+        rows = []
+        for name in MATERIALS:
+            make, tolerance = MATERIALS[name]
+            with self.subTest(name):
+                self.build(make)
+                cycles = stage.render("CYCLES", samples=192, max_bounces=24, transmission_bounces=24,
+                                      blur_glossy=0, sample_clamp_indirect=0)
+                ours = stage.render("LANTHORN", method="vcm", noise=0, seconds=0, passes=48)
+                rows.append(numpy.concatenate([cycles, ours], axis=1))
+                ratio = ours[:, :, :3].mean() / cycles[:, :, :3].mean()
+                middle = [p[24:52, 20:44, :3].mean(axis=(0, 1)) for p in (cycles, ours)]
+                print(f"{name}: lanthorn / cycles {ratio:.4f}; of the ball {numpy.round(middle[1] / middle[0], 3)}")
+                self.assertAlmostEqual(ratio, 1, delta=tolerance)
+                self.assertLess(abs(middle[1] / middle[0] - 1).max(), LARGEST_OF_BALL)
+        if FOLDER:
+            half = (len(rows) + 1) // 2
+            columns = [numpy.concatenate(part) for part in (rows[:half], rows[half:])]
+            columns[1] = numpy.pad(columns[1], ((0, columns[0].shape[0] - columns[1].shape[0]), (0, 0), (0, 0)))
+            stage.save_png(os.path.join(FOLDER, "materials.png"), *columns, exposure=0.8)
+
+
+if __name__ == "__main__":
+    stage.enable_addon()
+    arguments = sys.argv[sys.argv.index("--") + 2:] if "--" in sys.argv else []
+    unittest.main(argv=["test_materials", *arguments])

@@ -1,0 +1,101 @@
+# SPDX-FileCopyrightText: 2026 The Lanthorn authors
+# SPDX-License-Identifier: Apache-2.0
+"""A session in Blender's window, under Xvfb: the rendered viewport refines, follows a lamp and a colour, and ends.
+
+Usage: xvfb-run -a blender --factory-startup --python viewport_session.py -- FOLDER
+Leaves screenshots in the folder, and the times of first pictures on standard output.
+"""
+import os
+import subprocess
+import sys
+import time
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import bpy
+import stage
+
+FOLDER = sys.argv[sys.argv.index("--") + 1]
+
+
+def scene():
+    bpy.context.scene.render.engine = "LANTHORN"
+    for name in [o.name for o in bpy.data.objects]:
+        bpy.data.objects.remove(bpy.data.objects[name])
+    stage.add_camera((0, -5, 3), (1.05, 0, 0), lens=40)
+    stage.add_plane(size=8)
+    stage.add_ball(radius=0.7, location=(0, 0, 0.9),
+                   material=stage.node_material("glass", "ShaderNodeBsdfGlass", IOR=1.5, Roughness=0.0))
+    stage.add_light("POINT", 400, (-2, 1, 3.5), shadow_soft_size=0.05)
+
+
+def view():
+    area = next(a for a in bpy.context.window_manager.windows[0].screen.areas if a.type == "VIEW_3D")
+    return area, area.spaces.active
+
+
+def show():
+    area, space = view()
+    space.region_3d.view_perspective = "CAMERA"
+    space.shading.type = "RENDERED"
+
+
+def screenshot(name):
+    window = bpy.context.window_manager.windows[0]
+    with bpy.context.temp_override(window=window, screen=window.screen):
+        bpy.ops.screen.screenshot(filepath=os.path.join(FOLDER, f"{name}.png"))
+    print(f"{name}: {time.monotonic() - START:.1f} s", flush=True)
+
+
+def move_lamp():
+    bpy.data.objects["point"].location.x = 2.5
+
+
+def color_floor():
+    shader = next(n for n in bpy.data.materials["grey"].node_tree.nodes if n.type == "BSDF_DIFFUSE")
+    shader.inputs["Color"].default_value = (0.8, 0.3, 0.1, 1)
+
+
+def turn():
+    view()[1].region_3d.view_perspective = "PERSP"
+    view()[1].region_3d.view_distance = 9
+
+
+def leave():
+    view()[1].shading.type = "SOLID"
+
+
+def press_f12():
+    bpy.context.scene.render.resolution_x, bpy.context.scene.render.resolution_y = 320, 240
+    bpy.context.scene.lanthorn.noise = 0
+    window = bpy.context.window_manager.windows[0]
+    with bpy.context.temp_override(window=window, screen=window.screen):
+        bpy.ops.render.render("INVOKE_DEFAULT")
+
+
+def press_escape():
+    subprocess.run(["xdotool", "mousemove", "640", "400", "key", "Escape"], check=True)
+
+
+def check_render():
+    print("render runs after Escape:", bpy.app.is_job_running("RENDER"), flush=True)
+    bpy.data.images["Render Result"].save_render(os.path.join(FOLDER, "cancelled.png"))
+
+
+STEPS = [(scene, 1), (show, 2), (lambda: screenshot("first"), 12), (lambda: screenshot("refined"), 0.1), (move_lamp, 6),
+         (lambda: screenshot("lamp-moved"), 0.1), (color_floor, 6), (lambda: screenshot("floor-coloured"), 0.1),
+         (turn, 5), (lambda: screenshot("turned"), 0.1), (leave, 2), (lambda: screenshot("solid"), 0.1),
+         (press_f12, 12), (lambda: screenshot("f12"), 0.1),
+         (press_escape, 3), (lambda: screenshot("after-escape"), 0.1), (check_render, 0.1),
+         (lambda: bpy.ops.wm.quit_blender(), 1)]
+START = time.monotonic()
+
+
+def step():
+    action, pause = STEPS.pop(0)
+    action()
+    return pause if STEPS else None
+
+
+stage.enable_addon()
+bpy.context.preferences.view.show_splash = False
+bpy.app.timers.register(step, first_interval=2)
