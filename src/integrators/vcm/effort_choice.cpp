@@ -37,10 +37,10 @@ double work_of_ray(const Scene& scene) {
 }
 
 // Passes share the samples of eye paths out among them, so that their means vary less than if they were independent. By
-// how much was measured over 48 passes in four scenes (docs/performance.md). Light paths are shared out, too, but radii
+// how much was measured over 48 passes in five scenes (docs/performance.md). Light paths are shared out, too, but radii
 // shrink, which makes about as much more variance.
 namespace stratification {
-constexpr double long_eye_paths = 1.8;
+constexpr double long_eye_paths = 2;
 constexpr double short_eye_paths = 4;  // few dimensions
 }  // namespace stratification
 // Of path tracing's product of variance and work: what light paths must do better. Merges have a bias, too, and path
