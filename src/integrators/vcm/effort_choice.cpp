@@ -137,9 +137,8 @@ double EffortChoice::variance_around(std::size_t b, std::size_t candidate) const
 }
 
 double EffortChoice::work_of_light(float light_paths) const {
-  return count_per_pixel(light_paths,
-                         work::light_path * m_.light_paths + work::light_ray * ray_work_ * m_.light_rays +
-                             work::light_vertex * m_.light_vertices);
+  return count_per_pixel(light_paths, work::light_path * m_.light_paths + work::light_ray * ray_work_ * m_.light_rays +
+                                          work::light_vertex * m_.light_vertices);
 }
 
 double EffortChoice::count_per_pixel(float light_paths, double of_pilot) const {
