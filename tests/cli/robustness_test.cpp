@@ -49,13 +49,16 @@ TEST_F(Robustness, ThreadsThatCannotBeHadAreDoneWithout) {
   GTEST_SKIP() << "the plain threads of this build, and the sanitizer's own, cannot be done without";
 #endif
   if (getuid() != 0) GTEST_SKIP() << "only root can become a user who has no other threads that count";
-  fs::copy(LANTHORN_PROGRAM, path("program"));
-  for (const char* name : {"", "program"}) fs::permissions(path(name), fs::perms(0777));
+  // A copy, where that user may read it. It finds the library beside it.
+  fs::create_directory(path("bin"));
+  fs::copy(LANTHORN_PROGRAM, path("bin/program"));
+  fs::create_directory_symlink(fs::path(LANTHORN_PROGRAM).parent_path().parent_path() / "lib", path("lib"));
+  for (const char* name : {"", "bin", "bin/program"}) fs::permissions(path(name), fs::perms(0777));
   const auto run_limited = [&](int limit, const Words& words) {
     const std::string user = "61947";  // of nobody else
     const Words prefix{"--reuid=" + user, "--regid=" + user, "--clear-groups", "prlimit",
                        "--nproc=" + std::to_string(limit)};
-    return ChildProcess("/usr/bin/setpriv", prefix + Words{path("program")} + words, dir_.path()).wait();
+    return ChildProcess("/usr/bin/setpriv", prefix + Words{path("bin/program")} + words, dir_.path()).wait();
   };
   succeed(render({"-o", "all.exr", "-p", "2"}));
   int least = 1;  // with which images can be read: their libraries start threads

@@ -80,7 +80,7 @@ class PhotonBlocks : public testing::TestWithParam<const char*> {};
 TEST_P(PhotonBlocks, FindTheLightThatOneBlockFinds) {
   for (const ColorMode color : {ColorMode::rgb, ColorMode::spectral}) {
     const Outcome whole = run(still_room(), GetParam(), at_once, {0, 2}, 2, color);
-    for (const std::uint64_t block : {2000, 1111}) {
+    for (const std::uint64_t block : {400, 111}) {
       const Outcome parts = run(still_room(), GetParam(), block, {0, 2}, 2, color);
       const Difference d = difference(whole.state, parts.state);
       EXPECT_LT(d.mean, 1e-5) << block;
@@ -98,11 +98,11 @@ TEST_P(PhotonBlocks, FindTheLightThatOneBlockFinds) {
 TEST_P(PhotonBlocks, BytesDoNotDependOnThreadsOrShards) {
   const Scene moving = room(true);
   for (const Scene* scene : {&still_room(), &moving}) {
-    const std::vector<std::byte> expected = encode_state(run(*scene, GetParam(), 2000).state);
+    const std::vector<std::byte> expected = encode_state(run(*scene, GetParam(), 400).state);
     for (const unsigned threads : {1u, 3u})
-      EXPECT_EQ(expected, encode_state(run(*scene, GetParam(), 2000, {0, 2}, threads).state)) << threads;
-    EXPECT_EQ(expected, encode_state(merge_states(run(*scene, GetParam(), 2000, {1, 2}).state,
-                                                  run(*scene, GetParam(), 2000, {0, 1}).state)));
+      EXPECT_EQ(expected, encode_state(run(*scene, GetParam(), 400, {0, 2}, threads).state)) << threads;
+    EXPECT_EQ(expected, encode_state(merge_states(run(*scene, GetParam(), 400, {1, 2}).state,
+                                                  run(*scene, GetParam(), 400, {0, 1}).state)));
   }
 }
 
@@ -110,7 +110,7 @@ TEST_P(PhotonBlocks, BytesDoNotDependOnThreadsOrShards) {
 TEST_P(PhotonBlocks, MeetWhatMovesAtTheSameTimes) {
   const Scene moving = room(true);
   const RenderState whole = run(moving, GetParam(), at_once, {0, 16}).state;
-  const RenderState parts = run(moving, GetParam(), 2000, {0, 16}).state;
+  const RenderState parts = run(moving, GetParam(), 400, {0, 16}).state;
   EXPECT_LT(difference(whole, parts).mean, 1e-2);
 }
 
