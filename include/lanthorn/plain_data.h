@@ -243,7 +243,7 @@ void copy_numbers(Reader& reader, const Value& data, T*& out, const std::string&
     if constexpr (std::is_integral_v<T> && std::is_integral_v<Number>) {
       if (!std::in_range<T>(number)) reader.fail(expected + " in range", plain::write(number));
     }
-    *out++ = static_cast<T>(number);
+    *out++ = static_cast<T>(number);  // NOLINT(bugprone-signed-char-misuse): int8 is a number here
   };
   if (const auto* list = data.as<List>()) {
     for (const Value& item : *list) copy_numbers(reader, item, out, expected);

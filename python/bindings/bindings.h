@@ -50,6 +50,7 @@ EnvironmentChoice environment_of(py::handle data);
 /// `values` as an array that shares the memory of `owner`, which holds them.
 template <class Scalar, class T>
 py::array writable_array(const std::vector<T>& values, py::handle owner) {
+  // NOLINTNEXTLINE(bugprone-sizeof-expression): T may be Scalar
   constexpr auto count = static_cast<py::ssize_t>(sizeof(T) / sizeof(Scalar));
   std::vector<py::ssize_t> shape{static_cast<py::ssize_t>(values.size())};
   if (count > 1) shape.push_back(count);

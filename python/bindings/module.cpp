@@ -19,6 +19,7 @@ void bind_error(py::module_& module) {
       "str(error) says where and what. Attributes: `file` (str, empty if no file is to blame), `line` and `column`\n"
       "(int, from 1; 0 if not known) and `message` (str, without the place).";
   type = error.release();
+  // NOLINTNEXTLINE(performance-unnecessary-value-param): pybind11 takes a function of this type
   py::register_exception_translator([](std::exception_ptr pointer) {
     try {
       if (pointer) std::rethrow_exception(pointer);

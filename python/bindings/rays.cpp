@@ -76,6 +76,7 @@ py::dict hits_of(const SeenScene& scene, const py::object& origins, const py::ob
   data["shading_normal"] = column<float>(hits, &RayHit::shading_normal);
   data["uv"] = column<float>(hits, &RayHit::uv);
   std::vector<std::uint8_t> emits;
+  emits.reserve(hits.size());
   for (const RayHit& hit : hits) emits.push_back(hit.emits ? 1 : 0);
   data["emits"] = array_of<std::uint8_t>(std::move(emits)).attr("astype")("bool");
   return data;

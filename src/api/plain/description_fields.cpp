@@ -33,9 +33,9 @@ void Convert<Transform>::read(Reader& reader, const Value& data, Transform& out)
   const NumberArray<double> m = number_array<double>(reader, data, "a 4 x 4 matrix");
   if (m.shape != Shape{4, 4}) reader.fail("a 4 x 4 matrix", data);
   DMat4 matrix;
-  for (int row = 0; row < 4; ++row)
-    for (int column = 0; column < 4; ++column)
-      matrix[column][row] = m.values[static_cast<std::size_t>(row * 4 + column)];
+  for (std::size_t row = 0; row < 4; ++row)
+    for (std::size_t column = 0; column < 4; ++column)
+      matrix[static_cast<int>(column)][static_cast<int>(row)] = m.values[row * 4 + column];
   out = Transform(matrix);
   if (out.is_singular()) reader.fail("a matrix that can be inverted", data);
   reader.mix(m.values.data(), 16 * sizeof(double));
@@ -75,8 +75,9 @@ Value Convert<AnimatedTransform>::write(const AnimatedTransform& map) {
 void Convert<Mat2>::read(Reader& reader, const Value& data, Mat2& out) {
   const NumberArray<float> m = number_array<float>(reader, data, "a 2 x 2 matrix");
   if (m.shape != Shape{2, 2}) reader.fail("a 2 x 2 matrix", data);
-  for (int row = 0; row < 2; ++row)
-    for (int column = 0; column < 2; ++column) out[column][row] = m.values[static_cast<std::size_t>(row * 2 + column)];
+  for (std::size_t row = 0; row < 2; ++row)
+    for (std::size_t column = 0; column < 2; ++column)
+      out[static_cast<int>(column)][static_cast<int>(row)] = m.values[row * 2 + column];
   reader.mix(m.values.data(), 4 * sizeof(float));
 }
 Value Convert<Mat2>::write(const Mat2& map) {
