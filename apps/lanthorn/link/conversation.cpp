@@ -22,7 +22,6 @@ namespace lanthorn::program {
 
 namespace {
 
-using nlohmann::json;
 using plain::Dict;
 using plain::Value;
 
@@ -77,8 +76,8 @@ const char* name_of(InteractivePhase phase) {
   return "failed";
 }
 
-json texts_of(const std::vector<description::Warning>& warnings) {
-  json texts = json::array();
+nlohmann::json texts_of(const std::vector<description::Warning>& warnings) {
+  nlohmann::json texts = nlohmann::json::array();
   for (const description::Warning& warning : warnings) texts.push_back(Error(warning.location, warning.message).what());
   return texts;
 }
@@ -97,16 +96,16 @@ Image layers_of(const Image& image, const std::optional<std::vector<std::string>
   return all.value_or(Image(image.width, image.height, {}));
 }
 
-json about(const InteractivePicture& picture) {
-  json about{{"passes", picture.state.pass_count},
-             {"seconds", picture.state.seconds},
-             {"is_coarse", picture.is_coarse},
-             {"revision", picture.revision},
-             {"full_size", picture.full_size},
-             {"integrator", picture.state.integrator},
-             {"limitation", picture.limitation},
-             {"remark", picture.remark},
-             {"settings", json::parse(picture.state.settings, nullptr, false)}};
+nlohmann::json about(const InteractivePicture& picture) {
+  nlohmann::json about{{"passes", picture.state.pass_count},
+                       {"seconds", picture.state.seconds},
+                       {"is_coarse", picture.is_coarse},
+                       {"revision", picture.revision},
+                       {"full_size", picture.full_size},
+                       {"integrator", picture.state.integrator},
+                       {"limitation", picture.limitation},
+                       {"remark", picture.remark},
+                       {"settings", nlohmann::json::parse(picture.state.settings, nullptr, false)}};
   if (picture.seconds_left) about["seconds_left"] = *picture.seconds_left;
   if (picture.statistics.error) about["error"] = estimate_json(*picture.statistics.error);
   return about;
@@ -133,7 +132,7 @@ LinkAnswer Conversation::hello(const Dict& request) const {
   if (wanted != protocol_version)
     throw Error("this is lanthorn " + std::string(version) + ", which speaks version " +
                 std::to_string(protocol_version) + " of the protocol; the client asks for " + std::to_string(wanted));
-  json names = json::array();
+  nlohmann::json names = nlohmann::json::array();
   for (const MethodInfo& method : methods()) names.push_back(method.name);
   return {{{"version", version}, {"protocol", protocol_version}, {"methods", names}}};
 }
@@ -146,7 +145,7 @@ LinkAnswer Conversation::update(const Dict& request) {
   RenderEdit edit = scene_.update(request.find("set"), request.find("remove"));
   edit.is_moving = is_moving;
   if (has_options) edit.options = std::move(options);
-  if (!render_) return {json::object()};
+  if (!render_) return {nlohmann::json::object()};
   return {{{"revision", render_->edit(std::move(edit))}}};
 }
 
@@ -180,7 +179,7 @@ LinkAnswer Conversation::wait(const Dict& request) {
     throw Error("patience: expected 0 to 10 seconds, got " + plain::shown(patience));
   if (!render_) throw Error("nothing is rendered: send \"start\" first");
   const InteractiveSnapshot now = wait_for_news(after, patience);
-  LinkAnswer answer{json::object()};
+  LinkAnswer answer{nlohmann::json::object()};
   const std::optional<InteractiveDenoised> denoised = now.denoised ? std::optional(*now.denoised) : std::nullopt;
   if (now.picture && now.number > after) answer = picture_answer(*now.picture, denoised, layers);
   answer.body["number"] = now.number;
@@ -192,13 +191,13 @@ LinkAnswer Conversation::wait(const Dict& request) {
 LinkAnswer Conversation::finish_pass(const Dict& request) {
   read_members(request);
   if (render_) render_->pause(true);
-  return {json::object()};
+  return {nlohmann::json::object()};
 }
 
 LinkAnswer Conversation::stop(const Dict& request) {
   read_members(request);
   render_.reset();
-  return {json::object()};
+  return {nlohmann::json::object()};
 }
 
 LinkAnswer Conversation::answer_checked(const Dict& request) {

@@ -16,7 +16,6 @@ namespace lanthorn::program {
 
 namespace {
 
-using nlohmann::json;
 using plain::Scalar;
 
 constexpr int deepest = 64;  // levels of nested lists and objects
@@ -36,29 +35,29 @@ class JsonReader {
  public:
   explicit JsonReader(std::shared_ptr<const std::vector<std::byte>> data) : data_(std::move(data)) {}
 
-  plain::Dict dict(const json& object, int depth) const {
+  plain::Dict dict(const nlohmann::json& object, int depth) const {
     plain::Dict dict;
     for (const auto& [key, item] : object.items()) dict.set(key, value(item, depth + 1));
     return dict;
   }
 
  private:
-  plain::Value value(const json& data, int depth) const {
+  plain::Value value(const nlohmann::json& data, int depth) const {
     if (depth > deepest) throw Error("expected at most " + std::to_string(deepest) + " levels of lists and objects");
     switch (data.type()) {
-      case json::value_t::boolean:
+      case nlohmann::json::value_t::boolean:
         return data.get<bool>();
-      case json::value_t::number_integer:
+      case nlohmann::json::value_t::number_integer:
         return data.get<std::int64_t>();
-      case json::value_t::number_unsigned:
+      case nlohmann::json::value_t::number_unsigned:
         return whole(data.get<std::uint64_t>());
-      case json::value_t::number_float:
+      case nlohmann::json::value_t::number_float:
         return data.get<double>();
-      case json::value_t::string:
+      case nlohmann::json::value_t::string:
         return data.get<std::string>();
-      case json::value_t::array:
+      case nlohmann::json::value_t::array:
         return list(data, depth);
-      case json::value_t::object:
+      case nlohmann::json::value_t::object:
         break;
       default:
         return {};
@@ -72,24 +71,24 @@ class JsonReader {
     return number;
   }
 
-  plain::Value list(const json& data, int depth) const {
+  plain::Value list(const nlohmann::json& data, int depth) const {
     plain::List list;
     list.reserve(data.size());
-    for (const json& item : data) list.push_back(value(item, depth + 1));
+    for (const nlohmann::json& item : data) list.push_back(value(item, depth + 1));
     return list;
   }
 
-  plain::Value array(const json& data) const {
+  plain::Value array(const nlohmann::json& data) const {
     const std::optional<Scalar> type = scalar_of(data[array_key]);
     if (!type) throw Error("expected the type of an array, such as float32, got " + excerpt(data[array_key].dump()));
-    const std::optional<std::uint64_t> offset = whole_of(data.value("offset", json(0)));
-    const json shape = data.value("shape", json());
+    const std::optional<std::uint64_t> offset = whole_of(data.value("offset", nlohmann::json(0)));
+    const nlohmann::json shape = data.value("shape", nlohmann::json());
     if (!offset || !shape.is_array()) throw Error("an array has a type, a \"shape\" and an \"offset\" in bytes");
     plain::Array array{*type, {}, data_, nullptr};
     // No product of extents that the data hold overflows.
     const std::uint64_t room = *offset <= data_->size() ? (data_->size() - *offset) / bytes_of(*type) : 0;
     std::uint64_t count = 1;
-    for (const json& extent : shape) {
+    for (const nlohmann::json& extent : shape) {
       const std::optional<std::uint64_t> size = whole_of(extent);
       if (!size || (*size > 0 && count > room / *size)) throw Error("an array goes beyond the end of its message");
       count *= *size;
@@ -100,12 +99,12 @@ class JsonReader {
     return array;
   }
 
-  static std::optional<Scalar> scalar_of(const json& name) {
+  static std::optional<Scalar> scalar_of(const nlohmann::json& name) {
     for (const auto& [known, scalar] : scalar_names)
       if (name == known) return scalar;
     return std::nullopt;
   }
-  static std::optional<std::uint64_t> whole_of(const json& number) {
+  static std::optional<std::uint64_t> whole_of(const nlohmann::json& number) {
     if (!number.is_number_unsigned()) return std::nullopt;
     return number.get<std::uint64_t>();
   }
@@ -132,7 +131,7 @@ void check_depth(std::string_view text) {
 
 plain::Dict dict_of_json(std::string_view text, const std::shared_ptr<const std::vector<std::byte>>& data) {
   check_depth(text);
-  const json object = json::parse(text, nullptr, /*allow_exceptions=*/false);
+  const nlohmann::json object = nlohmann::json::parse(text, nullptr, /*allow_exceptions=*/false);
   if (!object.is_object()) throw Error("expected a JSON object, got " + excerpt(text));
   return JsonReader(data).dict(object, 0);
 }

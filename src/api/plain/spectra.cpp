@@ -4,7 +4,11 @@
 
 namespace lanthorn::plain {
 
-using namespace description;
+using description::BlackbodySpectrum;
+using description::NamedSpectrum;
+using description::RgbSpectrum;
+using description::SampledSpectrum;
+using description::SpectrumValue;
 
 namespace {
 
