@@ -23,14 +23,15 @@ struct LinkCommand {
   unsigned threads = 0;
 };
 
-// The pipe to the client. What else the program prints must not come between the answers.
+// Returns the pipe to the client, and sends everything else that the program prints to standard error, so that it does
+// not mix with the answers.
 int take_standard_output() {
   const int file = ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
   if (file < 0 || ::dup2(STDERR_FILENO, STDOUT_FILENO) < 0) throw Error("link: cannot use standard output");
   return file;
 }
 
-// Ends with the client: a scene that is being built, which nobody can stop, must not keep the program.
+// The program ends with the client, even while it builds a scene, which cannot be interrupted.
 void run_link(const LinkCommand& a) {
   if (::isatty(STDIN_FILENO) != 0)
     throw Error("link: expected a program at the other end of standard input, got a terminal (see docs/protocol.md)");

@@ -12,7 +12,7 @@ HALFWAY = 0.5
 
 @dataclass
 class Look:
-    """What a shader node is: a material (None: nothing but light or holes), emission, and how much of it is there."""
+    """The translation of a shader node: its material (None if it only emits or lets light through), emission and opacity."""
 
     material: dict | None = None
     emission: object = None  # a color, or a texture
@@ -37,7 +37,7 @@ class Materials:
         self._done, self._mixes = {}, 0
 
     def shape_members(self, material):
-        """The members that a shape of this material has: material, area_light, alpha."""
+        """Returns what a shape with this shader needs: material, area_light, alpha."""
         key = material.name_full if material is not None else ""
         if key not in self._done:
             self._done[key] = self._add(key, material)

@@ -20,8 +20,8 @@ def empty_parts():
 
 
 class SceneExport:
-    """Keeps what it has exported, so that `changes` sends what is new alone. Pictures that are no files go to a
-    folder that lives as long as this."""
+    """Exports a scene, and remembers what it has sent, so that `changes` returns only what is new. Images without a
+    file are written to a temporary folder, which is deleted with this object."""
 
     def __init__(self):
         self.folder = tempfile.TemporaryDirectory(prefix="lanthorn-")

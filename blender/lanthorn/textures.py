@@ -61,13 +61,13 @@ def _written(image, path):
 
 
 class ImageFiles:
-    """Images as files that Lanthorn reads; those that are none go to a folder, once."""
+    """Images as files that Lanthorn reads; images without a file are written to a folder, once."""
 
     def __init__(self, folder):
         self.folder, self._written = folder, {}
 
     def path_of(self, image):
-        """None if there are no pixels."""
+        """Returns None if the image has no pixels."""
         path = bpy.path.abspath(image.filepath, library=image.library)
         if image.source == "FILE" and image.packed_file is None and not image.is_dirty and os.path.isfile(path):
             return path

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -112,8 +113,10 @@ TEST(Effort, RadiiDependOnThePhotonsOfAllPasses) {
   EXPECT_EQ(merge_radius_shrink(0.5, 0, 0.25), 1);
 }
 
-Effort effort_of(const Scene& scene) {
-  const RenderPlan plan = plan_render(scene, scene.description().view, test::options_for("auto", 1, 1));
+Effort effort_of(const Scene& scene, std::optional<int> side = {}) {
+  RenderOptions options = test::options_for("auto", 1, 1);
+  if (side) options.resolution = {*side, *side};
+  const RenderPlan plan = plan_render(scene, scene.description().view, options);
   const RenderJob job = plan.job(scene);
   VcmSettings settings(Parameters(find_integrator("vcm").parameters, {}, "vcm"), {});
   settings.chooses_effort = true;
@@ -136,6 +139,14 @@ TEST(Effort, OfAPlainUnderTheSkyIsPathTracing) {
   const Image own = test::render_image(scene, test::options_for("auto", 4, 1));
   const Image path = test::render_image(scene, test::options_for("path", 4, 1));
   EXPECT_EQ(select_layer(own, "color")->pixels, select_layer(path, "color")->pixels);
+}
+
+// At 128 x 128 path tracing was 1.4 times better than the best use of light paths, at equal time. At 512 x 512 photons
+// lie closer, and light paths were 1.3 to 2.2 times better.
+TEST(Effort, OfADiffuseBoxDependsOnTheDensityOfPhotons) {
+  const Scene scene(read_scene(LANTHORN_SOURCE_DIR "/scenes/cornell-diffuse.pbrt"));
+  EXPECT_EQ(effort_of(scene, 128).light_paths(), 0u);
+  EXPECT_GT(effort_of(scene, 512).light_paths(), 0u);
 }
 
 // A room of 4 m with a window of 40 cm, in the sun. All its light comes by a small patch on the floor.

@@ -22,10 +22,10 @@ struct LinkAnswer {
 
 class Conversation {
  public:
-  /// `is_over`: nobody waits for an answer any more.
+  /// `is_over` returns true once the client has gone.
   explicit Conversation(std::function<bool()> is_over) : is_over_(std::move(is_over)) {}
 
-  /// Answers "error" with a message to requests that are wrong; they have no effect.
+  /// Answers an invalid request with "error" and the reason. Such a request changes nothing.
   LinkAnswer answer(const plain::Dict& request);
 
  private:

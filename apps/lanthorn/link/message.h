@@ -21,14 +21,14 @@ struct LinkRequest {
   std::string problem;  ///< why the JSON cannot be understood; empty: it can
 };
 
-/// Waits for a message. None at the end of the stream. Throws Error if the bytes are no message: what follows them
-/// cannot be read either.
+/// Waits for the next message; returns nothing at the end of the stream. Throws Error if the bytes do not form a
+/// message. Nothing after such bytes can be read.
 std::optional<LinkRequest> read_request(int file);
 
-/// Throws Error if nobody reads.
+/// Throws Error if the client has closed the pipe.
 void write_answer(int file, const nlohmann::json& body, std::span<const float> numbers);
 
-/// Whether the other end of the pipe is gone.
+/// Whether the client has closed its end of the pipe.
 bool is_hung_up(int file);
 
 }  // namespace lanthorn::program

@@ -40,12 +40,12 @@ double work_of_ray(const Scene& scene) {
 // how much was measured over 48 passes in five scenes (docs/performance.md). Light paths are shared out, too, but radii
 // shrink, which makes about as much more variance.
 namespace stratification {
-constexpr double long_eye_paths = 2;
+constexpr double long_eye_paths = 3;
 constexpr double short_eye_paths = 4;  // few dimensions
 }  // namespace stratification
 // Of path tracing's product of variance and work: what light paths must do better. Merges have a bias, too, and path
-// tracing alone is stratified best (1.2 to 1.4 times better than expected in diffuse rooms).
-constexpr double margin = 0.55;
+// tracing alone is stratified best.
+constexpr double margin = 0.8;
 
 PlaceEffort place_of(const EffortCandidate& c) {
   return {static_cast<std::uint8_t>(c.connections), c.merges, c.merges_in_media, c.sees, c.goes_on};

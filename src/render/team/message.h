@@ -37,7 +37,7 @@ struct Message {
 };
 
 std::vector<std::byte> encode(const Message& message);
-/// The inverse of `encode`. Throws Error if the bytes are no message.
+/// The inverse of `encode`. Throws Error if the bytes do not form a message.
 Message decode_message(std::span<const std::byte> bytes);
 
 std::vector<std::byte> bytes_of(const std::string& text);
