@@ -140,8 +140,8 @@ struct Techniques {
   float volume_part = 1;   ///< 0 for pixels without merging in media
   float lens_part = 1;     ///< 0 for pixels without connections of light paths to the lens
   /// Eye paths go on, with all techniques, after they have scattered by a lobe that is not delta. Otherwise, they
-  /// scatter by such a lobe once, connect and merge there alone, and then follow delta lobes to lights. In scenes
-  /// without media and fibres, merging then finds all other light.
+  /// connect and merge at their first vertex with such a lobe, and in media on the way there, scatter once, and then
+  /// follow delta lobes to lights. Merging finds all other light, but on fibres.
   bool goes_on = true;
 };
 
@@ -399,7 +399,8 @@ inline TechniqueSum sum_of_merge(const SubpathEnd& at_eye, const SubpathEnd& at_
 /// of the eye path before the vertex.
 inline TechniqueSum sum_of_volume_merge(const SubpathEnd& at_eye, const SubpathEnd& at_light, float own, float all,
                                         const Techniques& t) {
-  TechniqueSum sum{.own = t.volume_part * own, .within = {.media = t.volume_part * all}};
+  TechniqueSum sum{.own = t.volume_part * own};
+  sum.made_by(at_eye.scattered).media = t.volume_part * all;
   add_ends(at_eye, at_light, t, sum);
   return sum;
 }

@@ -223,29 +223,28 @@ Shape "sphere" "float radius" .01
       EXPECT_TRUE(effort.at(Vec2(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f)).merges);
 }
 
-// A shaded lamp lights a room by way of its ceiling. Merges at later vertices share few bright photons, and cost rays.
-// The mean must not depend on where eye paths end.
-TEST(Effort, EndsEyePathsWherePhotonsFindTheLight) {
-  const Scene scene(read_scene(LANTHORN_SOURCE_DIR "/scenes/lamp-in-glass.pbrt"));
-  const RenderOptions small = [] {
-    RenderOptions options = test::options_for("auto", 64, 1);
-    options.resolution = {32, 32};
-    return options;
-  }();
-  RenderOptions by_vcm = small;
-  by_vcm.integrator = "vcm";
-  const auto mean_of = [&](const RenderOptions& options) {
+// A lamp behind glass, and a point light in fog: merges at later vertices share few bright photons, and cost rays. The
+// mean must not depend on where eye paths end.
+class ShortEyePaths : public testing::TestWithParam<const char*> {};
+
+TEST_P(ShortEyePaths, FindTheLightOfVcm) {
+  const Scene scene(read_scene(std::string(LANTHORN_SOURCE_DIR "/scenes/") + GetParam()));
+  constexpr int side = 32;
+  const auto mean_of = [&](const std::string& method) {
+    RenderOptions options = test::options_for(method, 64, 1);
+    options.resolution = {side, side};
     const Image color = *select_layer(test::render_image(scene, options), "color");
     return std::accumulate(color.pixels.begin(), color.pixels.end(), 0.0) / static_cast<double>(color.pixels.size());
   };
-  const Effort effort = effort_of(scene);
+  const Effort effort = effort_of(scene, side);
   int short_places = 0;
-  for (int x = 0; x < 32; ++x)
-    for (int y = 0; y < 32; ++y)
-      short_places += effort.at({static_cast<float>(8 * x) + 0.5f, static_cast<float>(8 * y) + 0.5f}).goes_on ? 0 : 1;
-  EXPECT_GT(short_places, 32 * 32 / 2);
-  EXPECT_NEAR(mean_of(small) / mean_of(by_vcm), 1, 0.02);
+  for (int x = 0; x < side; ++x)
+    for (int y = 0; y < side; ++y)
+      short_places += effort.at({static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f}).goes_on ? 0 : 1;
+  EXPECT_GT(short_places, side * side / 2);
+  EXPECT_NEAR(mean_of("auto") / mean_of("vcm"), 1, 0.02);
 }
+INSTANTIATE_TEST_SUITE_P(Scenes, ShortEyePaths, testing::Values("lamp-in-glass.pbrt", "ball-in-fog.pbrt"));
 
 }  // namespace
 }  // namespace lanthorn::effort_test

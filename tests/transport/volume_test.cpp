@@ -693,9 +693,9 @@ TEST(VolumeMethods, KernelsOfMergesShrinkAlike) {
   const RenderPlan plan =
       test::plan_render(scene, test::options_for("vcm:volume=point+beam+photon-beam+beams:volume-radius=0.2", 1));
   const FirstVolumeRadii radii(plan.job(scene), VcmSettings(plan.parameters, {}), nullptr);
-  const auto kernels = [&](std::uint32_t pass) { return radii.kernels(0.4, pass); };
+  const auto kernels = [&](std::uint32_t pass) { return radii.kernels(pass); };
   const VolumeMerging first = kernels(0).merging(1, 1), later = kernels(6).merging(1, 1);
-  const double shrunk = RadiusSchedule{1, 0.4}.shrink2(6);
+  const double shrunk = RadiusSchedule{1, 2.0 / 3}.shrink2(6);
   for (const auto size :
        {&VolumeMerging::point, &VolumeMerging::beam, &VolumeMerging::photon_beam, &VolumeMerging::beams})
     EXPECT_NEAR(static_cast<double>(later.*size / first.*size), shrunk, 1e-5);

@@ -23,6 +23,7 @@ constexpr double shadow = 0.5;      // of a ray
 constexpr double eye_path = 0.25;   // where there are light paths, too
 constexpr double densities = 0.35;  // of eye and light paths for each other, at each ray of an eye path
 constexpr double connection = 0.75, lookup = 0.4, merge = 0.4;
+constexpr double media_lookup = 1.5;  // along a flight, or at a scattering
 constexpr double light_path = 1.9;
 constexpr double light_ray = 0.8;      // of a ray
 constexpr double light_vertex = 0.35;  // with sorting
@@ -41,7 +42,7 @@ double work_of_ray(const Scene& scene) {
 // shrink, which makes about as much more variance.
 namespace stratification {
 constexpr double long_eye_paths = 3;
-constexpr double short_eye_paths = 4;  // few dimensions
+constexpr double short_eye_paths = 4;  // few dimensions, but in media
 }  // namespace stratification
 // Of path tracing's product of variance and work: what light paths must do better. Merges have a bias, too, and path
 // tracing alone is stratified best.
@@ -97,8 +98,9 @@ double EffortChoice::work_of(const EffortBlock& block, const EffortCandidate& c)
   double sum = ray_work_ * (of.rays + work::shadow * of.next_events);
   if (c.light_paths > 0) sum += work::eye_path * block.paths + work::densities * of.rays;
   sum += work::connection * of.connections * static_cast<double>(c.connections);
-  if (c.merges || c.merges_in_media)
-    sum += work::lookup * of.lookups + work::merge * of.merges * static_cast<double>(c.light_paths);
+  const auto light_paths = static_cast<double>(c.light_paths);
+  if (c.merges) sum += work::lookup * of.lookups + work::merge * of.merges * light_paths;
+  if (c.merges_in_media) sum += work::media_lookup * of.media_lookups + work::merge * of.media_merges * light_paths;
   sum /= block.paths;
   if (c.sees) sum += work::lens * count_per_pixel(c.light_paths / m_.scale, m_.light_vertices);
   return sum;
@@ -111,13 +113,15 @@ void EffortChoice::find_variances() {
     paths += block.paths;
   }
   const double floor = 0.01 * sqr(light / paths) + std::numeric_limits<double>::min();
+  const bool has_media = job_.scene.has_scattering_media();
   constexpr double least_part = 0.02;  // of a second moment that is variance
   for (const EffortBlock& block : m_.blocks)
     for (std::size_t k = 0; k < m_.candidates.size(); ++k) {
       const EffortBlock::Moments& m = block.moments[k];
       const EffortCandidate& c = m_.candidates[k];
       const double of_eye_paths = std::max(0.0, m.of_eye_path - m.square), of_light_paths = m.second - m.of_eye_path;
-      const double shared_out = c.goes_on ? stratification::long_eye_paths : stratification::short_eye_paths;
+      const double shared_out =
+          c.goes_on || has_media ? stratification::long_eye_paths : stratification::short_eye_paths;
       const double variance = std::max(of_eye_paths / shared_out + of_light_paths + m.rare(), least_part * m.second);
       variances_.push_back(variance / block.paths / (sqr(block.light / block.paths) + floor));
     }
@@ -157,6 +161,7 @@ void EffortChoice::count_work(EffortReport& report) const {
   }
   report.work_of_eye_path.add(all, 1 / paths);
   report.work_of_eye_path.merges /= per_pixel(1 / m_.scale);
+  report.work_of_eye_path.media_merges /= per_pixel(1 / m_.scale);
   report.light_rays = m_.light_rays / std::max(1.0, m_.light_paths);
   report.light_vertices = m_.light_vertices / std::max(1.0, m_.light_paths);
 }

@@ -28,7 +28,7 @@ std::vector<EffortCandidate> all_candidates(float scale, bool one_time, bool in_
   const auto is_possible = [&](const EffortCandidate& c) {
     const bool merges_all = merges_everywhere && c.merges && c.merges_in_media == in_media;
     return (one_time || c.connections <= 1) && (in_media || !c.merges_in_media) && (c.sees || merges_all) &&
-           (c.goes_on || (merges_all && !in_media));
+           (c.goes_on || merges_all);
   };
   std::vector<EffortCandidate> all{{0, 0, false, false, false}};
   for (const float light_paths : light_path_choices)

@@ -74,12 +74,14 @@ FirstVolumeRadii::FirstVolumeRadii(const RenderJob& job, const VcmSettings& sett
   }
 }
 
-VolumeKernels FirstVolumeRadii::kernels(double alpha, std::uint32_t pass) const {
+VolumeKernels FirstVolumeRadii::kernels(std::uint32_t pass) const {
+  // The first radius is chosen for this schedule (`first_volume_radius`).
+  const RadiusSchedule schedule{.first_radius = 1, .alpha = 2.0 / 3};
   const auto kernel_of = [&](VolumeEstimator estimator) -> std::optional<KernelIn> {
     const std::optional<float> first = of(estimator);
     if (!first) return {};
     const int dimensions = kernel_dimensions(estimator);
-    return KernelIn(dimensions, merge_kernel, *first * RadiusSchedule{1, alpha}.shrink(pass, dimensions));
+    return KernelIn(dimensions, merge_kernel, *first * schedule.shrink(pass, dimensions));
   };
   return {kernel_of(VolumeEstimator::point), kernel_of(VolumeEstimator::beam), kernel_of(VolumeEstimator::photon_beam),
           kernel_of(VolumeEstimator::beams)};

@@ -104,7 +104,7 @@ class FirstVolumeRadii {
   FirstVolumeRadii() = default;
   FirstVolumeRadii(const RenderJob& job, const VcmSettings& settings, const LightGuide* guide);
 
-  VolumeKernels kernels(double alpha, std::uint32_t pass) const;
+  VolumeKernels kernels(std::uint32_t pass) const;
 
  private:
   std::optional<float> of(VolumeEstimator estimator) const { return radii_[static_cast<std::size_t>(estimator)]; }

@@ -50,7 +50,9 @@ struct EffortCandidate {
 
 /// How often eye paths did what takes time.
 struct EyeWork {
-  double rays = 0, next_events = 0, connections = 0, lookups = 0, merges = 0;
+  double rays = 0, next_events = 0, connections = 0;
+  double lookups = 0, merges = 0;              ///< on surfaces
+  double media_lookups = 0, media_merges = 0;  ///< on flights and at scatterings
 
   void add(const EyeWork& other, double factor = 1) {
     rays += factor * other.rays;
@@ -58,6 +60,8 @@ struct EyeWork {
     connections += factor * other.connections;
     lookups += factor * other.lookups;
     merges += factor * other.merges;
+    media_lookups += factor * other.media_lookups;
+    media_merges += factor * other.media_merges;
   }
 };
 
@@ -82,6 +86,11 @@ class PathMoments {
   int set = 0;                   ///< of light paths, which the contribution comes of: 0 or 1
   float light = 0, by_walk = 0;  ///< X with the first set, and the part of it that needs no light path
 
+  /// `is_short`: a short eye path does it, too.
+  void count(double EyeWork::*what, bool is_short) {
+    ++(work.*what);
+    if (is_short) ++(short_work.*what);
+  }
   void add(float c, float TechniqueDensities::*technique) {
     if (!(c > 0) || !std::isfinite(c)) return;
     const bool is_walk = technique == &TechniqueDensities::walk;

@@ -44,7 +44,7 @@ VcmPass::VcmPass(const RenderJob& job_, std::uint32_t number_, const VcmSettings
       blocks(prepared.effort.light_paths(), job.settings.photon_block),
       light_paths(job.scene, {job.settings.seed, Stream::light, number, prepared.effort.light_paths(),
                               prepared.emission.starts(), blocks[0], blocks.count() > 1 && !draw.is_of_one_time()}),
-      volume_kernels(prepared.volume_radii.kernels(settings.alpha, number)),
+      volume_kernels(prepared.volume_radii.kernels(number)),
       sees(connects() && effort.sees()),
       beam_share(volume_kernels.uses_beams() ? share_of_beams(light_paths.total()) : 0.0f),
       bidirectional{job.view, {}, prepared.densities},

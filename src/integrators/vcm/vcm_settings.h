@@ -45,7 +45,7 @@ struct VcmSettings {
   bool chooses_effort = false;   ///< numbers of samples are those that a pilot finds best (integrators/vcm/effort.h)
   int roulette_depth = 3;
   // With merging:
-  double alpha = 1;  ///< of Knaus & Zwicker 2011: r² shrinks by (i + α) / (i + 1)
+  double alpha = 1;  ///< on surfaces r² shrinks by (i + α) / (i + 1) (Knaus & Zwicker 2011)
   RadiusChoice radius;
   EmissionChoice emission = EmissionChoice::power;
   std::array<bool, volume_estimator_count> volume{};  ///< estimators to merge by in media, by VolumeEstimator

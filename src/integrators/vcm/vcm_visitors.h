@@ -130,12 +130,11 @@ class EyeVisitor {
   EyeContinuation operator()(const SurfaceVertex& v) {
     layers_.see(v);
     subpath_.arrive(path_, v);
-    if (moments_) is_short_ = v.state.non_delta == 0;
-    if (moments_ && v.state.non_delta <= 1) ++moments_->short_work.rays;
+    count_ray(v.state);
     if (pass_.is_first_block() && hits_count(v.state) && pass_.shows(0, v.state.depth + 1))
       add_hit(v, hit_emitter(path_, bidirectional_, v, subpath_), v.state.depth > 1);
     if (!v.may_scatter) return {Continuation::stop()};
-    if (v.state.non_delta > 0 && !bidirectional_.techniques.goes_on) return {Continuation::go_on(), true};
+    if (!looks_for_light(v.state)) return {Continuation::go_on(), true};
     if (has_non_delta(v.at.bsdf)) {
       if (pass_.connects()) connect_all(v);
       if (bidirectional_.techniques.merging > 0 && merges_at(v.at)) merge(v);
@@ -145,17 +144,24 @@ class EyeVisitor {
   Continuation operator()(const MediumVertex& v) {
     layers_.see(v);
     subpath_.arrive(path_, v);
-    if (!v.may_scatter) return Continuation::stop();
+    count_ray(v.state);
+    if (!v.may_scatter || !looks_for_light(v.state)) return Continuation::stop();
     if (pass_.connects()) connect_all(v);
-    if (merges_in_media() && subpath_.coherence() > 0) pass_.volume_merges->add_at(volume_context(), v);
+    if (merges_in_media() && subpath_.coherence() > 0) {
+      count(&EyeWork::media_lookups, v.state);
+      pass_.volume_merges->add_at(volume_context(), v);
+    }
     return Continuation::go_on();
   }
   void operator()(const FlownSegment& flight) {
     if (flight.state.medium == MediumId::vacuum) return;
     layers_.see(flight);
-    if (merges_in_media()) {
+    if (merges_in_media() && looks_for_light(flight.state)) {
       subpath_.depart(flight);
-      if (subpath_.coherence() > 0) pass_.volume_merges->add_along(volume_context(), flight);
+      if (subpath_.coherence() > 0) {
+        count(&EyeWork::media_lookups, flight.state);
+        pass_.volume_merges->add_along(volume_context(), flight);
+      }
     }
     subpath_.fly(flight);
   }
@@ -166,7 +172,7 @@ class EyeVisitor {
     add_hit(v, hit_glow(path_, bidirectional_, v, subpath_), is_light && v.state.depth > 0);
   }
   void operator()(const EscapeVertex& v) {
-    if (moments_ && v.state.non_delta <= 1) ++moments_->short_work.rays;
+    count_ray(v.state);
     if (!pass_.is_first_block() || !hits_count(v.state) || !pass_.shows(0, v.state.depth + 2)) return;
     subpath_.escape(v.state, v.direction);
     add_hit(v, hit_environment(path_, bidirectional_, v, subpath_), v.state.depth > 0);
@@ -192,18 +198,24 @@ class EyeVisitor {
     if (moments_) moments_->add(flux_of(light, dispersed, path_.w), technique);
   }
 
-  // A short eye path does what is done at its first vertex with a lobe that is not delta.
-  void count(double EyeWork::*work) {
-    if (!moments_) return;
-    ++(moments_->work.*work);
-    if (is_short_) ++(moments_->short_work.*work);
+  // Whether the path connects and merges where it is.
+  bool looks_for_light(const WalkState& state) const {
+    return state.non_delta == 0 || bidirectional_.techniques.goes_on;
+  }
+
+  // Rays of the walk are counted elsewhere.
+  void count_ray(const WalkState& arrived) {
+    if (moments_ && arrived.non_delta <= 1) ++moments_->short_work.rays;
+  }
+  void count(double EyeWork::*work, const WalkState& state) {
+    if (moments_) moments_->count(work, state.non_delta == 0);
   }
 
   // Next-event estimation (TR eqs. 44, 45), and vertex connection (TR eqs. 40, 41).
   template <class Vertex>
   void connect_all(const Vertex& v) {
     const int eye_vertices = v.state.depth + 1;
-    count(&EyeWork::next_events);
+    count(&EyeWork::next_events, v.state);
     if (pass_.is_first_block() && pass_.shows(1, eye_vertices)) {
       const DirectLight direct = next_event(path_, bidirectional_, v, subpath_);
       layers_.add(class_of_next_event(v.state), technique::nee, direct.radiance, direct.dispersed);
@@ -216,7 +228,7 @@ class EyeVisitor {
         const DirectLight light = connect(path_, bidirectional_, v, subpath_, other);
         layers_.add(PathClass::indirect, technique::vc, light.radiance, light.dispersed);
         note(light.radiance, light.dispersed, &TechniqueDensities::connections);
-        count(&EyeWork::connections);
+        count(&EyeWork::connections, v.state);
       }
   }
 
@@ -239,14 +251,14 @@ class EyeVisitor {
       layers_.add(class_of_merge(v.state, photon.depth, photon.caustic), technique::vm, light, is_dispersed);
       layers_.add_bias(merge_kernel.bias_share(place.u) * light, is_dispersed);
       note(light, is_dispersed, &TechniqueDensities::merging);
-      count(&EyeWork::merges);
+      count(&EyeWork::merges, v.state);
       if (tests) tests->count(pixel, v.at.shading.to_local(place.offset), place.u);
     };
     if (tests && tests->seeks_obstacles() && pass_.is_first_block() &&
         !is_flat_and_clear(path_, v, pass_.radii.at(raster_)))
       tests->note_obstacle(pixel);
     has_merged_ = true;
-    count(&EyeWork::lookups);
+    count(&EyeWork::lookups, v.state);
     pass_.surface_merges->for_each_at(gather, raster_, pass_.max_depth(), add);
   }
   VolumeMergeContext volume_context() const {
@@ -260,7 +272,6 @@ class EyeVisitor {
   const Vec2 raster_;
   std::size_t partner_ = 0;
   bool has_merged_ = false;
-  bool is_short_ = false;  // the path has come here by delta lobes alone
   LightLayers& layers_;
   Subpath subpath_;
 };
