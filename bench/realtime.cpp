@@ -3,7 +3,7 @@
 // Frames of image-space photon mapping, stage by stage: bench_realtime SCENE [WIDTH HEIGHT [PHOTONS...]]
 // A line for each radius and number of photons, by splats and by tiles: wall-clock time, and processor time, which
 // other programs disturb less. Says so where OpenGL draws in software, and counts what the shaders of a frame run, from
-// which its time on a GPU can be estimated (docs/performance.md).
+// which its time on a GPU can be estimated (docs/lab/realtime.md).
 #include <fmt/format.h>
 
 #include <algorithm>

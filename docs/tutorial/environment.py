@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The Lanthorn authors
 # SPDX-License-Identifier: Apache-2.0
-"""An environment baked for an engine in real time: irradiance, prefiltered reflections, spherical harmonics.
+"""Bakes an environment for a real-time engine: irradiance, prefiltered reflections, spherical harmonics.
 
     python3 environment.py            # writes sky.exr, irradiance.png and specular_N.png
 """

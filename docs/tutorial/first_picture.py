@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The Lanthorn authors
 # SPDX-License-Identifier: Apache-2.0
-"""First picture: a scene from plain data, rendered until the error is below 2 %, and its layers of light.
+"""Renders a scene from plain data until the error is below 2 %, and prints the share of each layer of light.
 
     python3 first_picture.py          # writes first_picture.png, first_picture.exr
 """

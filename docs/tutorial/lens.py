@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The Lanthorn authors
 # SPDX-License-Identifier: Apache-2.0
-"""A lens optimised for its caustic: scipy finds the radius of curvature that brings sunlight to a point on the floor.
+"""Optimises a lens for its caustic: scipy finds the radius of curvature that focuses sunlight on a point of the floor.
 
 The paraxial answer is the lensmaker's: f = R / (n - 1). A thick lens with a wide aperture wants a larger radius: its
 light starts to bend above the flat face, and its rim bends it too much.

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The Lanthorn authors
 # SPDX-License-Identifier: Apache-2.0
-"""Photons looked at: where they land, what they carry, and a density estimate of ten lines.
+"""Looks at photons: where they land, what they carry, and a density estimate in ten lines.
 
     python3 photons.py                # writes photons.png: irradiance of the caustic seen from above
 """

@@ -3,8 +3,8 @@
 """Convergence of progressive photon mapping, as in the lecture: noise and bias fall at different rates.
 
 Knaus & Zwicker 2011: the radius of pass n falls as n^((alpha - 1) / 2). With alpha = 2/3 the variance of the mean of
-n passes falls as n^(-2/3), the bias as n^(-1/3), which is the square of the radius. The variance of path tracing falls as 1/n. What it calls bias here is the caustic of the spot light, which no
-path finds, however many there are.
+n passes falls as n^(-2/3), and the bias as n^(-1/3), like the square of the radius. The variance of path tracing falls
+as 1/n. The table's "bias" of path tracing is the caustic of the spot light, which no number of paths finds.
 
     python3 ppm_convergence.py        # prints the table
 """

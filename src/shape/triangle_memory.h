@@ -11,7 +11,7 @@
 namespace lanthorn {
 
 /// Bytes of Embree's tree for each triangle, and bytes beside them while it is built. Measured on height fields of one
-/// and four million triangles with Embree 3.13 (docs/performance.md, "Memory of geometry").
+/// and four million triangles with Embree 3.13 (docs/lab/memory.md, "Memory of geometry").
 constexpr double tree_bytes_per_triangle = 66, building_bytes_per_triangle = 44;
 
 /// The same of curves: for each segment, of ribbons for each of the pieces that a segment is cut into (200,000 curves

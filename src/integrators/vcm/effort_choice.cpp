@@ -16,7 +16,7 @@ namespace lanthorn {
 namespace {
 
 // Work in units of a ray of a walk with its scattering, in a scene of a few triangles. The numbers were fitted to times
-// of passes with twelve different efforts in ten scenes (docs/performance.md); they are fixed, so that choices are the
+// of passes with twelve different efforts in ten scenes (docs/lab/auto.md); they are fixed, so that choices are the
 // same on every machine.
 namespace work {
 constexpr double shadow = 0.5;      // of a ray
@@ -38,7 +38,7 @@ double work_of_ray(const Scene& scene) {
 }
 
 // Passes share the samples of eye paths out among them, so that their means vary less than if they were independent. By
-// how much was measured over 48 passes in five scenes (docs/performance.md). Light paths are shared out, too, but radii
+// how much was measured over 48 passes in five scenes (docs/lab/auto.md). Light paths are shared out, too, but radii
 // shrink, which makes about as much more variance.
 namespace stratification {
 constexpr double long_eye_paths = 3;
