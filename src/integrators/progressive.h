@@ -122,7 +122,7 @@ struct GatherVisitor : PathVisitor {
     add(vertex.state, gather(vertex, split));
     if (adds_all) {
       add_sky(path, vertex, layers);
-      add_unlit_glow(path, vertex, split, layers);
+      add_unlit_emission(path, vertex, split, layers);
     }
     return answer;
   }
@@ -165,11 +165,11 @@ struct VolumeGatherVisitor : GatherVisitor<Gather> {
     if (!walk.is_gathered()) return GatherVisitor<Gather>::operator()(vertex);
     this->layers.see(vertex);
     if (this->adds_all && walk.finds_hits()) this->layers.add_hit(vertex, hit_emitter(this->path, vertex));
-    return {walk.follow_glow(this->path)};
+    return {walk.follow_emission(this->path)};
   }
   Continuation operator()(const MediumVertex& vertex) {
     this->layers.see(vertex);
-    if (walk.is_gathered()) return walk.follow_glow(this->path);
+    if (walk.is_gathered()) return walk.follow_emission(this->path);
     if (!vertex.may_scatter) return Continuation::stop();
     // The decision of the walk comes after the numbers of next-event estimation.
     const MediumLight light = walk.scatter(this->path, vertex, this->ray_light);

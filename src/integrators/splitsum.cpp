@@ -50,7 +50,7 @@ struct SplitSumVisitor {
   LightLayers& layers;
 
   Continuation operator()(const MediumVertex&) { return Continuation::stop(); }
-  void operator()(const EmissionVertex& vertex) { layers.add_hit(vertex, hit_glow(path, vertex)); }
+  void operator()(const EmissionVertex& vertex) { layers.add_hit(vertex, hit_volume_emission(path, vertex)); }
   Continuation operator()(const SurfaceVertex& vertex) {
     layers.see(vertex);
     layers.add_hit(vertex, hit_emitter(path, vertex));

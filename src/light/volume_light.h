@@ -15,11 +15,11 @@
 namespace lanthorn {
 
 /// Where a medium emits: the density of the points at which its light paths start, constant in each block of a box.
-class GlowTable {
+class EmissionTable {
  public:
   /// `emission`: the mean emission of each block, any unit. Blocks where it is small get a twentieth of the mean, so
   /// that light is found that the means have missed. Precondition: not all are 0.
-  GlowTable(BlockGrid emission, const MediumBox& place);
+  EmissionTable(BlockGrid emission, const MediumBox& place);
 
   struct Start {
     Point position{0};
@@ -50,7 +50,7 @@ struct VolumeLight {
       .name = "volume", .has_surface = false, .is_infinite = false, .is_far = false, .is_volume = true};
 
   const Medium* medium = nullptr;
-  std::shared_ptr<const GlowTable> table;
+  std::shared_ptr<const EmissionTable> table;
   float watts = 0;    ///< luminance
   float largest = 0;  ///< radiance that no ray through it exceeds by much
 

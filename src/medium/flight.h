@@ -34,7 +34,7 @@ struct Attenuation {
 };
 
 /// Light and shade of a segment.
-struct Glow {
+struct VolumeEmission {
   Spectrum emitted;  ///< radiance of volumetric emission along the segment, at its origin
   Spectrum transmittance{1};
 };

@@ -20,7 +20,7 @@ struct HomogeneousMedium {
   Spectrum extinction(const Wavelengths& w) const { return sigma_a.evaluate(w) + sigma_s.evaluate(w); }
   /// exp(-extinction length).
   Attenuation attenuation(float length, const Wavelengths& w) const;
-  Glow glow(float length, const Wavelengths& w) const;
+  VolumeEmission emission_along(float length, const Wavelengths& w) const;
   /// Samples a distance from the mean of the channels' free-flight densities, weighted by their throughput `beta`
   /// (Wilkie et al. 2014): weights stay bounded however much the channels differ.
   Flight fly(float length, const Spectrum& beta, const Wavelengths& w, HashRng& rng) const;

@@ -54,7 +54,7 @@ Flight fly(const Medium& medium, const Segment& segment, const Spectrum& beta, c
 
 /// Volumetric emission of the segment: what an eye at its origin sees, whatever scatters on the way. Unbiased; exact if
 /// there is a closed form.
-Glow glow_along(const Medium& medium, const Segment& segment, const Wavelengths& w, HashRng& rng);
+VolumeEmission emission_along(const Medium& medium, const Segment& segment, const Wavelengths& w, HashRng& rng);
 
 /// Emission coefficient at a point: radiance per metre.
 Spectrum emission_at(const Medium& medium, const Point& p, const Wavelengths& w);

@@ -272,7 +272,8 @@ Spectrum hit_environment(const PathContext& path, const Bidirectional& pass, con
   return sum;
 }
 
-Spectrum hit_glow(const PathContext& path, const Bidirectional& pass, const EmissionVertex& v, Subpath subpath) {
+Spectrum hit_volume_emission(const PathContext& path, const Bidirectional& pass, const EmissionVertex& v,
+                             Subpath subpath) {
   const WalkState& state = v.state;
   const std::optional<std::uint32_t> index = path.scene.volume_light(state.medium);
   if (!index || state.depth == 0) return state.beta * v.radiance;

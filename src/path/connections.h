@@ -44,7 +44,8 @@ Spectrum hit_emitter(const PathContext& path, const Bidirectional& pass, const S
 Spectrum hit_environment(const PathContext& path, const Bidirectional& pass, const EscapeVertex& v,
                          const Subpath& subpath);
 /// The eye walk's ray crosses a medium that emits, after leaving the vertex where `subpath` has arrived.
-Spectrum hit_glow(const PathContext& path, const Bidirectional& pass, const EmissionVertex& v, Subpath subpath);
+Spectrum hit_volume_emission(const PathContext& path, const Bidirectional& pass, const EmissionVertex& v,
+                             Subpath subpath);
 
 /// Next-event estimation at an eye vertex. Draws from the visitor's dimensions.
 DirectLight next_event(const PathContext& path, const Bidirectional& pass, const SurfaceVertex& v,

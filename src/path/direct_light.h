@@ -82,8 +82,9 @@ inline Spectrum hit_emitter(const PathContext& path, const SurfaceVertex& vertex
   return vertex.at.light ? detail::hit_light(path, vertex, *vertex.at.light) : Spectrum();
 }
 /// The same for a medium that the walk's ray crosses. What media that are no lights emit is nobody else's and has
-/// weight 1: methods that estimate the light of non-delta lobes otherwise follow a branch for it (`add_unlit_glow`).
-Spectrum hit_glow(const PathContext& path, const EmissionVertex& vertex);
+/// weight 1: methods that estimate the light of non-delta lobes otherwise follow a branch for it
+/// (`add_unlit_emission`).
+Spectrum hit_volume_emission(const PathContext& path, const EmissionVertex& vertex);
 /// The same for infinite lights when the walk has left the scene.
 Spectrum hit_environment(const PathContext& path, const EscapeVertex& vertex);
 

@@ -20,8 +20,8 @@ struct EmissionVisitor {
     return rest();
   }
   void operator()(const EmissionVertex& vertex) {
-    const bool is_unlit = share.unlit_glow && !path.scene.volume_light(vertex.state.medium);
-    if (is_unlit || is_seen(vertex.state)) layers.add_hit(vertex, hit_glow(path, vertex));
+    const bool is_unlit = share.unlit_emission && !path.scene.volume_light(vertex.state.medium);
+    if (is_unlit || is_seen(vertex.state)) layers.add_hit(vertex, hit_volume_emission(path, vertex));
   }
   // A surface with delta and other lobes may have scattered the walk by a non-delta lobe: then its emission is not
   // added.
@@ -38,13 +38,13 @@ struct EmissionVisitor {
  private:
   // Emission that the walk reaches next is directly visible, or visible by way of delta scatterings alone.
   bool is_seen(const WalkState& state) const { return state.non_delta == 0 && state.depth <= share.scatterings; }
-  Continuation rest() const { return share.unlit_glow ? Continuation::go_on() : Continuation::stop(); }
+  Continuation rest() const { return share.unlit_emission ? Continuation::go_on() : Continuation::stop(); }
 };
 
 }  // namespace
 
 RayCounts see_emission(const RenderJob& job, const EyeShare& share, std::uint32_t pass, const FilmPass& film) {
-  const WalkLimits limits{share.unlit_glow ? job.settings.max_depth : share.scatterings, 3};
+  const WalkLimits limits{share.unlit_emission ? job.settings.max_depth : share.scatterings, 3};
   RayCounts rays =
       trace_eye_paths(job, {pass, limits}, film,
                       [&](const PathContext& path, const EyeStart& start, const PixelPlace&, LightLayers& layers) {

@@ -59,12 +59,13 @@ Passage passage(const PathContext& path, const Ray& ray, MediumId medium, std::u
   return {path.scene.visible(ray) ? Spectrum(1) : Spectrum(), medium};
 }
 
-Spectrum glow(const PathContext& path, const Ray& ray, MediumId medium, MediumId glowing, std::uint32_t dimensions) {
+Spectrum volume_emission(const PathContext& path, const Ray& ray, MediumId medium, MediumId emissive,
+                         std::uint32_t dimensions) {
   HashRng rng = path.sampler.generator(dimensions);
   Spectrum sum, transmitted(1);
   cross_interfaces(path, ray, medium, [&](MediumId here, const Segment& way, bool is_blocked) {
-    if (here == glowing) {
-      const Glow part = glow_along(path.scene.medium(here), way, path.w, rng);
+    if (here == emissive) {
+      const VolumeEmission part = emission_along(path.scene.medium(here), way, path.w, rng);
       sum += transmitted * part.emitted;
       transmitted *= part.transmittance;
     } else if (here != MediumId::vacuum && !is_blocked) {

@@ -212,7 +212,7 @@ Crossing cross_medium(const PathContext& path, Ray& ray, const Normal& begin_nor
   const Segment way{ray.origin, ray.direction, length};
   if constexpr (requires(const EmissionVertex& vertex) { visit(vertex); })
     if (is_emissive(medium)) {
-      const Spectrum emitted = glow_along(medium, way, path.w, flights).emitted;
+      const Spectrum emitted = emission_along(medium, way, path.w, flights).emitted;
       if (!emitted.is_black()) visit(EmissionVertex{state, ray.direction, emitted});
     }
   if constexpr (requires(const MediumRay& in_medium) { visit(in_medium); }) visit(MediumRay{state, way, ray.time});

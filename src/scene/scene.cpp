@@ -110,7 +110,7 @@ std::optional<std::uint32_t> Scene::volume_light(MediumId medium) const {
   const auto found = data_->volume_lights.find(medium);
   return found != data_->volume_lights.end() ? std::optional(found->second) : std::nullopt;
 }
-bool Scene::has_unlit_glow() const { return data_->has_unlit_glow; }
+bool Scene::has_unlit_emission() const { return data_->has_unlit_emission; }
 bool Scene::lies_in(MediumId medium, const Ray& ray) const { return lanthorn::lies_in(*data_, medium, ray); }
 const Medium& Scene::medium(MediumId id) const { return (*data_->media)[static_cast<std::size_t>(id) - 1]; }
 MediumInterface Scene::light_media(std::uint32_t light) const { return data_->light_media[light]; }

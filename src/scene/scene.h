@@ -90,7 +90,7 @@ class Scene {
   /// The light that a medium with volumetric emission is; none if it has no end.
   std::optional<std::uint32_t> volume_light(MediumId medium) const;
   /// True if any medium emits but is no light: only eye paths find what it emits.
-  bool has_unlit_glow() const;
+  bool has_unlit_emission() const;
   /// True if the medium is around the ray's origin; asks the surfaces along the ray.
   bool lies_in(MediumId medium, const Ray& ray) const;
   /// `id` must not be vacuum.

@@ -68,7 +68,7 @@ struct SceneData {
   BoundingSphere sphere;
   float largest_radiance = 0;
   bool has_measured_spectra = false, has_dispersion = false, has_interfaces = false, has_emissive = false;
-  bool has_unlit_glow = false;          ///< some medium that emits is no light
+  bool has_unlit_emission = false;      ///< some medium that emits is no light
   std::vector<MediumId> endless_media;  ///< around the whole scene
   bool is_edited = false;
   bool has_edited_lights = false;  ///< `lights` point to `spectra`, `light_store` and `textures`

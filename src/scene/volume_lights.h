@@ -29,7 +29,7 @@ bool lies_in(const SceneData& scene, MediumId medium, const Ray& ray);
 
 /// Finds the media that have no end, and makes a light of each medium that emits, and puts them behind all others, in
 /// place of those that are there already. Not of media that have no end, or that no surface bounds: eye paths alone
-/// find these (`has_unlit_glow`). `time`: at which moving surfaces bound media.
+/// find these (`has_unlit_emission`). `time`: at which moving surfaces bound media.
 void make_volume_lights(SceneData& scene, float time);
 
 }  // namespace lanthorn

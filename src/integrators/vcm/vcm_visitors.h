@@ -163,7 +163,7 @@ class EyeVisitor {
   void operator()(const EmissionVertex& v) {
     const bool is_light = path_.scene.volume_light(v.state.medium).has_value();
     if (!pass_.is_first_block() || (is_light && !hits_count(v.state)) || !pass_.shows(0, v.state.depth + 2)) return;
-    add_hit(v, hit_glow(path_, bidirectional_, v, subpath_), is_light && v.state.depth > 0);
+    add_hit(v, hit_volume_emission(path_, bidirectional_, v, subpath_), is_light && v.state.depth > 0);
   }
   void operator()(const EscapeVertex& v) {
     if (moments_ && v.state.non_delta <= 1) ++moments_->short_work.rays;

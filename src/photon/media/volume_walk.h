@@ -44,9 +44,9 @@ class VolumeWalk {
   }
 
   /// The answer of a gathered walk's visitor at a vertex.
-  Continuation follow_glow(const PathContext& path) {
+  Continuation follow_emission(const PathContext& path) {
     hits_are_known_ = true;
-    return path.scene.has_unlit_glow() ? Continuation::go_on() : Continuation::stop();
+    return path.scene.has_unlit_emission() ? Continuation::go_on() : Continuation::stop();
   }
 
  private:
