@@ -38,7 +38,7 @@ EmissionTable::EmissionTable(BlockGrid emission, const MediumBox& place)
 EmissionTable::Start EmissionTable::sample(const Vec2& u) const {
   const std::optional<PiecewiseConstant2d::Sample> s = blocks_.sample(u);
   if (!s) return {};
-  // Two numbers give a block and two coordinates in it. The third one is a function of both without a pattern.
+  // Two numbers determine a block and two coordinates in it. The third coordinate is a hash of both.
   const auto n = static_cast<float>(density_.resolution());
   const float third = unit_float(hash_words({std::bit_cast<std::uint32_t>(u.x), std::bit_cast<std::uint32_t>(u.y)}));
   const Vec2 in_block(s->at.x * n - std::floor(s->at.x * n), s->at.y * n * n - std::floor(s->at.y * n * n));
