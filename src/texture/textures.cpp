@@ -79,7 +79,7 @@ Spectrum spectrum_of(const Rgb& colour, SpectrumRole role, const Wavelengths& w)
 float noise_detail(int octaves) { return 0x1p-4f / std::pow(1.99f, static_cast<float>(octaves - 1)); }
 
 Error too_deep(const SourceLocation& location) {
-  return {location, "textures name each other more than " + std::to_string(TextureGraph::most.depth) + " deep"};
+  return {location, "textures are nested more than " + std::to_string(TextureGraph::most.depth) + " deep"};
 }
 
 // Lookups of a node itself, without its inputs.
@@ -213,7 +213,7 @@ struct TextureGraph::Compiler {
     if (cost.depth > most.depth) throw too_deep(location);
     if (cost.lookups > most.lookups)
       throw Error(location, "a value of this texture takes more than " + std::to_string(most.lookups) +
-                                " lookups: each texture counts as often as others name it");
+                                " lookups: a texture counts once for each reference to it");
     Input result;
     result.node = static_cast<std::uint32_t>(nodes.size());
     nodes.push_back(std::move(node));
