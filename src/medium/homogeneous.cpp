@@ -11,8 +11,8 @@ namespace {
 
 constexpr int channels = 4;
 
-// exp(-extinction length). Handles infinite lengths, for which a product with zero extinction would be undefined. Where
-// fog is grey, all components are the same.
+// exp(-extinction length). Handles infinite lengths, for which a product with zero extinction would be undefined.
+// Reuses the exponential of equal components, as in grey fog.
 Spectrum attenuated(const Spectrum& extinction, float length) {
   Spectrum result;
   for (int i = 0; i < channels; ++i) {

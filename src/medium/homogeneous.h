@@ -16,7 +16,7 @@ struct HomogeneousMedium {
   SpectrumCurve emission;          ///< radiance of an infinitely deep medium without scattering
   HenyeyGreenstein phase;
 
-  /// Per metre.
+  /// Extinction coefficient, per metre.
   Spectrum extinction(const Wavelengths& w) const { return sigma_a.evaluate(w) + sigma_s.evaluate(w); }
   /// exp(-extinction length).
   Attenuation attenuation(float length, const Wavelengths& w) const;

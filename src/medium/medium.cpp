@@ -93,7 +93,7 @@ bool scatters(const Medium& medium) {
 
 namespace {
 
-// Of coefficients that vary with wavelength alone.
+// For coefficients that vary with wavelength only.
 float albedo_of(const SpectrumCurve& sigma_a, const SpectrumCurve& sigma_s) {
   float largest = 0;
   const auto see = [&](float absorbed, float scattered) {

@@ -90,9 +90,9 @@ Flight track_flight(const Source& source, const Segment& segment, const Spectrum
   return flight;
 }
 
-/// Emission that the segment sends to its origin, and what it transmits: one sample of the emission in each block that
-/// the segment crosses, with the transmittance to it by ratio tracking. Where a flame is thin, tracking alone would
-/// meet it too rarely.
+/// Emission of the segment as seen from its origin, and its transmittance. Takes one sample of the emission in each
+/// block that the segment crosses, with the transmittance to it by ratio tracking. Tracking alone would rarely meet a
+/// thin flame.
 template <class Source>
 VolumeEmission track_emission(const Source& source, const Segment& segment, const Wavelengths& w, HashRng& rng) {
   VolumeEmission result;
@@ -115,9 +115,8 @@ VolumeEmission track_emission(const Source& source, const Segment& segment, cons
   return result;
 }
 
-/// Ratio tracking (Novák et al. 2014). Calls `step(t, estimate)`
-/// at each collision: `estimate` is that of the transmittance from there to the next collision. It is unbiased at every
-/// point of the segment.
+/// Ratio tracking (Novák et al. 2014). Calls `step(t, estimate)` at each collision: `estimate` is the transmittance
+/// from there to the next collision, unbiased at every point of the segment.
 template <class Source, class Step>
 void track_transmittance(const Source& source, const Segment& segment, const Wavelengths& w, HashRng& rng,
                          Step&& step) {
