@@ -87,7 +87,7 @@ Passage passage_to(const PathContext& path, const Vertex& vertex, const NextEven
   return passage(path, ray, medium, dimensions);
 }
 
-// Only the part of the sample's light that arrives.
+// Multiplies the sample's radiance by the fraction that arrives; nullopt if none does.
 template <class Vertex>
 std::optional<NextEvent> visible(const PathContext& path, const Vertex& vertex, std::optional<NextEvent> e) {
   if (!e) return e;

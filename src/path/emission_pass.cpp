@@ -50,7 +50,7 @@ RayCounts see_emission(const RenderJob& job, const EyeShare& share, std::uint32_
                       [&](const PathContext& path, const EyeStart& start, const PixelPlace&, LightLayers& layers) {
                         walk_from_camera(path, start.camera, job.view.medium, EmissionVisitor{path, share, layers});
                       });
-  rays.eye = {};  // paths to emission alone: the limit cuts off nothing of what they look for
+  rays.eye = {};  // these paths look for emission only, so the depth limit cuts off none of their light
   return rays;
 }
 

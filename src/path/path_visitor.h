@@ -52,7 +52,7 @@ struct PathVisitor {
   }
 };
 
-/// Collects the emission of media that are no lights, along a branch from a vertex where photons account for all other
+/// Collects the emission of media that are not lights, along a branch from a vertex where photons account for all other
 /// light.
 struct UnlitEmissionVisitor {
   const PathContext& path;
@@ -81,8 +81,8 @@ inline void add_sky(const PathContext& path, const SurfaceVertex& vertex, LightL
   layers.add_hit(sky, hit_environment(path, sky));
 }
 
-/// Adds the emission of media that are no lights that a vertex's wide lobes scatter to the eye. `path` is that of the
-/// walk that reached the vertex.
+/// Adds the emission of media that are not lights, as far as a vertex's wide lobes scatter it to the eye. `path`: the
+/// path of the walk that reached the vertex.
 inline void add_unlit_emission(const PathContext& path, const SurfaceVertex& vertex, const LobeSplit& split,
                                LightLayers& layers) {
   if (!path.scene.has_unlit_emission()) return;

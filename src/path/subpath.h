@@ -36,7 +36,7 @@ struct PathStart {
   bool is_eye() const { return camera != nullptr; }
 };
 
-/// How a subpath leaves its last vertex. From this follow its densities wherever it could scatter on its way.
+/// How a subpath leaves its last vertex. Its densities at any point of the way where it could scatter follow from this.
 struct Departure {
   SubpathDensities densities;  ///< after `SubpathDensities::scatter`; before the first vertex 0
   float collision = 1;         ///< at the last vertex (`FlightDensity`)
@@ -53,8 +53,8 @@ struct VolumeArrival {
   FlightDensity flight;
 };
 
-/// If the subpath that leaves like this scattered at p, whose density of collisions is `collision`, after flying
-/// through `optical_depth` more. `start` is needed for the first vertex only.
+/// Densities of a subpath that leaves like `departure`, if it scattered at `p` after flying through `optical_depth`
+/// more. `collision`: density of collisions at p, per metre. `start` is needed for the first vertex only.
 VolumeArrival arrive_in_medium(const Scene& scene, const PathStart& start, const Departure& departure,
                                const Techniques& techniques, const Point& p, float time, float optical_depth,
                                float collision);

@@ -38,7 +38,7 @@ Passage pass_media(const PathContext& path, const Ray& ray, MediumId medium, Has
     return !result.transmittance.is_black();
   };
   if (!path.scene.has_interfaces()) {
-    // All of the way is in one medium, and whatever is on it blocks it.
+    // The whole way lies in one medium, and any surface on it blocks.
     ++path.counts.shadow;
     if (!path.scene.visible(ray) || !attenuate(medium, {ray.origin, ray.direction, ray.t_max})) return {};
     return result;
