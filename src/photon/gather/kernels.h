@@ -29,7 +29,7 @@ enum class KernelShape : std::uint8_t {
 /// Half height / radius of the disc that is searched for photons. Photons farther from the tangent plane belong to
 /// another surface.
 inline constexpr float search_flatness = 0.2f;
-/// True if what is `height` (m) over a tangent plane is near enough to it for a disc of radius `reach` (m).
+/// True if a point at `height` (m) over a tangent plane is near enough to it for a disc of radius `reach` (m).
 inline bool is_in_disc(float height, float reach) { return std::fabs(height) <= search_flatness * reach; }
 
 /// A radial kernel on the disc of its support radius R. `profile` is dimensionless with mean 1 over the disc, so

@@ -70,7 +70,7 @@ class PilotPhotons {
       sum += flux_[neighbour.slot];
       greatest = std::fmax(greatest, flux_[neighbour.slot]);
     }
-    // One photon in 24 may be there by chance. Two are the rule.
+    // One strong photon among 24 may be chance, two are not: the strongest is left out of the mean.
     point.flux = (sum - greatest) / static_cast<float>(found.size() - 1);
     point.distance2 = found.front().dist2 * classes.area_factor(point.flux);
   }

@@ -84,8 +84,8 @@ std::vector<double> shares_of_direct_light(const RenderJob& job) {
   return shares;
 }
 
-// Whether lights that matter to the picture would get next to no photons by power, and the picture needs photons: there
-// are mirrors or clear glass.
+// True if lights that matter to the picture would get next to no photons by power, and the picture needs photons
+// because there are mirrors or clear glass.
 bool strong_lights_hide_others(const RenderJob& job) {
   if (!has_specular_surfaces(job.scene)) return false;
   constexpr double next_to_none = 1e-3;  // of the photons that a share of the picture's light deserves
