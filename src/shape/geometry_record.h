@@ -56,7 +56,7 @@ struct alignas(64) GeometryRecord {
   bool emits = false;
   bool wants_tangents = false;   ///< the material is anisotropic or has a relief
   bool wants_footprint = false;  ///< the material averages textures over footprints
-  bool wants_uv = false;         ///< something depends on the place; cheap texture coordinates are there anyway
+  bool wants_uv = false;         ///< some parameter depends on the place; cheap texture coordinates are computed anyway
   bool has_normals = false;
   bool has_uvs = false;
   bool has_colors = false;
