@@ -477,7 +477,7 @@ void TextureGraph::want_levels(const SpectrumInput& input) {
     for (ImageFile& file : images_) {
       if (file.texels.get() != input_image.image) continue;
       file.wants_levels = true;
-      // Another graph's image may have been read without them. It stays for those who look it up already.
+      // A shared image of another graph may have been read without levels. It stays for the lookups of that graph.
       const bool lacks_levels =
           file.is_loaded && file.texels->levels() == 1 &&
           static_cast<std::size_t>(file.texels->width()) * static_cast<std::size_t>(file.texels->height()) >=
