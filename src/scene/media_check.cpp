@@ -117,12 +117,12 @@ std::optional<description::Warning> warning_of(const Scene& scene, const MediaCo
   if (conflict.light)
     return description::Warning{scene.light_location(*conflict.light),
                                 "light from here starts in " + claimed + ", but rays get here through " + around +
-                                    ": give the light the MediumInterface of what is around it"};
+                                    ": give the light the MediumInterface of its surroundings"};
   const std::optional<SourceLocation> location = scene.locate(conflict.ray);
   if (!location) return {};
-  return description::Warning{*location,
-                              "rays get here through " + around + " where the shape says that " + claimed +
-                                  " is: is it inside out, or does what is around it, or the camera, lack a medium?"};
+  return description::Warning{
+      *location, "rays get here through " + around + ", but the shape declares " + claimed +
+                     " here: is the shape inside out, or does a surrounding shape, or the camera, lack a medium?"};
 }
 
 }  // namespace

@@ -25,7 +25,7 @@ bool is_finite(const SurfaceGeometry& s) {
   return std::isfinite(sum.x + sum.y + sum.z) && std::isfinite(s.uv.x + s.uv.y);
 }
 
-// What of the surface a footprint of `width` metres across the ray covers at least.
+// The part of the surface that a footprint `width` metres wide across the ray covers at least.
 Footprint footprint_of(const SurfaceGeometry& s, float width) {
   const float u = std::sqrt(length_squared(s.dpdu)), v = std::sqrt(length_squared(s.dpdv));
   return u > 0 && v > 0 ? Footprint{{width / u, width / v}} : Footprint{};

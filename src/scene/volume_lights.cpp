@@ -68,7 +68,7 @@ Bounds bounds_of_surfaces(const Geometry& geometry, MediumId medium) {
   return all;
 }
 
-// What is measured of a medium's emission.
+// Measurements of a medium's emission.
 struct MeasuredEmission {
   BlockGrid blocks;     // mean emission, of all channels together
   float watts = 0;      // luminance
@@ -112,7 +112,7 @@ std::optional<VolumeLight> make_volume_light(const SceneData& scene, MediumId id
   const Medium& medium = (*scene.media)[static_cast<std::size_t>(id) - 1];
   const std::optional<MediumBox> place = place_of(scene, id);
   if (!place) return {};
-  // Where the emission does not vary, only the shape of the medium has to be found.
+  // If the emission is uniform, only the shape of the medium has to be found.
   const bool is_even = std::holds_alternative<HomogeneousMedium>(medium);
   MeasuredEmission measured = measure(scene, id, *place, is_even ? 16 : 32, time);
   if (!(measured.watts > 0)) return {};
