@@ -17,7 +17,7 @@ namespace lanthorn {
 /// The sums of a round. A process that has rendered no pass of the round has none.
 using RoundSums = std::optional<RenderState>;
 
-/// The same as bytes of a state; empty if there are none. `name` is that of the process in messages.
+/// The same sums as the bytes of a state; empty if there are none. `name`: of the process, in messages.
 struct PackedSums {
   std::vector<std::byte> bytes;
   std::string name;
