@@ -23,8 +23,8 @@ float degrees_between(const Direction& a, const Direction& b) {
   return std::atan2(glm::length(cross(a, b)), dot(a, b)) * 180 / pi;
 }
 
-// Turns the camera around `centre`. `moves`: a direction from there, and where it shall go with a hand that goes to
-// the right (`to_right`) or down (`to_lower`): signs of rotations depend on whether the camera mirrors.
+// Turns the camera around `centre`. `arm`: a direction from there. `to_right`, `to_lower`: where it goes when the
+// pointer moves right or down; they fix the signs of rotations, which depend on whether the camera mirrors.
 struct Turn {
   Point centre;
   Direction arm;
@@ -80,7 +80,7 @@ Direction camera_up_of(const CameraPose& pose) { return axis(pose, {0, 1, 0}); }
 Point pivot_of(const CameraPose& pose) { return eye_of(pose) + pose.distance * forward_of(pose); }
 
 CameraPose orbit(const CameraPose& pose, const Vec2& degrees) {
-  // What is before the pivot follows the hand if the eye goes the other way.
+  // What lies before the pivot follows the pointer if the eye moves the other way.
   return turned(pose, degrees, {pivot_of(pose), -forward_of(pose), -right_of(pose), camera_up_of(pose)});
 }
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// A scene whose lights and objects are changed by hand.
+// A scene whose lights and objects the user edits.
 #pragma once
 
 #include <map>
@@ -39,7 +39,8 @@ class EditedScene {
   const SceneEdits& edits() const { return edits_; }
   bool is_edited() const { return !edits_.lights.empty() || !edits_.area_lights.empty() || !edits_.instances.empty(); }
 
-  /// Takes over colour, strength and whether it is on. Throws Error if the scene refuses it, and stays as it was.
+  /// Sets a light's colour and strength, and whether it is on. Throws Error if the scene rejects this; nothing then
+  /// changes.
   void set_light(std::size_t row, const LightRow& values);
   /// Throws Error for lights without a position.
   void move_light(std::size_t row, const Vec3& metres);

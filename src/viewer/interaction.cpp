@@ -99,7 +99,7 @@ bool Interaction::move_camera(const Input& input, const View& view) {
   const CameraPose before = pose_;
   const Vec2 degrees = degrees_per_picture / rows(view) * input.moved;
   if (drag_ == Drag::orbit) pose_ = orbit(pose_, degrees);
-  if (drag_ == Drag::turn) pose_ = turn(pose_, -0.5f * degrees);  // what is seen follows the hand
+  if (drag_ == Drag::turn) pose_ = turn(pose_, -0.5f * degrees);  // what is seen follows the pointer
   if (drag_ == Drag::pan) {
     const Vec3 way = way_between(view, forward_of(pose_), pose_.distance, input.pointer - input.moved, input.pointer);
     pose_ = pan(pose_, {dot(way, right_of(pose_)), -dot(way, camera_up_of(pose_))});

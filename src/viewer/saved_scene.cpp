@@ -73,7 +73,7 @@ std::size_t end_of_directive(std::string_view text, std::size_t at) {
   return end;
 }
 
-// As a float where it is one: with fewer digits.
+// Written as a float if it is one, which takes fewer digits.
 std::string text_of(double x) {
   const auto single = static_cast<float>(x);
   return static_cast<double>(single) == x ? fmt::format("{}", single) : fmt::format("{}", x);
