@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// What the lights see: the bounce maps of image-space photon mapping (McGuire & Luebke 2009), which are shadow maps,
-// too.
+// The lights' views of the scene: the bounce maps of image-space photon mapping (McGuire & Luebke 2009), which are
+// shadow maps, too.
 #pragma once
 
 #include <vector>

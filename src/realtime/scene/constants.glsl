@@ -46,7 +46,7 @@ const uint flag_traced = 8u;     // eye paths of the CPU find all of its light (
 const uint flag_lobes = 16u;     // `through` and f90 come from the next layer
 const uint flag_normals = 32u;   // normals come from the last of its layers
 const uint flag_stand_in = 64u;  // traced, but the shader's closure may stand for it while the eye moves
-const uint flag_glass = 128u;    // nothing but delta lobes, or lobes that shaders do not know
+const uint flag_glass = 128u;  // only delta lobes, or lobes that shaders do not support
 
 const uint no_layer = 0xffffffffu;  // of the surface textures: the surface does not vary
 

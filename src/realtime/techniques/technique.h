@@ -31,13 +31,13 @@ class TechniqueChoice;
 using VertexLight =
     std::function<void(const SurfaceVertex& vertex, const LobeSplit& split, int max_depth, LightLayers& layers)>;
 
-/// What a technique makes of scene and GPU outlives a frame. All that a frame shows is a function of its context.
+/// A technique keeps data made of scene and GPU between frames. What a frame shows is a function of its context alone.
 class Technique {
  public:
   virtual ~Technique() = default;
 
-  /// Called when the lights' maps are drawn and before the G-buffer is, which the GPU may draw while the CPU waits for
-  /// what this has begun.
+  /// Called after the lights' maps are drawn and before the G-buffer, which the GPU may draw while the CPU waits for
+  /// the work begun here.
   virtual void prepare(const FrameContext& /*frame*/) {}
   /// Adds the technique's light to the layers of the frame. G-buffer and direct light are drawn.
   virtual void draw(const FrameContext& frame) = 0;
@@ -45,13 +45,13 @@ class Technique {
   virtual VertexLight light_at_vertices(const FrameContext& /*frame*/) { return {}; }
 };
 
-/// What a technique makes its programs of.
+/// The sources of a technique's shader programs.
 struct TechniqueShaders {
   const gl::ShaderFiles& files;
   const std::string& surfaces;  ///< lines for shaders that include bsdf.glsl (`closure_defines`)
 };
 
-/// What a technique wants of the rest of the frame.
+/// A technique's requirements on the rest of the frame.
 struct FramePlan {
   EyePaths eye_paths = all_eye_paths;
   EyePaths eye_paths_in_motion = needed_eye_paths;  ///< with FrameSettings::has_stand_ins
@@ -74,8 +74,7 @@ struct TechniqueInfo {
   ParameterValues (*fit_render)(const RenderJob& job) = nullptr;
   /// Throws Error for values that do not go together.
   void (*check)(const TechniqueChoice& choice) = nullptr;
-  /// For the user: what of this scene it shows differently than the offline methods do. `gpu_scene`: null before there
-  /// is one.
+  /// Differences from the offline methods in this scene, as text for the user. `gpu_scene`: null before there is one.
   std::vector<std::string> (*limitations)(const Scene& scene, const GpuScene* gpu_scene) = nullptr;
 };
 

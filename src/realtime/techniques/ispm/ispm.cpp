@@ -27,7 +27,7 @@ float fitting_radius(const Scene& scene, const View& view) {
   return radius_share * seen_radius(scene, view);
 }
 
-/// Of the frame; the radius depends on its number alone (Knaus & Zwicker 2011).
+/// The photon volume of the frame; its radius depends on the frame's number alone (Knaus & Zwicker 2011).
 PhotonVolume photon_volume(const FrameContext& frame) {
   const TechniqueChoice& choice = frame.settings.technique;
   const float first =
@@ -39,7 +39,7 @@ PhotonVolume photon_volume(const FrameContext& frame) {
 }
 
 PhotonGather gather_of(const FrameContext& frame) {
-  // Triangles take software long.
+  // Software OpenGL is slow at triangles.
   const std::string& gather = frame.settings.technique.text("gather");
   return gather == "tiles" || (gather == "auto" && frame.is_software) ? PhotonGather::tiles : PhotonGather::splat;
 }
@@ -54,7 +54,7 @@ class ImageSpacePhotons final : public Technique {
   VertexLight light_at_vertices(const FrameContext& frame) override;
 
  private:
-  /// What photons depend on. While only the eye moves, they lie where they lay.
+  /// What photons depend on. They are kept while only the eye moves.
   struct Source {
     std::uint64_t light_maps = 0;
     int max_depth = 0;
@@ -83,7 +83,7 @@ void ImageSpacePhotons::prepare(const FrameContext& frame) {
 
 void ImageSpacePhotons::follow(const FrameContext& frame) {
   const FrameSettings& s = frame.settings;
-  // What was asked of the GPU so far is done meanwhile.
+  // Meanwhile the GPU does the work that it was given so far.
   frame.timer.end();
   glFlush();
   const auto begin = std::chrono::steady_clock::now();

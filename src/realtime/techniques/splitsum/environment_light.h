@@ -16,8 +16,8 @@ class EnvironmentLight {
  public:
   explicit EnvironmentLight(const gl::ShaderFiles& files);
 
-  /// Bakes the maps, if the environment is another than before; true if so. A GPU bakes them itself; where the CPU
-  /// draws, it bakes them, too.
+  /// Bakes the maps if the environment has changed; returns whether it has. A GPU bakes them itself; with software
+  /// OpenGL the CPU does.
   bool prepare(const Scene& scene);
   /// Uses the program split_sum.frag.glsl with its maps. G-buffer and scene must be bound.
   void use(const WindowRays& rays) const;

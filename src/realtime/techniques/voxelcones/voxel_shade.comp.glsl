@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Light that the surfaces in the voxels scatter: that of the lights' views, and, after the first bounce, that of the other
-// voxels by cones.
+// Light that the surfaces in the voxels scatter: from the lights' views, and, after the first bounce, from other voxels
+// by cones.
 #include "shadow_maps.glsl"
 #include "voxel_sides.glsl"
 #include "voxels.glsl"
