@@ -39,13 +39,13 @@ FilmContents progressive_layers(const Scene& scene);
 /// Message about light of the scene that photon methods with this estimator do not find. Empty if they find all light.
 std::string photon_limitation(const Scene& scene, VolumeEstimator estimator);
 
-/// The photons of a pass or of one of its blocks, with what the eye paths of the pass share.
+/// The photons of a pass or of one of its blocks, with the data that the eye paths of the pass share.
 struct PassPhotons {
   PassDraw draw;
   std::vector<PhotonMap<HashGrid>> maps;  ///< by class (`FluxClasses`)
   std::optional<VolumeGather> volume;     ///< none if there are no photons in media
   PassReport report;                      ///< of the photons' part of the pass
-  bool are_first = true;                  ///< of the pass's blocks
+  bool are_first = true;                  ///< this is the first block of the pass
 
   /// The sum of `gather(map, flux_class)` over the classes of photons.
   template <class Gather>
@@ -182,8 +182,8 @@ struct VolumeGatherVisitor : GatherVisitor<Gather> {
 template <class Gather>
 VolumeGatherVisitor(GatherVisitor<Gather>, VolumeWalk) -> VolumeGatherVisitor<Gather>;
 
-/// Calls `follow(visitor)` with the visitor of an eye path for these photons: scenes without media pay nothing for
-/// those that have some.
+/// Calls `follow(visitor)` with the visitor of an eye path for these photons, so that scenes without media have no
+/// overhead.
 template <class Gather, class Follow>
 void with_gather_visitor(const PassPhotons& photons, const PathVisitor& base, const Gather& gather, Follow&& follow) {
   const GatherVisitor<Gather> visitor{base, gather, photons.are_first};

@@ -84,7 +84,7 @@ NarrowContinuation TwoPassVisitor::read_map(const SurfaceVertex& vertex) {
   return answer;
 }
 
-// The map's light, less what the walk finds.
+// The map's light, without the part that the walk finds.
 void TwoPassVisitor::add_photons(const SurfaceVertex& vertex, const LobeSplit& split) {
   add_unlit_emission(path, vertex, split, layers);
   if (context_.reverse != nullptr) {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// What vertex connection and merging does at the vertices of light paths and of eye paths.
+// The visitors of vertex connection and merging: for vertices of light paths and of eye paths.
 #pragma once
 
 #include <cstdint>
@@ -176,7 +176,7 @@ class EyeVisitor {
   bool has_merged() const { return has_merged_; }
 
  private:
-  // Merging alone leaves to the walk what no photon can bring: light seen directly or through delta scatterings.
+  // With merging alone, the walk finds the light that no photon brings: seen directly or through delta scatterings.
   bool hits_count(const WalkState& state) const { return pass_.connects() || state.non_delta == 0; }
 
   bool merges_in_media() const { return pass_.volume_merges && bidirectional_.techniques.volume_part > 0; }
@@ -192,7 +192,7 @@ class EyeVisitor {
     if (moments_) moments_->add(flux_of(light, dispersed, path_.w), technique);
   }
 
-  // A short eye path does what is done at its first vertex with a lobe that is not delta.
+  // Counts an operation; also for the short eye path, which does those up to its first vertex with a non-delta lobe.
   void count(double EyeWork::*work) {
     if (!moments_) return;
     ++(moments_->work.*work);
@@ -265,7 +265,7 @@ class EyeVisitor {
   Subpath subpath_;
 };
 
-/// Traces the light paths of a pass. `film`: where light will be splatted, if it will; its memory is fetched before.
+/// Traces the light paths of a pass. `film`: receives splats, and is prefetched; null if there will be none.
 template <class See>
 RayCounts trace_light_paths(const VcmPass& pass, const FilmPass* film, const See& see) {
   pass.vertices.begin(pass.light_paths.chunk_count());
