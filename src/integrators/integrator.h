@@ -99,7 +99,7 @@ class Integrator {
   virtual std::string limitation(const Scene& /*scene*/) const { return {}; }
   /// Message about what the preparation has found in this job, for the user. Empty if there is nothing to say.
   virtual std::string remark() const { return {}; }
-  /// What the preparation has found in this job, in numbers: the text of a JSON object for reports. Empty if nothing.
+  /// The findings of the preparation in this job, in numbers: the text of a JSON object for reports. Empty if none.
   virtual std::string findings() const { return {}; }
   /// The film's layers for this scene and whether the method splats. Default: the layers of the path classes.
   virtual FilmContents film_contents(const Scene& scene) const { return path_layers(scene); }

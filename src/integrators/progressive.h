@@ -44,7 +44,7 @@ struct PassPhotons {
   PassDraw draw;
   std::vector<PhotonMap<HashGrid>> maps;  ///< by class (`FluxClasses`)
   std::optional<VolumeGather> volume;     ///< none if there are no photons in media
-  PassReport report;                      ///< of the photons' part of the pass
+  PassReport report;                      ///< report on the photons' part of the pass
   bool are_first = true;                  ///< this is the first block of the pass
 
   /// The sum of `gather(map, flux_class)` over the classes of photons.

@@ -115,7 +115,7 @@ class SplitSumShader final : public Integrator {
   std::set<std::string> missing_;
 };
 
-// By one eye path in a grid of the window.
+// Collected along one eye path per point of a grid in the window.
 std::set<std::string> SplitSumShader::missing_of(const RenderJob& job) {
   constexpr int grid = 64;
   const PixelWindow& window = job.view.window;

@@ -167,7 +167,7 @@ struct LightBvh::Builder {
   };
   static constexpr std::size_t buckets = 12;
   static constexpr std::size_t most_weighed =
-      1024;  ///< at most so many leaves of a node, equally spaced, decide on its split
+      1024;  ///< most leaves of a node that decide on its split; equally spaced ones are taken
 
   LightBvh& bvh;
   std::vector<Leaf> leaves;

@@ -145,9 +145,9 @@ struct Techniques {
   bool goes_on = true;
 };
 
-/// What weights need to know of a subpath up to a vertex: d_VCM = `end` + c `vcm` and d_VC = `ends` + c `vc` + `media`
-/// + η `vm`, with c light paths that each vertex is connected to. The `end` of a light path are next-event estimation
-/// and the eye path's hit, that of an eye path is the lens.
+/// The data of a subpath up to a vertex that MIS weights need: d_VCM = `end` + c `vcm` and d_VC = `ends` + c `vc` +
+/// `media` + η `vm`, where each vertex is connected to c light paths. The `end` of a light path is next-event
+/// estimation and the eye path's hit; the `end` of an eye path is the lens.
 struct VertexDensities {
   float end = 0;    ///< at the first vertex: next-event estimation, or the lens
   float ends = 0;   ///< the same at a later vertex, and the hit of the light
@@ -163,8 +163,8 @@ struct Scattering {
   float pdf = 0;            ///< of the direction, per solid angle
   float reverse = 0;        ///< with which the other walk goes on to the vertex before, per solid angle
   bool merges = false;      ///< photons are merged at the vertex, on a surface
-  float merging_media = 0;  ///< of merging at the vertex in a medium, what is known before the next flight
-  float coherence = 1;      ///< of a light path's vertex, by which merging in media before it counts
+  float merging_media = 0;  ///< the part of merging at the vertex in a medium that is known before the next flight
+  float coherence = 1;      ///< of a light path's vertex: the weight of merging in media before it
 };
 
 /// The same during a walk.
@@ -173,7 +173,8 @@ struct SubpathDensities : VertexDensities {
 
   float vm_apart = 0;  ///< all ways to merge on surfaces at vertices before the last one, over η
 
-  /// Of an eye path (TR eqs. 31-33), before the geometry of its first vertex. `pdf`: of its first ray, per solid angle.
+  /// Start of an eye path (TR eqs. 31-33), before the geometry of its first vertex. `pdf`: of its first ray, per solid
+  /// angle.
   static SubpathDensities from_lens(float light_paths, float pdf) {
     SubpathDensities result;
     result.end = light_paths / pdf;
@@ -269,7 +270,7 @@ struct TechniqueSum {
     return longer ? beyond : within;
   }
   float all() const { return within.all() + beyond.all(); }
-  /// Of the balance heuristic.
+  /// Weight of the balance heuristic.
   float weight(const Techniques& t) const { return own / (t.goes_on ? all() : within.all()); }
 };
 
@@ -279,9 +280,9 @@ struct SubpathEnd {
   float reverse = 0;       ///< with which the other walk goes on from here to the vertex before, per solid angle
   bool scattered = false;  ///< the subpath has scattered before by a lobe that is not delta
   float coherence = 1;     ///< at a light path: of the eye path up to and including this vertex
-  float TechniqueDensities::*end = nullptr;  ///< what it ends with: `lens` of an eye path, `walk` of a light path
+  float TechniqueDensities::*end = nullptr;  ///< end of the subpath: `lens` of an eye path, `walk` of a light path
 
-  /// Adds `factor` times r d_VC: all techniques that begin at vertices before, but for the connection to this one.
+  /// Adds `factor` times r d_VC: all techniques that begin at earlier vertices, except the connection to this one.
   void add_earlier(float factor, const Techniques& t, TechniqueDensities& sum) const {
     const float back = factor * reverse;
     sum.*end += back * part_of_end(t) * densities.ends;

@@ -116,7 +116,7 @@ void Subpath::depart(const WalkState& state, const Direction& direction) {
     merging = coherence_ * merged.a;
     departure_.over_pass = coherence_ * merged.b / state.pdf_direction;
   }
-  // The coherence of an eye path counts for what follows, that of a light path's vertices for what was before.
+  // The coherence of an eye path applies to later vertices, the coherence of a light path's vertex to earlier ones.
   if (start_.is_eye()) coherence_ = coherence_beyond();
   departure_.densities.scatter({.cos = cos,
                                 .pdf = state.pdf_direction,

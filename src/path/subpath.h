@@ -44,7 +44,7 @@ struct Departure {
   float optical_depth = 0;     ///< flown since then
   Point from{0};               ///< the last vertex
   Direction direction{0, 0, 1};
-  bool is_first = true;  ///< there is no vertex yet: from the lens or the light
+  bool is_first = true;  ///< the subpath has no vertex yet, and leaves the lens or the light
 };
 
 /// Densities of a subpath that scatters in a medium, on its way.
@@ -91,9 +91,9 @@ class Subpath {
   const SubpathDensities& densities() const { return departure_.densities; }
   /// The same at the first vertex of a light path, if the light is direct.
   SubpathDensities densities_of_direct_light() const;
-  /// Of the flight to the last vertex.
+  /// Density of the flight to the last vertex.
   const FlightDensity& flight() const { return flight_; }
-  /// Of an eye path: share of merging in media that counts at the last vertex, or on the flight after `depart`.
+  /// For an eye path: share of merging in media that counts at the last vertex, or on the flight after `depart`.
   float coherence() const { return coherence_; }
   /// The same where the path goes on from the last vertex, but not by a delta lobe.
   float coherence_beyond() const { return coherence_ * previous_.coherence; }

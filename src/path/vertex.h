@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// What a walk passes to its visitor: vertices on surfaces and in participating media, and the escape from the scene at
-// its end.
+// The events that a walk passes to its visitor: vertices on surfaces and in participating media, and the escape from
+// the scene at its end.
 #pragma once
 
 #include <cmath>

@@ -31,7 +31,7 @@ struct FluxClasses {
   /// `flux`: of a photon, times the light paths of its pass, W.
   int of(float flux) const {
     if (!(reference > 0)) return 0;
-    constexpr float large = 0x1p30f;  // the exponent of an infinite flux is no number
+    constexpr float large = 0x1p30f;  // bounds the exponent: an infinite flux has none
     const float ratio = std::min(flux / reference, large);
     return ratio > 1 ? std::min(most - 1, (std::ilogb(ratio) + 2) / 4) : 0;
   }

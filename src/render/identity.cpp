@@ -125,7 +125,7 @@ std::uint64_t hash_of(const SceneDescription& scene) {
                      std::bit_cast<std::uint32_t>(e.scale), up, hash_bytes(std::as_bytes(std::span(name)))});
 }
 
-// What must be equal for two states to belong together.
+// The values that must be equal for two states to belong together.
 nlohmann::json identity(const Scene& scene, const ViewDescription& view, const RenderPlan& plan) {
   const SceneDescription& description = scene.description();
   const RenderSettings& s = plan.settings;

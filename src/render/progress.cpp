@@ -10,7 +10,7 @@ namespace lanthorn {
 
 namespace {
 
-// More passes than any render takes: these are no limit.
+// More passes than any render takes: such a number is no bound.
 constexpr std::uint64_t endless = 1u << 31;
 
 std::uint64_t passes_left(const PassRange& asked, const RenderState& state) {

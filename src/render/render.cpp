@@ -219,7 +219,7 @@ class PassLoop {
   Clock::time_point last_checkpoint_ = Clock::now();
 
   std::optional<TeamMember> member_;
-  std::optional<RenderState> total_;  // of rank 0: what has been gathered
+  std::optional<RenderState> total_;  // at rank 0: the sums gathered so far
   std::uint64_t passes_before_ = 0;
   RenderStatistics rendered_;  // since the last question
 };

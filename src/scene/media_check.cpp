@@ -17,7 +17,7 @@ namespace {
 
 const Wavelengths white_light = Wavelengths::rgb(0.5f);
 
-// Rays that arrive in the medium `around` at a place where the scene claims the medium `claimed`.
+// Rays that arrive in the medium `around` at a place where the scene declares the medium `claimed`.
 struct MediaConflict {
   MediumId around, claimed;
   Ray ray;                             // a ray that meets the conflicting interface first

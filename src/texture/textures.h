@@ -181,7 +181,7 @@ class TextureGraph {
   const TextureCache* cache() const { return memory_->cache().get(); }
   bool is_left_out(const ImageFile& file) const;
   std::vector<bool> plan_memory(std::size_t first) const;
-  // The images of this graph, and those of others that it shares.
+  // The images of this graph, and the shared images of other graphs.
   Images all_images() const;
   float evaluate_float(std::uint32_t node, const TexturePoint& at) const;
   Spectrum evaluate_spectrum(std::uint32_t node, const TexturePoint& at, const Wavelengths& w) const;

@@ -36,7 +36,7 @@ CameraPose turned(const CameraPose& pose, const Vec2& degrees, const Turn& t) {
   CameraPose result = pose;
   const Direction right = right_of(pose), forward = forward_of(pose);
   const float tilt_sign = dot(cross(right, t.arm), t.to_lower) > 0 ? 1.0f : -1.0f;
-  // The angle from up to the view grows or shrinks by what it is turned about `right`.
+  // The rotation about `right` increases or decreases the angle between up and the view.
   const float growth = dot(cross(right, forward), pose.up) > 0 ? -1.0f : 1.0f;
   const float now = degrees_between(forward, pose.up);
   const float low = std::min(now, least_angle), high = std::max(now, 180 - least_angle);

@@ -19,7 +19,7 @@ struct CameraPose {
 /// The pose of a camera when its shutter opens. The world's up is the axis of the world nearest to the camera's, with
 /// its sign.
 CameraPose pose_of(const Transform& camera_to_world, float distance);
-/// That of a camera that frames its subject from `eye` (see `framing`): it turns around the middle of the subject.
+/// The pose of a camera that frames its subject from `eye` (see `framing`): it turns around the middle of the subject.
 CameraPose framing_pose(const description::Camera& camera, const Point& eye);
 /// A camera in this place, without motion.
 description::Camera placed(description::Camera camera, const CameraPose& pose);

@@ -21,7 +21,7 @@ struct LightRow {
   std::optional<Point> position;  ///< in the world; nothing: it is far away, or a surface
   bool has_colour = false;        ///< no image or texture decides its colour
   Rgb colour{1};                  ///< largest component 1; white if a spectrum is none of RGB
-  float strength = 1;             ///< factor of what the file says
+  float strength = 1;             ///< factor of the strength in the file
   bool on = true;
 
   friend bool operator==(const LightRow&, const LightRow&) = default;

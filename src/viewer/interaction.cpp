@@ -11,8 +11,8 @@ namespace lanthorn {
 namespace {
 
 constexpr float degrees_per_picture = 180;  // of a turn by a drag over the height of the picture
-constexpr float click_pixels = 4;           // a way that is no drag yet, at 720 rows
-constexpr float mark_pixels = 14;           // around a light's mark, likewise
+constexpr float click_pixels = 4;           // a shorter motion is no drag yet, at 720 rows
+constexpr float mark_pixels = 14;           // around a light's mark, at 720 rows
 
 float rows(const View& view) { return static_cast<float>(view.window.height()); }
 float at_720_rows(const View& view, float pixels) { return pixels * rows(view) / 720; }

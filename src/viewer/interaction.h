@@ -37,7 +37,7 @@ class Interaction {
   CameraPose pose_, home_;
   float speed_;
   Drag drag_ = Drag::none;
-  float drag_depth_ = 0;  // of what is dragged, along the view, m
+  float drag_depth_ = 0;  // of the dragged thing, along the view, m
   Vec2 way_{0};           // of the pointer since a button was pressed, pixels
 };
 

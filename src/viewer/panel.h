@@ -43,7 +43,7 @@ struct LightMark {
   std::size_t light = 0;
 };
 
-/// What the panel shows and changes.
+/// The data that the panel shows and changes.
 struct Panel {
   // Changed by the user.
   std::vector<std::string> methods;  ///< names; first those of the techniques
@@ -66,7 +66,7 @@ struct Panel {
   std::string left;      ///< time until an offline method has reached its bounds; empty: not known yet, or reached
   std::string denoised;  ///< how far the picture is denoised; empty: it is not
   std::string remark;    ///< findings and choices of an offline method; empty: none
-  std::string notice;    ///< over the picture: why it is not what was asked for
+  std::string notice;    ///< over the picture: why it differs from the request
   std::vector<std::string> notes;
   std::vector<LightMark> marks;
   std::vector<FrameStage> stages;

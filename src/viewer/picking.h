@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// What lies under a click.
+// Finds the thing under a click.
 #pragma once
 
 #include <cstddef>

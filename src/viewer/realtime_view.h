@@ -60,7 +60,7 @@ class EyePathSpacing {
 /// The resolution of frames while the eye or a thing moves, so that there are 10 to 17 of them a second.
 class MovingResolution {
  public:
-  /// Of width and height.
+  /// The share of width and height.
   double share() const { return share_; }
   /// Adapts to the time until a frame with this share was shown, s.
   void learn(double seconds, double share);
@@ -69,7 +69,7 @@ class MovingResolution {
   double share_ = 1;
 };
 
-/// Adds what a frame took to sums of stages by name, in the order in which stages came first.
+/// Adds the times of a frame to sums by the name of the stage, in the order in which stages first came.
 class StageSums {
  public:
   void add(const FrameReport& report);

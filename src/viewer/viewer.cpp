@@ -80,7 +80,7 @@ float first_distance(const Scene& scene, const View& view, const Picker& picker)
   return std::max(std::sqrt(distance_squared(ray.origin, sphere.centre)), 0.1f * sphere.radius);
 }
 
-// What the camera turns around is what it frames, or else what is in the middle of the picture.
+// The camera turns around the subject that it frames, or else around the surface in the middle of the picture.
 CameraPose first_pose(const ViewDescription& description, const Scene& scene, const View& view, const Picker& picker) {
   const description::Camera& camera = description.camera;
   if (!camera.subject) return pose_of(camera.camera_to_world.start, first_distance(scene, view, picker));
@@ -163,7 +163,7 @@ class Viewer {
   StageSums stages_;
   EyePathSpacing eye_path_spacing_;
   MovingResolution moving_resolution_;
-  // Of a frame that was drawn while something moves: when it began, and its share of the resolution.
+  // The frame that was drawn last while something moves: when it began, and its share of the resolution.
   std::optional<std::pair<ViewerClock::time_point, double>> moving_frame_;
   bool shown_is_exact_ = true;  // the last frame
   std::shared_ptr<const InteractivePicture> offline_;

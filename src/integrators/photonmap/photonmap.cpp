@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Photon mapping in two passes (Jensen 1996; 2001, chapter 9). The first traces photons into a global map and one of
-// caustics (chapters 5 and 6); the second follows eye paths and estimates the light at what they meet as a sum of four
-// terms, from these maps (two_pass.h).
+// Photon mapping in two passes (Jensen 1996; 2001, chapter 9). The first pass traces photons into a global map and a
+// caustic map (chapters 5 and 6); the second follows eye paths and estimates the light at their vertices as a sum of
+// four terms, from these maps (two_pass.h).
 #include <algorithm>
 #include <atomic>
 #include <iterator>

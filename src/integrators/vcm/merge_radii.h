@@ -90,7 +90,7 @@ struct VolumeKernels {
   std::optional<KernelIn> point, beam, photon_beam, beams;
 
   bool any() const { return point || beam || photon_beam || beams; }
-  /// Of the widest equivalent box kernel, m; 0 if there is none.
+  /// Radius of the widest equivalent box kernel, m; 0 if there is none.
   float widest_radius() const;
   bool uses_points() const { return point || beam; }
   bool uses_beams() const { return photon_beam || beams; }

@@ -106,7 +106,7 @@ class PathMoments {
   /// Estimates for candidate k, without light that the lens sees.
   struct Estimate {
     double light;          ///< E[X]
-    double second_moment;  ///< E[X²], of what the candidate has found here
+    double second_moment;  ///< E[X²] of the contributions that the candidate finds here
     double of_eye_path;    ///< E[E[X | eye path]²]
     double squares;        ///< the part Σ s (c / R)² of E[X²]
     double all_squares;    ///< Σ c² / R

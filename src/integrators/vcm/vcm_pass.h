@@ -22,7 +22,7 @@
 
 namespace lanthorn {
 
-/// What all passes have in common.
+/// Data that all passes share.
 struct VcmPreparation {
   Emission emission;
   EmissionDensities densities;  // points to `emission`
@@ -53,7 +53,7 @@ struct VcmPass {
   UniformityTests* uniformity;  ///< to be told of the photons of this pass; null: they are not counted
   MergeRadii radii;
   LightVertices& vertices;  ///< of the block
-  // Of the block's light paths, once these are traced:
+  // Merges with the block's light paths, once these are traced:
   std::optional<SurfaceMerges> surface_merges;
   std::optional<VolumeMerges> volume_merges;  ///< none if there are none in media
 

@@ -92,10 +92,10 @@ class KernelIn {
  public:
   KernelIn(int dimensions, const Kernel& kernel, float radius);
 
-  /// Of the equivalent box kernel, m.
+  /// Radius of the equivalent box kernel, m.
   float radius() const { return radius_; }
   float support() const { return support_; }
-  /// Of the equivalent box kernel: m, m² or m³.
+  /// Size of the equivalent box kernel: m, m² or m³.
   float box_size() const { return box_size_; }
   /// Density (per m, m² or m³) at squared distance `dist2` from the centre, at most support()².
   float weight(float dist2) const { return scale_ * kernel_.profile(share_of_support(dist2)); }

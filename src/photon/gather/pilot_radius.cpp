@@ -166,7 +166,7 @@ class Pilot {
     const PixelWindow film = job_.view.film();
     return gather_points(film, std::min(pilot_grid, film.width()), std::min(pilot_grid, film.height()), wanted_photons);
   }
-  /// Of each pixel of the window.
+  /// The gather point of each pixel of the window.
   std::vector<GatherPoint> of_pixels(double wanted_photons) const {
     const PixelWindow& window = job_.view.window;
     return gather_points(window, window.width(), window.height(), wanted_photons);

@@ -46,7 +46,7 @@ class FirstRadius {
   }
 
   float at(std::uint32_t pixel) const { return per_pixel_.empty() ? typical_ : per_pixel_[pixel]; }
-  /// Of the photons; radii are those of the first class.
+  /// Classes of the photons' flux; radii are those of the first class.
   const FluxClasses& classes() const { return classes_; }
   /// Radius of a class of photons over that of the first, which is `radius` now.
   float class_factor(int flux_class, std::uint32_t pixel, float radius) const {

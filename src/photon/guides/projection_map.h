@@ -13,7 +13,7 @@
 
 namespace lanthorn {
 
-/// What photons should hit first.
+/// The targets that photons should hit first.
 enum class PhotonTarget : std::uint8_t {
   surfaces,
   surfaces_and_media,  ///< media that scatter, too; if one has no end, photons are not aimed

@@ -29,7 +29,7 @@ struct Landing {
   std::uint32_t path = 0;
 };
 
-/// What has become of a light path.
+/// The history of a light path.
 struct Fate {
   bool hidden = false;  ///< its first non-delta scattering came after delta scatterings
   float chance = 0;     ///< of a diffuse direction to meet the light there

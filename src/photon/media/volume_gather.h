@@ -118,7 +118,7 @@ class VolumeGather {
                             const KernelLadder& ladder, std::span<float> sums) const;
   std::size_t compare_at(const PathContext& path, const MediumVertex& vertex, float flown, const KernelLadder& ladder,
                          std::span<float> sums) const;
-  /// Of the equivalent box kernel, m.
+  /// Radius of the equivalent box kernel, m.
   float radius() const { return kernel_.radius(); }
   std::size_t memory_bytes() const { return map_.memory_bytes(); }
 

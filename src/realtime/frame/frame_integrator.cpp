@@ -26,7 +26,7 @@ namespace lanthorn {
 
 namespace {
 
-/// The layers of a frame and what they belong to, on the CPU.
+/// The layers of a frame and the surfaces that they show, on the CPU.
 struct FrameOnCpu {
   Image light;
   std::vector<glm::vec4> positions, colours;

@@ -66,7 +66,7 @@ void main() {
   vec4 pattern = pattern_of(d);
 #ifdef HAS_PATTERNS
 #ifdef EYE
-  // Eye paths draw also what is seen through their surfaces.
+  // Eye paths also draw what shows through their surfaces.
   if (pattern.a <= (is_drawn_by_paths(m) ? 0 : uniform_number())) discard;
 #else
   if (pattern.a <= 0) discard;

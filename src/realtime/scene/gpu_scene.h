@@ -23,7 +23,7 @@ namespace lanthorn {
 /// The materials that eye paths draw: those whose flags, masked by `looked_at`, equal `wanted`.
 struct EyePaths {
   std::uint32_t looked_at = 0, wanted = 0;
-  bool has_mirrors = false;  ///< and the delta lobes of others
+  bool has_mirrors = false;  ///< also the delta lobes of other materials
 
   friend bool operator==(const EyePaths&, const EyePaths&) = default;
 };

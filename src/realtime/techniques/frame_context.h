@@ -58,7 +58,7 @@ struct FrameSettings {
   LightViewSettings views;
 };
 
-/// What happened in a frame.
+/// Statistics of a frame.
 struct FrameReport {
   std::vector<gl::StageTime> stages;  ///< on the GPU; then those of the CPU, which run beside it
   std::vector<std::uint64_t> photons_per_bounce;

@@ -41,7 +41,7 @@ class Technique {
   virtual void prepare(const FrameContext& /*frame*/) {}
   /// Adds the technique's light to the layers of the frame. G-buffer and direct light are drawn.
   virtual void draw(const FrameContext& frame) = 0;
-  /// What eye paths find at their vertices; empty: nothing. Called after `draw`, if there are eye paths.
+  /// The technique's light at vertices of eye paths; empty: none. Called after `draw`, if there are eye paths.
   virtual VertexLight light_at_vertices(const FrameContext& /*frame*/) { return {}; }
 };
 
@@ -68,7 +68,7 @@ struct TechniqueInfo {
   TechniqueDescription description;
   std::unique_ptr<Technique> (*make)(const TechniqueShaders& shaders) = nullptr;
   FramePlan (*plan)(const FrameSettings& settings) = [](const FrameSettings&) { return FramePlan{}; };
-  /// Values for parameters that are "auto", by what a view shows; null: it has none.
+  /// Values for parameters that are "auto", chosen for a view; null: the technique has no such parameters.
   ParameterValues (*fit_view)(const Scene& scene, const View& view) = nullptr;
   /// The same for a render, which may measure them.
   ParameterValues (*fit_render)(const RenderJob& job) = nullptr;
@@ -88,8 +88,8 @@ const TechniqueInfo* find_technique(const std::string& name);
 /// A technique with values of its parameters.
 class TechniqueChoice {
  public:
-  /// Those that are not set have the defaults of `render`. Throws Error for unknown names of technique or parameters,
-  /// and for values that a parameter does not take.
+  /// Parameters that are not set have the defaults of `render`. Throws Error for unknown names of technique or
+  /// parameters, and for values that a parameter does not take.
   explicit TechniqueChoice(const std::string& name = "direct", const ParameterValues& set = {});
 
   const TechniqueInfo& info() const { return *info_; }

@@ -33,8 +33,8 @@ struct PanelControl {
 /// A parameter of a technique, as `--set`, the panel and the documents describe it.
 struct TechniqueParameter {
   ParameterInfo info;                ///< default: of `render`
-  std::string viewer_default{};      ///< empty: that of `render`
-  std::vector<std::string> words{};  ///< that it takes. "auto": a value that fits scene and view
+  std::string viewer_default{};      ///< empty: the default of `render`
+  std::vector<std::string> words{};  ///< accepted words. "auto": a value that fits scene and view
   std::optional<NumberRange> numbers{};
   std::optional<PanelControl> control{};  ///< none: the panel does not show it
 

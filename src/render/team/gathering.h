@@ -74,8 +74,8 @@ class TreeCheck {
  public:
   TreeCheck(int size, int awaited_at_first);
 
-  /// What process `rank` says: the rank that it passes its sums on to, and the number of children it waits for. Throws
-  /// Error once all have joined if they do not agree.
+  /// Takes the statement of process `rank`: the rank that it passes its sums on to, and the number of children it waits
+  /// for. Throws Error once all have joined if they do not agree.
   void join(int rank, std::uint64_t parent, std::uint64_t awaited);
 
  private:

@@ -33,7 +33,7 @@ PhotonVolume photon_volume(const FrameContext& frame) {
   const float first =
       choice.is_auto("radius") ? fitting_radius(frame.scene, frame.view) : static_cast<float>(choice.number("radius"));
   const float radius = first * RadiusSchedule{1, choice.number("alpha")}.radius(frame.settings.views.frame);
-  // Photons lie on round shapes, and what is seen of these on triangles around them.
+  // Photons lie on round shapes, but the visible points of these lie on triangles around them.
   const float slack = std::min(1.1f * frame.gpu_scene.largest_slack(), 0.5f * radius);
   return {radius, search_flatness * radius + slack};
 }

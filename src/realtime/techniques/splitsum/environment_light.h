@@ -11,7 +11,7 @@
 
 namespace lanthorn {
 
-/// Split-sum shading of what the eye sees, by the maps of the scene's environment.
+/// Split-sum shading of visible surfaces, by the maps of the scene's environment.
 class EnvironmentLight {
  public:
   explicit EnvironmentLight(const gl::ShaderFiles& files);

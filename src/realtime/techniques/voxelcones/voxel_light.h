@@ -31,7 +31,7 @@ struct VoxelSettings {
 /// Turns that cover the circle evenly over any number of frames: the golden ratio's.
 float turn_of_frame(std::uint32_t frame);
 
-/// Voxel cone tracing (Crassin et al. 2011): light of the voxels at what the eye sees.
+/// Voxel cone tracing (Crassin et al. 2011): light of the voxels on visible surfaces.
 class VoxelLight {
  public:
   explicit VoxelLight(const gl::ShaderFiles& files);

@@ -23,7 +23,7 @@ vec3 irradiance_of_views(vec3 position, vec3 n, float voxel_side) {
     float cosine = dot(wo, n);
     if (cosine <= 0) continue;
     vec3 light = v.colour.rgb * cosine;
-    // Nearer than half a voxel, the mean position says nothing about the distance.
+    // Nearer than half a voxel, the mean position does not give the distance.
     float d = max(distance_to_light, 0.5 * voxel_side);
     if (v.origin.a != view_parallel) light *= falloff(v, -wo) / (d * d);
     if (light == vec3(0)) continue;
