@@ -30,7 +30,7 @@ struct LightRow {
 class EditedScene {
  public:
   explicit EditedScene(SharedScene scene);
-  /// With strengths of lights by their `id`.
+  /// Also sets the strengths of lights, by their `id`.
   EditedScene(SharedScene scene, const std::map<std::string, float>& strengths);
 
   const SharedScene& scene() const { return scene_; }
