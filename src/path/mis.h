@@ -56,7 +56,7 @@ inline float mixture_pdf(float pdf, float other, float share) { return (1 - shar
 // w_eye is the same with both walks exchanged (TR eq. 41). For a merge, divide by M_m instead; then w_light is
 // (d_VCM(m) + r_m d_VC(m)) / η (TR eq. 38).
 //
-// The walks begin otherwise (TR eqs. 31-33). Next-event estimation chooses x_0 with a density of its own, p_direct:
+// The walks begin differently (TR eqs. 31-33). Next-event estimation chooses x_0 with a density of its own, p_direct:
 // d_VCM(1) = p_direct / (p_0 p_1), d_VC(1) = g_0 / (p_0 p_1). All N light paths are connected to the lens, and nothing
 // begins beyond it: for the eye walk, d_VCM = N / q_k and d_VC = 0.
 // At a delta lobe no technique begins. Both walks have the same delta function in their densities, which cancels: η

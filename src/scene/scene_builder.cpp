@@ -218,8 +218,7 @@ void SceneBuilder::warn_of_left_out() {
 
 void SceneBuilder::warn_of_motion(const AnimatedTransform& motion, const SourceLocation& location) {
   if (motion.is_moving())
-    warn_once(data_.description, location,
-              "a moving shape that emits is lit from where it is in the middle of the shutter interval");
+    warn_once(data_.description, location, "a moving shape emits from its place in the middle of the shutter interval");
 }
 
 // Embree tests rays in single precision: curves and instances vanish at ten times this distance, everything at 10^18.

@@ -103,12 +103,12 @@ std::string remark_on(double in_view, bool hides_lights, PhotonUse use) {
   if (hides_lights)
     return fmt::format(
         "strong lights would leave hardly any photons to weak ones that light a part of the picture: photons start "
-        "where light paths into view have been found (--set emission=power: by power){}",
+        "where light paths into view have been found (--set emission=power starts them by power){}",
         fewer);
   const std::string share = in_view > 1e-6 ? fmt::format("one photon in {:.0f}", 1 / in_view) : "almost no photon";
   return fmt::format(
-      "{} lands in view: photons start where light paths that do have been found "
-      "(--set emission=power: everywhere){}",
+      "{} lands in view: photons start where light paths into view have been found "
+      "(--set emission=power starts them everywhere){}",
       share, fewer);
 }
 
