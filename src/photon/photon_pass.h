@@ -27,8 +27,8 @@ struct MediumPhoton {
   Beam beam(float radius) const { return {photon.position, -photon.wi, length, radius}; }
 };
 
-/// True if the flights of a light path are among the `share` that is kept. The choice is random and the same for all
-/// paths, so that all kept flights are weighted by the same factor, wherever they start.
+/// True if the flights of a light path are among the `share` that is kept. The choice is random, with the same
+/// probability for all paths, so that all kept flights are weighted by the same factor, wherever they start.
 inline bool keeps_beams(const Sampler& of_path, float share) { return of_path.generator(1).next() < share; }
 
 /// The photons that a pass stores.
