@@ -23,8 +23,7 @@ struct EmissionVisitor {
     const bool is_unlit = share.unlit_emission && !path.scene.volume_light(vertex.state.medium);
     if (is_unlit || is_seen(vertex.state)) layers.add_hit(vertex, hit_volume_emission(path, vertex));
   }
-  // A surface with delta and other lobes may have scattered the walk by a non-delta lobe: then its emission is not
-  // added.
+  // Emission is not added if a surface with delta and other lobes has scattered the walk by a non-delta lobe.
   Continuation operator()(const SurfaceVertex& vertex) {
     if (vertex.state.non_delta > 0 || vertex.state.depth > share.scatterings + 1) return rest();
     layers.see(vertex);

@@ -29,8 +29,8 @@ struct RadiusSchedule {
 
   /// r² / r²_1 of pass `pass` (the first is 0): Γ(i + α) / (Γ(1 + α) Γ(i + 1)) with i = pass + 1.
   double shrink2(std::uint64_t pass) const { return shrink2_after(static_cast<double>(pass) + 1); }
-  /// The same after the photons of i passes, i >= 1. Not a whole number if passes have more or fewer photons than the
-  /// pass for which the first radius is measured.
+  /// The same after the photons of i passes, i >= 1. i need not be a whole number, because passes may have more or
+  /// fewer photons than the pass for which the first radius is measured.
   double shrink2_after(double i) const {
     assert(alpha > 0 && alpha <= 1);
     return i == 1 ? 1 : std::exp(log_gamma(i + alpha) - log_gamma(1 + alpha) - log_gamma(i + 1));
