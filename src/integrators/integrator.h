@@ -27,9 +27,9 @@ namespace lanthorn {
 /// Called when a phase begins. Integrators do not measure time themselves.
 using PhaseObserver = std::function<void(Phase)>;
 
-/// Adds each stage to that of its name; new ones go to the end.
+/// Adds each stage's time to the stage of the same name; new stages go to the end.
 void add_stages(std::vector<StageSeconds>& sum, const std::vector<StageSeconds>& stages);
-/// Adds numbers by bounce; the longer one decides how many there are.
+/// Adds numbers of photons by bounce; `sum` grows to the longer of the two.
 void add_bounces(std::vector<std::uint64_t>& sum, const std::vector<std::uint64_t>& photons);
 
 /// Statistics of a pass.
@@ -67,7 +67,7 @@ struct MemoryUse {
   double per_light_path = 0;  ///< for each light path of a pass
   double per_pixel = 0;
   int first_depth = 2;  ///< depth of the first vertex that is kept: 1 if photons straight from the light are
-  MediumRecords media = MediumRecords::none;  ///< what is kept of light paths in media
+  MediumRecords media = MediumRecords::none;  ///< records of light paths in media
   double per_medium_photon = 0;               ///< for each of these records, if not `bytes_of_medium_photon`
   bool fills_the_rest = false;                ///< works in blocks that take the rest of `RenderSettings::memory`
   /// Light paths whose records are in memory at once, of methods that work in blocks of them (`LightPathBlocks`).
@@ -99,7 +99,7 @@ class Integrator {
   virtual std::string limitation(const Scene& /*scene*/) const { return {}; }
   /// Message about what the preparation has found in this job, for the user. Empty if there is nothing to say.
   virtual std::string remark() const { return {}; }
-  /// What the preparation has found in this job, in numbers: the text of a JSON object for reports. Empty if nothing.
+  /// The findings of the preparation in this job, in numbers: the text of a JSON object for reports. Empty if none.
   virtual std::string findings() const { return {}; }
   /// The film's layers for this scene and whether the method splats. Default: the layers of the path classes.
   virtual FilmContents film_contents(const Scene& scene) const { return path_layers(scene); }

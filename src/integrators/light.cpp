@@ -68,7 +68,7 @@ class LightTracer final : public Integrator {
       report.rays += trace_lights(job, paths, film);
     }
     begin(Phase::eye);
-    report.rays += see_emission(job, {.unlit_glow = job.scene.has_unlit_glow()}, pass, film);
+    report.rays += see_emission(job, {.unlit_emission = job.scene.has_unlit_emission()}, pass, film);
     return report;
   }
 

@@ -28,8 +28,9 @@ class PathTracer final : public Integrator {
     const double rare = rare_light_share(job);
     if (rare >= noticeable)
       remark_ = fmt::format(
-          "about {:.0f} % of the light on what is seen comes by glass or mirrors from small lights, which path finds "
-          "by rare chance or never: auto, the default, shows it",
+          "about {:.0f} % of the light on visible surfaces comes by glass or mirrors from small lights, which path "
+          "finds "
+          "rarely or never; auto, the default, finds it",
           100 * rare);
   }
   std::string remark() const override { return remark_; }

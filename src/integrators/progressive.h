@@ -39,13 +39,13 @@ FilmContents progressive_layers(const Scene& scene);
 /// Message about light of the scene that photon methods with this estimator do not find. Empty if they find all light.
 std::string photon_limitation(const Scene& scene, VolumeEstimator estimator);
 
-/// The photons of a pass or of one of its blocks, with what the eye paths of the pass share.
+/// The photons of a pass or of one of its blocks, with the data that the eye paths of the pass share.
 struct PassPhotons {
   PassDraw draw;
   std::vector<PhotonMap<HashGrid>> maps;  ///< by class (`FluxClasses`)
   std::optional<VolumeGather> volume;     ///< none if there are no photons in media
-  PassReport report;                      ///< of the photons' part of the pass
-  bool are_first = true;                  ///< of the pass's blocks
+  PassReport report;                      ///< report on the photons' part of the pass
+  bool are_first = true;                  ///< this is the first block of the pass
 
   /// The sum of `gather(map, flux_class)` over the classes of photons.
   template <class Gather>
@@ -122,7 +122,7 @@ struct GatherVisitor : PathVisitor {
     add(vertex.state, gather(vertex, split));
     if (adds_all) {
       add_sky(path, vertex, layers);
-      add_unlit_glow(path, vertex, split, layers);
+      add_unlit_emission(path, vertex, split, layers);
     }
     return answer;
   }
@@ -165,11 +165,11 @@ struct VolumeGatherVisitor : GatherVisitor<Gather> {
     if (!walk.is_gathered()) return GatherVisitor<Gather>::operator()(vertex);
     this->layers.see(vertex);
     if (this->adds_all && walk.finds_hits()) this->layers.add_hit(vertex, hit_emitter(this->path, vertex));
-    return {walk.follow_glow(this->path)};
+    return {walk.follow_emission(this->path)};
   }
   Continuation operator()(const MediumVertex& vertex) {
     this->layers.see(vertex);
-    if (walk.is_gathered()) return walk.follow_glow(this->path);
+    if (walk.is_gathered()) return walk.follow_emission(this->path);
     if (!vertex.may_scatter) return Continuation::stop();
     // The decision of the walk comes after the numbers of next-event estimation.
     const MediumLight light = walk.scatter(this->path, vertex, this->ray_light);
@@ -182,8 +182,8 @@ struct VolumeGatherVisitor : GatherVisitor<Gather> {
 template <class Gather>
 VolumeGatherVisitor(GatherVisitor<Gather>, VolumeWalk) -> VolumeGatherVisitor<Gather>;
 
-/// Calls `follow(visitor)` with the visitor of an eye path for these photons: scenes without media pay nothing for
-/// those that have some.
+/// Calls `follow(visitor)` with the visitor of an eye path for these photons, so that scenes without media have no
+/// overhead.
 template <class Gather, class Follow>
 void with_gather_visitor(const PassPhotons& photons, const PathVisitor& base, const Gather& gather, Follow&& follow) {
   const GatherVisitor<Gather> visitor{base, gather, photons.are_first};

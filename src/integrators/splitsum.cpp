@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Split-sum shading (Karis 2013), as engines in real time do it: the first surface under the maps of the environment.
-// It shows beside `path` what the approximation costs. Nothing is visible to the surface but the environment: no
-// shadows, no other lights, no second scattering.
+// Split-sum shading (Karis 2013), as in real-time engines: the first surface under the maps of the environment. Beside
+// `path`, it shows the error of the approximation. The surface sees nothing but the environment: no shadows, no other
+// lights, no second scattering.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -50,7 +50,7 @@ struct SplitSumVisitor {
   LightLayers& layers;
 
   Continuation operator()(const MediumVertex&) { return Continuation::stop(); }
-  void operator()(const EmissionVertex& vertex) { layers.add_hit(vertex, hit_glow(path, vertex)); }
+  void operator()(const EmissionVertex& vertex) { layers.add_hit(vertex, hit_volume_emission(path, vertex)); }
   Continuation operator()(const SurfaceVertex& vertex) {
     layers.see(vertex);
     layers.add_hit(vertex, hit_emitter(path, vertex));
@@ -62,7 +62,7 @@ struct SplitSumVisitor {
   void operator()(const EscapeVertex& vertex) { layers.add_hit(vertex, hit_environment(path, vertex)); }
 };
 
-/// Names what the first surfaces have that the terms do not.
+/// Collects the parts of the first surfaces' closures that the split terms leave out.
 struct MissingVisitor {
   std::set<std::string>& missing;
 
@@ -115,7 +115,7 @@ class SplitSumShader final : public Integrator {
   std::set<std::string> missing_;
 };
 
-// By one eye path in a grid of the window.
+// Collected along one eye path per point of a grid in the window.
 std::set<std::string> SplitSumShader::missing_of(const RenderJob& job) {
   constexpr int grid = 64;
   const PixelWindow& window = job.view.window;

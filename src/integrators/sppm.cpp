@@ -45,7 +45,7 @@ struct FreshAfterHit {
 template <class Visitor>
 FreshAfterHit(Visitor, Sampler&, const Sampler&) -> FreshAfterHit<Visitor>;
 
-// The photon where, and as bright as, one of class 0 would be with the same part in the estimate.
+// The photon moved and scaled to what one of class 0 with the same part in the estimate would be.
 MetPhoton in_disc_of_first_class(const MetPhoton& photon, float radius_factor) {
   const float inverse = 1 / radius_factor;
   return {photon.offset * inverse, photon.dist2 * sqr(inverse), photon.light * sqr(inverse)};

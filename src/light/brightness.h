@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// How bright lights are, and where: what the light BVH and the film's scale are made from.
+// Position, orientation and brightness of lights, from which the light BVH is built and the film's scale is chosen.
 #pragma once
 
 #include "light/emitter_sample.h"
@@ -10,18 +10,18 @@
 
 namespace lanthorn {
 
-/// Where the light of a light begins, which way it goes, and how much it is.
+/// Bounds of a light's position and directions of emission, and its intensity.
 struct EmissionBounds {
   Bounds box;              ///< around all points of the light
-  NormalCone cone;         ///< around all its normals, or the axis of what it emits
-  float cos_emission = 1;  ///< of the largest angle to a normal under which it emits
-  float intensity = 0;     ///< luminous power per solid angle, about
+  NormalCone cone;         ///< contains all its normals; for lights without surface, a cone about the emission's axis
+  float cos_emission = 1;  ///< cosine of the largest angle to a normal at which it emits
+  float intensity = 0;     ///< W/sr towards the front, as luminance, approximately
   bool two_sided = false;
 };
 
 /// The largest value in the visible range, or of the channels of RGB mode.
 float largest_value(const SpectrumCurve& curve);
-/// The same of all texels, under the illuminant.
+/// The same over all texels, as RGB under the illuminant.
 float largest_value(const LightTexels& texels);
 
 }  // namespace lanthorn

@@ -13,25 +13,25 @@
 
 namespace lanthorn {
 
-/// Disks of growing radii around a place. The photons of far lights start from all of them alike, instead of from the
-/// one disk that covers the scene: in a large world almost none of these would reach a small place. The density falls
-/// with the squared distance from the place, so that no photon has more than `count` times the flux that it would have
-/// without the disks.
+/// Concentric disks of growing radii around a place. Photons of far lights start on each of them equally often, instead
+/// of on the one disk that covers the scene: in a large world almost none of those photons would reach a small place.
+/// The density falls with the squared distance from the place. The largest disk covers the scene, so no photon has more
+/// than `count` times the flux that it would have without the disks.
 struct AimedDisks {
   static constexpr int count = 8;  ///< a power of two: halving the domain of the numbers then separates the disks
 
   BoundingSphere scene;
-  Point centre{0};  ///< of all disks but the largest, which covers the scene
+  Point centre{0};  ///< of all disks except the largest, which is centred on the scene
 
   /// `smallest`: radius, m.
   AimedDisks(const BoundingSphere& scene, const Point& centre, float smallest);
 
-  /// Moves the photon's origin to the point of the disks for `u` in [0,1)² and adapts its flux, which becomes black if
-  /// the point is outside the disk that covers the scene. Leaves `pdf_position` as it was.
+  /// Moves the photon's origin to the point of the disks for `u` in [0,1)² and scales its flux, which becomes black if
+  /// the point lies outside the disk that covers the scene. Does not change `pdf_position`.
   void move(EmissionSample& emission, const Vec2& u) const;
-  /// Density of photons along the ray through p, over that of photons from the whole disk that covers the scene, if
-  /// their numbers have the density `numbers`, those of the direction being `u_direction`, if there are any. `enough`:
-  /// see `guided_density`.
+  /// Ratio of the density of photons along the ray through `p` to that of photons that start uniformly on the disk
+  /// covering the scene. `numbers`: density of the photons' four random numbers. `u_direction`: the two numbers of the
+  /// ray's direction, if the light has an inverse for them. `enough`: see `guided_density`.
   float density(const Point& p, const Direction& direction, const TreeDistribution& numbers,
                 const std::optional<Vec2>& u_direction, float enough) const;
   /// Radius (m) of a disk, from 0 to count - 1.
@@ -52,14 +52,14 @@ struct EmissionGuide {
   std::vector<OfLight> lights;  ///< by index of the light; as many as the scene has
   std::optional<AimedDisks> disks{};
 
-  /// A guide that changes nothing yet, for a scene with so many lights.
+  /// A guide that changes nothing yet, for a scene with `light_count` lights.
   explicit EmissionGuide(std::size_t light_count, const std::optional<AimedDisks>& disks_ = {})
       : lights(light_count), disks(disks_) {}
 };
 
-/// How many times as dense photons of light `index` start along a ray with the guide as without; the mean over numbers
-/// that `invert_emission` leaves empty. `origin` as there. A density of `enough` or more need not be exact: the result
-/// is between both.
+/// Ratio of the density of photons of light `index` along a ray with the guide to the density without it, averaged over
+/// the numbers that `invert_emission` leaves empty. `origin`: as for `invert_emission`. A ratio above `enough` need not
+/// be exact: the result then lies between `enough` and the ratio.
 float guided_density(const EmissionGuide& guide, const Light& light, std::uint32_t index, const EmitterHit& origin,
                      const Direction& direction, float enough = infinity);
 

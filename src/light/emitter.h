@@ -37,17 +37,17 @@ using EmitterShape =
 float area(const EmitterShape& shape);
 /// Samples a point uniformly by area. The shape's area must not be 0.
 EmitterPoint sample_area(const EmitterShape& shape, const Vec2& u);
-/// The numbers in [0,1)² from which `sample_area` draws a point of the shape. Nullopt if some numbers are
-/// rejected, for stretched spheres and cylinders and twisted patches; and for whole round spheres.
+/// The numbers in [0,1)² from which `sample_area` draws a point of the shape. Nullopt for shapes whose sampling rejects
+/// some numbers (stretched spheres and cylinders, twisted patches) and for whole round spheres.
 std::optional<Vec2> invert_sample_area(const EmitterShape& shape, const Point& point);
 /// Samples a point for next-event estimation from `from`: by solid angle if that pays, by area otherwise. Returns
 /// nullopt if the density is not finite or the emitter is seen edge-on. May return points that face away.
 std::optional<EmitterDirection> sample_towards(const EmitterShape& shape, const Point& from, const Vec2& u);
 /// Density of `sample_towards`, per solid angle, for the point `hit` with geometric normal `normal` (of either side).
 float pdf_towards(const EmitterShape& shape, const Point& from, const Point& hit, const Normal& normal);
-/// A world-space box around the emitter.
+/// World-space bounding box of the emitter.
 Bounds bounds(const EmitterShape& shape);
-/// A cone around the emitter's natural normals.
+/// Cone that contains the emitter's natural normals.
 NormalCone normal_cone(const EmitterShape& shape);
 
 }  // namespace lanthorn

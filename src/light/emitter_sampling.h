@@ -28,7 +28,7 @@ inline float pdf_by_area(float area, const Point& from, const Point& hit, const 
   return std::isfinite(pdf) ? pdf : 0;
 }
 
-/// The point `s` as seen from `from`; nullopt if its density is not finite or it is seen edge-on.
+/// The point `s` as seen from `from`; nullopt if its density is not finite or the emitter is seen edge-on.
 inline std::optional<EmitterDirection> direction_to(const EmitterPoint& s, float area, const Point& from) {
   std::optional<EmitterDirection> result;
   const float pdf = pdf_by_area(area, from, s.point, s.normal);
@@ -43,9 +43,9 @@ inline std::optional<EmitterDirection> direction_to(const EmitterPoint& s, float
   return result;
 }
 
-/// True from twice the longest extent of an emitter on, given the squares of both lengths. By area instead of solid
-/// angle, its points then have weights cos / distance² that vary by a tenth to a fifth (standard deviation), which adds
-/// at most a twentieth to the variance of unoccluded direct light, at a third of the cost.
+/// True if the distance exceeds twice the emitter's longest extent; both arguments are squared lengths. Points sampled
+/// by area instead of solid angle then have weights cos / distance² with a standard deviation of a tenth to a fifth.
+/// This adds at most a twentieth to the variance of unoccluded direct light, at a third of the cost.
 inline bool appears_small(float size2, float distance2) { return distance2 > 4 * size2; }
 
 /// Clamps to [0,1)², which rounding may have left.

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Each function asks the light for its member. What a light has not by its traits is 0; what it lacks else does not
-// compile.
+// Each function calls the light's member. Functions that a light's traits exclude return 0; any other missing member is
+// a compile error.
 #include "light/light.h"
 
 #include <algorithm>
@@ -60,7 +60,8 @@ Spectrum emitted_infinite(const Light& light, const Point& from, const Direction
 float texels_across_right_angle(const Light& light) {
   const auto across = [](const ImageInfiniteLight& l) {
     const auto width = static_cast<float>(l.image->width);
-    // The square has the area of the sphere, as six squares over a right angle nearly have.
+    // The octahedral square has the area of the sphere, which is about that of six squares that each span a right
+    // angle.
     return l.image->layout == SphereLayout::equirectangular ? width / 4 : width / std::sqrt(6.0f);
   };
   if (const auto* const image = std::get_if<ImageInfiniteLight>(&light)) return across(*image);

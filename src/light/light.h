@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Light sources: a closed set of plain structs, each in its own file, joined into the variant `Light`. A light is its
-// file and its entry there: whoever else wants to know something of it asks a function or the traits below. An emitting
-// mesh is one AreaLight per triangle or patch. All functions are pure; lights are immutable once the scene is built.
+// Light sources: a closed set of plain structs, each in its own file, joined into the variant `Light`. To add a light,
+// write its file and add its type to the variant; all other code uses the functions and traits below. An emitting mesh
+// is one AreaLight per triangle or patch. All functions are pure; lights are immutable once the scene is built.
 #pragma once
 
 #include <array>
@@ -26,10 +26,10 @@
 
 namespace lanthorn {
 
-/// What every light has. The members have the meanings, units and conventions of the functions of the same names below.
-/// Of those that have a surface, `pdf_direct` and `emitted` are asked where a ray has met them; of infinite ones, in
-/// the direction in which a ray has left the scene; `pdf_direct` of media in that of a ray through them. Only lights
-/// that are not far have bounds.
+/// Members that every light must have. Their meanings, units and conventions are those of the functions of the same
+/// names below. `pdf_direct` and `emitted` take the point that a ray has hit for lights with a surface, and the
+/// direction in which a ray has left the scene for infinite lights. For media, `pdf_direct` takes the direction of a
+/// ray through the medium. Only lights that are not far have `bounds`.
 template <class L>
 concept LightSource = requires(const L l, const Point p, const Direction d, const Vec2 u, const EmitterHit hit,
                                const Wavelengths w) {
@@ -102,10 +102,10 @@ float power(const Light& light);
 /// Largest radiance of the light, over the visible range or over the channels of RGB mode. For lights without extent:
 /// the radiance of a white surface that they illuminate at `distance`, metres.
 float largest_radiance(const Light& light, float distance);
-/// Gives the light another scene to illuminate. False if it depends on the scene's bounds in other ways, too: then it
-/// must be made anew.
+/// Sets the scene that the light illuminates. Returns false if the light depends on the scene's bounds in other ways as
+/// well and must be rebuilt.
 bool set_scene_bounds(Light& light, const BoundingSphere& scene);
-/// Where its light begins; nothing if that is infinitely far.
+/// Bounds of the points where the light's emission starts; nullopt if it comes from infinitely far away.
 std::optional<EmissionBounds> emission_bounds(const Light& light);
 
 namespace light_detail {
@@ -116,7 +116,7 @@ constexpr std::array<LightTraits, sizeof...(Lights)> traits_of(const std::varian
 inline constexpr auto all_traits = traits_of(static_cast<const Light*>(nullptr));
 }  // namespace light_detail
 
-/// What summaries of scenes call the light's kind.
+/// Name of the light's kind in summaries of scenes.
 inline const char* name_of(const Light& light) { return light_detail::all_traits[light.index()].name; }
 /// True if rays can meet the light.
 inline bool has_surface(const Light& light) { return light_detail::all_traits[light.index()].has_surface; }
@@ -127,12 +127,12 @@ inline bool is_point(const Light& light) {
   const LightTraits& traits = light_detail::all_traits[light.index()];
   return !traits.has_surface && !traits.is_far && !traits.is_volume;
 }
-/// True if its light comes from infinitely far: its photons start on a disk that covers the scene, or at a portal.
+/// True if its light comes from infinitely far away: its photons start on a disk that covers the scene, or at a portal.
 inline bool is_far(const Light& light) { return light_detail::all_traits[light.index()].is_far; }
-/// True if a medium emits: rays gather its light on their way.
+/// True if the light is a medium: rays gather its emission along their way.
 inline bool is_volume(const Light& light) { return light_detail::all_traits[light.index()].is_volume; }
-/// True if weights see its light as rays, of which only the direction and the place across it have densities: it comes
-/// from infinitely far, or from anywhere along the ray.
+/// True if MIS weights treat an emission sample of this light as a ray, with densities only for its direction and its
+/// position across the ray, because the light comes from infinitely far away or from anywhere along the ray.
 inline bool is_of_rays(const Light& light) { return is_far(light) || is_volume(light); }
 /// True if rays can never hit the light, or its direction or position is a single one (point, spot, distant).
 bool is_delta(const Light& light);

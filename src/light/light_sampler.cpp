@@ -97,7 +97,7 @@ float importance(const LightBounds& light, const Point& p, const Normal& normal)
 NormalCone unite(NormalCone a, NormalCone b) {
   if (a.cos > b.cos) std::swap(a, b);
   if (a.cos <= -1) return a;
-  // Most often b lies in a, which takes no trigonometry to see, but for cases at the edge.
+  // Usually b lies in a. This test finds out without trigonometry, except in borderline cases.
   constexpr float play = 1e-5f;
   if (dot(a.axis, b.axis) > excess(angle_of(a.cos), angle_of(b.cos)).cos + play) return a;
   const float angle_a = std::acos(std::clamp(a.cos, -1.0f, 1.0f)), angle_b = std::acos(std::clamp(b.cos, -1.0f, 1.0f));
@@ -159,14 +159,15 @@ struct LightBvh::Builder {
     Group group;
     std::uint32_t light;
   };
-  /// A split between the bucket and the next.
+  /// A split after `bucket`.
   struct Choice {
     float cost = infinity;
     int axis = 0;
     std::size_t bucket = 0;
   };
   static constexpr std::size_t buckets = 12;
-  static constexpr std::size_t most_weighed = 1024;  ///< leaves of a node by which its split is chosen
+  static constexpr std::size_t most_weighed =
+      1024;  ///< most leaves of a node that decide on its split; equally spaced ones are taken
 
   LightBvh& bvh;
   std::vector<Leaf> leaves;
@@ -196,7 +197,7 @@ struct LightBvh::Builder {
     return all;
   }
 
-  /// Reorders [begin, end) and returns the start of its second half.
+  /// Reorders [begin, end) and returns the start of its second part.
   std::size_t split(std::size_t begin, std::size_t end, unsigned depth) {
     Bounds centres, box;
     for (std::size_t i = begin; i < end; ++i) {
@@ -239,7 +240,7 @@ struct LightBvh::Builder {
     Choice best;
     Group first;
     for (std::size_t b = 0; b + 1 < buckets; ++b) {
-      if (groups[b].empty) continue;  // the split of the bucket before
+      if (groups[b].empty) continue;  // same split as after the previous bucket
       first.add(groups[b]);
       const float split_cost = cost(first, regularity) + above[b + 1];
       if (split_cost < best.cost) best = {split_cost, axis, b};

@@ -97,7 +97,7 @@ class LightBvh {
   std::vector<Place> places_;  ///< per light
 };
 
-// Inline: results of this size come in registers by way of memory, which costs more than the choice among few lights.
+// Inline: a result of this size is returned through memory, which costs more than choosing among few lights.
 inline std::optional<SampledLight> LightBvh::sample(const Point& p, const Normal& normal, float u) const {
   const auto choices = static_cast<float>(infinite_lights_.size() + (nodes_.empty() ? 0 : 1));
   if (choices == 0) return {};

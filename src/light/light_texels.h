@@ -19,8 +19,8 @@ class LightTexels {
  public:
   LightTexels() = default;
   LightTexels(std::vector<Rgb> colours) : colours_(std::move(colours)) {}
-  /// `bytes`: 1, 3 or 4 `channels` of each texel; the fourth is no colour. `values`: what each byte stands for, finite
-  /// and >= 0.
+  /// `bytes`: the texels' channels, interleaved. `channels`: 1, 3 or 4; the fourth is ignored. `values`: the value of
+  /// each byte, finite and >= 0.
   LightTexels(std::vector<std::uint8_t> bytes, std::size_t channels, const std::array<float, 256>& values)
       : bytes_(std::move(bytes)), channels_(channels), values_(values) {}
 
@@ -38,7 +38,7 @@ class LightTexels {
 
  private:
   std::vector<Rgb> colours_;
-  std::vector<std::uint8_t> bytes_;  // instead of colours, if there are channels
+  std::vector<std::uint8_t> bytes_;  // instead of colours, if channels_ > 0
   std::size_t channels_ = 0;
   std::array<float, 256> values_{};
 };

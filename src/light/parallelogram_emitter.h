@@ -8,8 +8,8 @@
 
 namespace lanthorn {
 
-/// Plane parallelogram in world space, of the points p00 + u a + v b for u, v in [0,1]; its natural normal is along
-/// a x b. Two triangles of a lamp are one light rather than two: one choice, one sample, one density.
+/// Plane parallelogram in world space with the points p00 + u a + v b for u, v in [0,1]; its natural normal is along a
+/// x b. It replaces a pair of triangles, so that both are one light: one choice, one sample, one density.
 struct ParallelogramEmitter {
   Point p00{0};
   Vec3 a{0}, b{0};

@@ -31,7 +31,7 @@ struct PatchJacobian {
 struct Roots {
   std::array<float, 2> x;
 };
-/// Those of a + b x + c x², also where c is small; both may be infinite.
+/// Roots of a + b x + c x², accurate even for small c; both may be infinite.
 Roots quadratic_roots(float a, float b, float c) {
   const float q = -0.5f * (b + std::copysign(safe_sqrt(b * b - 4 * a * c), b));
   return {{a / q, q / c}};

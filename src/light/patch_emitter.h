@@ -8,7 +8,7 @@
 
 namespace lanthorn {
 
-/// Bilinear patch in world space with corners p00, p10, p01, p11, other than a plane parallelogram; its natural normal
+/// Bilinear patch in world space with corners p00, p10, p01, p11 that is not a plane parallelogram; its natural normal
 /// is along dp/du x dp/dv.
 struct PatchEmitter {
   Point p00{0}, p10{0}, p01{0}, p11{0};

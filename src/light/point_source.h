@@ -9,8 +9,8 @@
 
 namespace lanthorn {
 
-/// The sample of a light without extent whose intensity is 1 W/sr: the radiance is to be multiplied by that of the
-/// light. Empty if `from` coincides with the light, or is so near that single precision cannot hold it.
+/// Sample of a light without extent and with intensity 1 W/sr; the caller multiplies its radiance by the light's
+/// intensity. Nullopt if `from` coincides with the light or is too near for single precision.
 inline std::optional<LightSample> see_point_source(const Point& position, const Point& from) {
   std::optional<LightSample> result;
   const Vec3 d = position - from;

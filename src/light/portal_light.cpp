@@ -102,7 +102,7 @@ struct SkyTable {
         if (angle < solid_angle_[cell]) found[cell] += light;
         sum += static_cast<double>(light * local.z);
       }
-    // The more finely sampled of the two sums.
+    // Keeps the more finely sampled sum.
     if (static_cast<std::size_t>(image.height) > side) irradiance = sum;
     for (std::size_t i = 0; i < found.size(); ++i) luminance[i] = std::max(luminance[i], found[i]);
   }
@@ -192,8 +192,8 @@ std::optional<EmissionSample> PortalLight::sample_emission(const Vec2& u_positio
   sample.origin =
       portal->corner + u_position.x * portal->width * portal->frame.s + u_position.y * portal->height * portal->frame.t;
   sample.direction = -towards;
-  // On this side of the portal by the rounding error of a ray from beyond the scene, so that a wall in the portal's
-  // plane blocks light that passes beside its opening.
+  // Moves the origin to this side of the portal by the rounding error of a ray from beyond the scene. A wall in the
+  // portal's plane then blocks light that passes beside its opening.
   const BoundingSphere& scene = std::visit(
       [](const auto& light) -> const auto& { return light.scene; }, sky);
   const float way = 2 * scene.radius + std::sqrt(distance_squared(scene.centre, sample.origin));

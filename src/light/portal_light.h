@@ -38,7 +38,7 @@ struct Portal {
   float area() const { return width * height; }
   /// True if the line through `p` along `direction` (towards the sky) crosses the portal.
   bool is_crossed(const Point& p, const Direction& direction) const;
-  /// Where that line crosses the portal's plane, m along both sides from the corner.
+  /// Where that line crosses the portal's plane: coordinates along the two sides from the corner, metres.
   Vec2 crossing(const Point& p, const Direction& direction) const;
   /// The portal as a window of the square of angles. Returns nullopt if `from` is not on the side away from the sky.
   std::optional<WindowedPiecewiseConstant2d::Window> window(const Point& from) const;

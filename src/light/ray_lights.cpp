@@ -15,16 +15,16 @@ struct Interval {
   double begin = 0, end = 0;
 };
 
-/// The t of o + t d in a cone with its tip at the origin and a half angle below 90 degrees. `d` is a unit vector. The
-/// cone is convex, so that it is one interval. It is the part of a double cone, (o + t d)·axis² >= cos² |o + t d|²,
-/// where (o + t d)·axis >= 0.
+/// The interval of t in which o + t d lies in a cone with its tip at the origin and a half angle below 90 degrees. `d`
+/// is a unit vector. The cone is convex, so there is one interval: the part of the double cone ((o + t d)·axis)² >=
+/// cos² |o + t d|² where (o + t d)·axis >= 0.
 Interval part_in_cone(const glm::dvec3& o, const glm::dvec3& d, const glm::dvec3& axis, double cos) {
   constexpr double endless = std::numeric_limits<double>::infinity();
   const double along = glm::dot(o, axis), slope = glm::dot(d, axis), cos2 = cos * cos;
   const double a = slope * slope - cos2, b = along * slope - cos2 * glm::dot(o, d),
                c = along * along - cos2 * glm::dot(o, o);
   const double discriminant = b * b - a * c;
-  if (a >= 0) {  // it leaves the plane of the tip within the cone: one end is infinitely far
+  if (a >= 0) {  // the ray is steeper than the cone's side: one end is infinitely far away
     const double root = std::sqrt(std::max(0.0, discriminant));
     // The two roots; where both vanish, the ray meets the tip along the cone's surface.
     const double q = -(b + std::copysign(root, b)), one = q / a, other = q != 0 ? c / q : one;
@@ -38,11 +38,11 @@ Interval part_in_cone(const glm::dvec3& o, const glm::dvec3& d, const glm::dvec3
 
 }  // namespace
 
-/// The part of a segment that a source lights, about the point that is nearest to the source.
+/// The part of a segment that a source lights, parametrised by the angle at the source.
 struct RayLights::LitPart {
   double nearest = 0;         ///< its distance along the segment, m
   double height = 1;          ///< of the source above the segment's line, m
-  double begin = 0, end = 0;  ///< angles at the source, from the nearest point
+  double begin = 0, end = 0;  ///< angles at the source, from the nearest point, radians
 
   bool empty() const { return !(end > begin); }
   /// The integral of 1/distance² over the part, 1/m.
@@ -69,7 +69,8 @@ RayLights::LitPart RayLights::lit_part(const Source& source, const Segment& segm
   const glm::dvec3 o = glm::dvec3(segment.origin) - source.position, d = glm::normalize(glm::dvec3(segment.direction));
   LitPart part;
   part.nearest = -glm::dot(o, d);
-  // Not less than what single precision tells from 0: densities stay finite on rays through the source.
+  // At least the least height that single precision distinguishes from 0: keeps densities finite on rays through the
+  // source.
   constexpr double least = 1e-6;
   part.height = std::max(glm::length(o + part.nearest * d), least * (glm::length(o) + 1e-30));
   Interval lit{0, double{segment.length}};

@@ -10,13 +10,13 @@
 namespace lanthorn {
 
 /// Kind of a light. Every light has a static member `traits` of this type, and the members that `LightSource` (light.h)
-/// asks of its kind.
+/// requires of its kind.
 struct LightTraits {
   const char* name;        ///< in summaries of scenes
   bool has_surface;        ///< rays can meet it
   bool is_infinite;        ///< rays that leave the scene see it
-  bool is_far;             ///< its light comes from infinitely far: from all infinite lights and from distant ones
-  bool is_volume = false;  ///< a medium emits: rays gather its light on their way
+  bool is_far;             ///< its light comes from infinitely far away: true of all infinite and distant lights
+  bool is_volume = false;  ///< it is a medium: rays gather its emission along their way
 };
 
 /// Bounding sphere of the scene, at which photons from infinitely distant lights are aimed.
@@ -34,14 +34,14 @@ struct EmitterHit {
 
 /// Result of next-event sampling, seen from the receiving point.
 struct LightSample {
-  Direction wi{0, 0, 1};      ///< from the receiving point to the light
-  Point position{0};          ///< on the light; undefined for infinite and distant lights; of media the receiving point
-  Normal normal{0};           ///< geometric normal of the light there; 0 for lights without surface
+  Direction wi{0, 0, 1};  ///< from the receiving point to the light
+  Point position{0};      ///< on the light; undefined for infinite and distant lights; for media the receiving point
+  Normal normal{0};       ///< geometric normal of the light there; 0 for lights without surface
   float distance = infinity;  ///< infinity for infinite and distant lights
   float position_error = 0;   ///< bound of the distance between `position` and the surface that rays meet, metres
-  Spectrum radiance;          ///< L arriving along -wi; for delta lights intensity/distance² or irradiance; of media 1
-  float pdf = 0;              ///< per solid angle at the receiving point; 1 for lights without extent
-  bool delta = false;         ///< no other technique can find this direction
+  Spectrum radiance;   ///< L arriving along -wi; for delta lights intensity/distance² or irradiance; for media 1
+  float pdf = 0;       ///< per solid angle at the receiving point; 1 for lights without extent
+  bool delta = false;  ///< no other technique can find this direction
 };
 
 /// Result of photon emission.
@@ -59,8 +59,8 @@ struct EmissionSample {
   bool from_infinity = false;
 };
 
-/// The numbers in [0,1]² from which a light has sampled a ray; empty where it does not need any, or where its sampling
-/// has no inverse. Densities are then integrated over them.
+/// The numbers in [0,1]² from which a light sampled a ray. Empty if the light needs none or its sampling has no
+/// inverse; densities are then averaged over them.
 struct EmissionNumbers {
   std::optional<Vec2> position{}, direction{};
 };

@@ -25,8 +25,8 @@ SphereCone sphere_cone(float distance, float radius) {
   return {distance, sin2, sin2 / (1 + cos)};
 }
 
-/// The cone of directions from `from` to a round sphere. Nothing if `from` is inside, or so close to the
-/// surface that it may be a point of it: rounded, those that see the inside fall on either side.
+/// The cone of directions from `from` to a round sphere. Nullopt if `from` is inside, or so close to the surface that
+/// it may lie on it: rounding puts surface points that see the inside on either side.
 std::optional<SphereCone> cone_towards(const SphereEmitter& sphere, const Point& from) {
   if (!(sphere.world_radius > 0)) return {};
   const float distance = norm(sphere.centre - from);

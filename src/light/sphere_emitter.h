@@ -27,7 +27,7 @@ struct SphereEmitter {
                 float phi_max = 2 * pi);
 
   EmitterPoint sample_area(const Vec2& u) const;
-  /// Nullopt if stretched; and if whole and round, since `sample_towards` then draws only points of the side it sees.
+  /// Nullopt if stretched, and if whole and round, because `sample_towards` then draws only points that face `from`.
   std::optional<Vec2> invert_sample_area(const Point& point) const;
   Bounds bounds() const;
   NormalCone normal_cone() const;

@@ -17,7 +17,8 @@ struct SphericalTriangle {
   float det, dots, base;       ///< |v0 v1 v2|, (v0 + v1).v2, 1 + v0.v1
   float solid_angle;           ///< sr, in [0, 2 pi] (van Oosterom & Strackee 1983)
 
-  /// `determinant`: |v0 v1 v2|, from the height above the plane, because that of nearly parallel unit vectors cancels.
+  /// `determinant`: |v0 v1 v2|, computed from the height above the plane, because the triple product of nearly parallel
+  /// unit vectors cancels.
   SphericalTriangle(const Direction& v0, const Direction& v1, const Direction& v2, float determinant)
       : v{v0, v1, v2},
         det(determinant),
@@ -43,7 +44,7 @@ struct SphericalTriangle {
   }
 };
 
-/// False for small solid angles, for which area sampling is as good, and for points that lie almost in the emitter.
+/// False for small solid angles, for which area sampling is as good, and for receiving points almost in the emitter.
 inline bool is_well_conditioned(float solid_angle) { return solid_angle > 2e-5f && solid_angle < 6.2f; }
 
 }  // namespace lanthorn

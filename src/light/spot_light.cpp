@@ -34,13 +34,13 @@ using Falloff = SpotLight::Falloff;
 /// The falloff at the fraction x of the way from the outer cone to the inner one.
 float intensity_at(Falloff shape, float x) { return shape == Falloff::square ? x * x : smoothstep(x); }
 
-/// Its integral over [0,1].
+/// Integral of `intensity_at` over x in [0,1].
 float mean_intensity(Falloff shape) { return shape == Falloff::square ? 1.0f / 3 : 0.5f; }
 
-/// Samples x proportional to it.
+/// Samples x in [0,1] with density proportional to `intensity_at`.
 float sample_falloff(Falloff shape, float u) { return shape == Falloff::square ? std::cbrt(u) : sample_smoothstep(u); }
 
-/// Part of its integral below x: the inverse of `sample_falloff`.
+/// Fraction of the integral of `intensity_at` that lies below x: the inverse of `sample_falloff`.
 float part_below(Falloff shape, float x) { return shape == Falloff::square ? x * x * x : x * x * x * (2 - x); }
 
 float one_minus_cos(float angle) { return 2 * sqr(std::sin(0.5f * angle)); }

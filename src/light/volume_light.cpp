@@ -23,7 +23,7 @@ PiecewiseConstant2d rows_of(std::span<const float> values, int resolution) {
 
 }  // namespace
 
-GlowTable::GlowTable(BlockGrid emission, const MediumBox& place)
+EmissionTable::EmissionTable(BlockGrid emission, const MediumBox& place)
     : to_medium_(place.to_medium), density_(std::move(emission)) {
   const std::span<float> values = density_.values();
   const auto count = static_cast<double>(values.size());
@@ -35,10 +35,10 @@ GlowTable::GlowTable(BlockGrid emission, const MediumBox& place)
     values[i] = static_cast<float>(static_cast<double>(blocks_.pdf_of_cell(i)) / place.volume());
 }
 
-GlowTable::Start GlowTable::sample(const Vec2& u) const {
+EmissionTable::Start EmissionTable::sample(const Vec2& u) const {
   const std::optional<PiecewiseConstant2d::Sample> s = blocks_.sample(u);
   if (!s) return {};
-  // Two numbers give a block and two coordinates in it. The third one is a function of both without a pattern.
+  // Two numbers determine a block and two coordinates in it. The third coordinate is a hash of both.
   const auto n = static_cast<float>(density_.resolution());
   const float third = unit_float(hash_words({std::bit_cast<std::uint32_t>(u.x), std::bit_cast<std::uint32_t>(u.y)}));
   const Vec2 in_block(s->at.x * n - std::floor(s->at.x * n), s->at.y * n * n - std::floor(s->at.y * n * n));
@@ -48,7 +48,7 @@ GlowTable::Start GlowTable::sample(const Vec2& u) const {
 }
 
 template <class Integral>
-float GlowTable::integrate(const Point& origin, const Direction& direction, Integral&& integral) const {
+float EmissionTable::integrate(const Point& origin, const Direction& direction, Integral&& integral) const {
   float sum = 0;
   density_.for_each_piece({to_medium_.point(origin), to_medium_.vector(direction), infinity},
                           [&](float t0, float t1, float density) {
@@ -58,11 +58,11 @@ float GlowTable::integrate(const Point& origin, const Direction& direction, Inte
   return sum;
 }
 
-float GlowTable::per_area(const Point& origin, const Direction& direction) const {
+float EmissionTable::per_area(const Point& origin, const Direction& direction) const {
   return integrate(origin, direction, [](float t0, float t1) { return t1 - t0; });
 }
 
-float GlowTable::per_solid_angle(const Point& origin, const Direction& direction) const {
+float EmissionTable::per_solid_angle(const Point& origin, const Direction& direction) const {
   return integrate(origin, direction, [](float t0, float t1) { return (t1 - t0) * (t1 * t1 + t1 * t0 + t0 * t0) / 3; });
 }
 
@@ -83,7 +83,7 @@ std::optional<LightSample> VolumeLight::sample_direct(const Point& from, const V
 std::optional<EmissionSample> VolumeLight::sample_emission(const Vec2& u_position, const Vec2& u_direction,
                                                            const Wavelengths& w) const {
   std::optional<EmissionSample> result;
-  const GlowTable::Start start = table->sample(u_position);
+  const EmissionTable::Start start = table->sample(u_position);
   EmissionSample& sample = result.emplace();
   sample.origin = start.position;
   sample.direction = sample_uniform_sphere(u_direction);

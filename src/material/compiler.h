@@ -33,9 +33,9 @@ struct SpectrumAt {
   Spectrum operator()(const TexturePoint& at, const Wavelengths& w) const { return textures->evaluate(input, at, w); }
 };
 
-/// A spectrum parameter at a point, averaged over its footprint (`TextureGraph::evaluate_filtered`). For parameters in
-/// which the closure is linear and on which its sampling does not depend: then neither the mean of a picture nor MIS
-/// weights depend on how far the average goes.
+/// A spectrum parameter at a point, averaged over its footprint (`TextureGraph::evaluate_filtered`). Only for
+/// parameters in which the closure is linear and on which its sampling does not depend: the width of the footprint then
+/// changes neither the expected picture nor MIS weights.
 struct FilteredSpectrumAt : SpectrumAt {
   Spectrum operator()(const TexturePoint& at, const Wavelengths& w) const {
     return textures->evaluate_filtered(input, at, w);
@@ -55,7 +55,8 @@ struct MaterialStore {
 /// Compiles the parameters of one material and records its traits on the way.
 class MaterialCompiler {
  public:
-  /// All arguments must outlive the compiler; `textures` and the contents of `spectra` and `store`, what it compiles.
+  /// All arguments must outlive the compiler. `textures` and the contents of `spectra` and `store` must also outlive
+  /// the closures that it compiles.
   MaterialCompiler(const SceneDescription& description, TextureGraph& textures, SpectrumStore& spectra,
                    MaterialStore& store, const SourceLocation& location)
       : description_(description), textures_(textures), spectra_(spectra), store_(store), location_(location) {}
@@ -64,12 +65,12 @@ class MaterialCompiler {
   SpectrumAt spectrum(const description::SpectrumParameter& p, description::SpectrumRole role);
   SpectrumAt albedo(const description::SpectrumParameter& p) { return spectrum(p, description::SpectrumRole::albedo); }
   FilteredSpectrumAt filtered_albedo(const description::SpectrumParameter& p);
-  /// A spectrum that does not depend on the place, and of which no trait follows.
+  /// A spectrum that is the same everywhere and has no effect on the traits.
   SpectrumCurve curve(const description::SpectrumValue& value);
   /// An index of refraction whose variation disperses light.
   SpectrumCurve index(const description::SpectrumValue& eta);
   const MeasuredBrdf& measured(description::Index brdf);
-  /// How light passes a coat of this index, GGX width and thickness.
+  /// The table of light that passes a coat of this index, GGX width and thickness, made on first use.
   const CoatPassage& coat_passage(float eta, float alpha, float thickness);
 
   const SourceLocation& location() const { return location_; }

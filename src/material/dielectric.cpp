@@ -14,7 +14,7 @@ static ClosureAt closure_of(const description::DielectricMaterial& m, MaterialCo
   const RoughnessAt roughness(m.roughness, c);
   const SpectrumAt tint = c.albedo(m.tint);
   const FilmAt film(m.film, c);
-  // Without refraction, rough surfaces are smooth, too.
+  // With an index of 1, rough surfaces do not refract and are specular, too.
   c.traits.may_be_specular =
       c.traits.may_be_specular || eta.varies() || index_at_hero(eta, Wavelengths::rgb(0.5f)) == 1;
   return [=](const TexturePoint& at, const Wavelengths& w) -> Bsdf {

@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// For the files of materials, and for nothing else. Such a file defines
+// Included only by the files of the material kinds. Each of them defines
 //
 //   static ClosureAt closure_of(const description::XMaterial& m, MaterialCompiler& c) { ... }
 //   template ClosureAt compile(const description::XMaterial& m, MaterialCompiler& c);
 //
-// The second line is what the rest of the program calls.
+// The second line instantiates the function that the rest of the program calls.
 #pragma once
 
 #include "material/compiler.h"

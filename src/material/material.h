@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// A material in a scene: the closure that its parameters give at a point of a surface. Each kind of material has a file
-// here, as each closure has one in surface/: x.cpp compiles the parameters of description::XMaterial.
+// A material in a scene: its parameters give a closure at each point of a surface. Each kind of material has a file in
+// this folder, as each closure has one in surface/: x.cpp compiles the parameters of description::XMaterial.
 #pragma once
 
 #include <functional>
@@ -20,14 +20,14 @@ class MaterialCompiler;
 using ClosureAt = std::function<Bsdf(const TexturePoint& at, const Wavelengths& w)>;
 
 /// Compiles the parameters of a material, records its traits in the compiler, and returns its closure, which keeps
-/// pointers to the scene's textures. Throws Error for parameters that make no material. The file of each kind
-/// instantiates this function (see kind.h). A kind without a file is an error of the linker.
+/// pointers to the scene's textures. Throws Error for invalid parameters. The file of each kind instantiates this
+/// function (see kind.h); a kind without a file is a linker error.
 template <class Parameters>
 ClosureAt compile(const Parameters& parameters, MaterialCompiler& compiler);
 
 /// Properties of a material that hold at all of its points.
 struct MaterialTraits {
-  bool is_interface = false;                   ///< no surface
+  bool is_interface = false;                   ///< a boundary of media without a surface
   bool is_anisotropic = false;                 ///< the shading frame's tangent matters
   bool is_dispersive = false;                  ///< an index of refraction varies with wavelength
   bool has_tables = false;                     ///< some spectrum is tabulated, other than a metal's (see metal_rgb.h)
@@ -35,7 +35,7 @@ struct MaterialTraits {
   bool has_levels = false;                     ///< some texture may be averaged over footprints
   bool has_relief = false;                     ///< a normal map or a displacement modifies shading normals
   bool may_be_specular = false;                ///< has delta lobes at least in some places
-  bool is_hair = false;                        ///< scatters as a hair, whose width faces every ray
+  bool is_hair = false;                        ///< scatters as a hair, a ribbon that faces every ray
   std::optional<description::Index> interior;  ///< medium inside; of a mix: the interior of the part that has one
 };
 

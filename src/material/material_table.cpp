@@ -118,13 +118,13 @@ MaterialTraits MaterialTable::settle(Mix& mix, const SourceLocation& location,
   const MaterialTraits& a = materials_[mix.materials[0]].traits;
   const MaterialTraits& b = materials_[mix.materials[1]].traits;
   if (a.is_interface || b.is_interface) {
-    warnings.push_back({location, "a mix with an interface material is not supported: the other one is used"});
+    warnings.push_back({location, "a mix with an interface material is not supported: the other material is used"});
     const std::uint32_t other = mix.materials[a.is_interface ? 1 : 0];
     mix.materials = {other, other};
   }
   mix.cost = cost_of(mix, location);
   if (a.interior && b.interior && a.interior != b.interior)
-    warnings.push_back({location, "the parts of a mix have different media inside: the first one's is used"});
+    warnings.push_back({location, "the materials of a mix have different interior media: that of the first is used"});
   return {.is_interface = a.is_interface && b.is_interface,
           .is_anisotropic = a.is_anisotropic || b.is_anisotropic,
           .is_dispersive = a.is_dispersive || b.is_dispersive,
@@ -148,10 +148,10 @@ TextureGraph::Cost MaterialTable::cost_of(const Mix& mix, const SourceLocation& 
     if (shows_one) break;
   }
   if (++cost.depth > most.depth)
-    throw Error(location, "mixes of materials name each other more than " + std::to_string(most.depth) + " deep");
+    throw Error(location, "mix materials are nested more than " + std::to_string(most.depth) + " deep");
   if (cost.lookups > most.lookups)
     throw Error(location, "this mix takes more than " + std::to_string(most.lookups) +
-                              " lookups: each part counts as often as others name it");
+                              " lookups: a material counts once for each reference to it");
   return cost;
 }
 

@@ -85,7 +85,7 @@ class MaterialTable {
     MaterialTraits traits;
   };
 
-  /// Finds out which materials have textures with coarser levels, once the images are loaded.
+  /// Records which materials have textures with coarser levels, once the images are loaded.
   void note_levels();
   Material make(const description::Material& source, MaterialCompiler& compiler, TextureGraph& textures,
                 std::vector<description::Warning>& warnings);
@@ -93,7 +93,7 @@ class MaterialTable {
   /// are never chosen. There is only one medium inside, because light that enters through one part can leave through
   /// another.
   MaterialTraits settle(Mix& mix, const SourceLocation& location, std::vector<description::Warning>& warnings) const;
-  /// Throws Error if it is more than textures may cost: mixes are visited recursively, too.
+  /// Cost of visiting all parts, including nested mixes. Throws Error if it exceeds the limit for textures.
   TextureGraph::Cost cost_of(const Mix& mix, const SourceLocation& location) const;
   static std::uint32_t choose(const Mix& mix, const TexturePoint& at, const Direction& towards);
 

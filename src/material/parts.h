@@ -19,7 +19,7 @@ namespace lanthorn {
 inline constexpr float d_line = 587.6f;
 
 Spectrum clamped_albedo(const Spectrum& s);
-/// The path's index of refraction: the value at the hero wavelength if it varies; 1 if it is within 1e-5 of 1.
+/// Index of refraction of the path: the value at the hero wavelength if it varies; 1 if it is within 1e-5 of 1.
 float index_at_hero(const SpectrumCurve& eta, const Wavelengths& w);
 
 struct RoughnessAt {
@@ -40,7 +40,7 @@ struct FilmAt {
   ThinFilm operator()(const TexturePoint& at, const Wavelengths& w) const;
 };
 
-/// A reflectance, or the complex index of refraction.
+/// A conductor given by its reflectance or by its complex index of refraction.
 struct MetalAt {
   std::optional<SpectrumAt> reflectance;
   SpectrumAt eta, k;

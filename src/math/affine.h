@@ -42,8 +42,8 @@ class Motion {
   explicit Motion(const AnimatedTransform& t);
 
   bool is_moving() const { return moving_; }
-  /// The map at `time`, clamped to the time interval of the AnimatedTransform. It is made in `moved` where something
-  /// moves, and is not copied elsewhere.
+  /// The map at `time`, clamped to the time interval of the AnimatedTransform. `moved` is storage for the result if
+  /// there is motion; otherwise nothing is copied.
   const Affine& at(float time, std::optional<Affine>& moved) const {
     if (!moving_ || time <= start_time_) return fixed_start_;
     return moved.emplace(between(time));

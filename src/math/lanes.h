@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Eight floats that are computed together: AVX where the build has it, loops that the compiler vectorises elsewhere.
+// Eight floats that are processed together: by AVX2 where the build has it, else by loops that the compiler vectorises.
 #pragma once
 
 #include <array>

@@ -64,7 +64,7 @@ constexpr std::array<Lanes, 32> direction_numbers() {
 }
 
 // For each byte of the bit-reversed index and each of its values, the four bit-reversed coordinates; a point is the XOR
-// of four entries. Bit-reversed, because the scrambling of both works from the lowest bit up.
+// of four entries. Index and coordinates are bit-reversed because scrambling works from the lowest bit up.
 constexpr std::array<std::array<Lanes, 256>, 4> make_tables() {
   constexpr auto v = direction_numbers();
   std::array<std::array<Lanes, 256>, 4> tables{};

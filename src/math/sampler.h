@@ -40,9 +40,9 @@ constexpr Stream stream_of(std::string_view name) {
   return static_cast<Stream>(hash | 0x80000000u);
 }
 
-/// The second coordinate of Sobol' point number `i`, of which the first is the bit reversal of i; a 32-bit fraction
-/// (Kollig & Keller 2002, "Efficient Multidimensional Sampling"). Those of the first 2^m points are the multiples of
-/// 2^-m.
+/// The second coordinate of Sobol' point number `i`, as a 32-bit fraction (Kollig & Keller 2002, "Efficient
+/// Multidimensional Sampling"); the first coordinate is the bit reversal of i. The second coordinates of the first 2^m
+/// points are the multiples of 2^-m.
 constexpr std::uint32_t second_sobol_coordinate(std::uint32_t i) {
   std::uint32_t sum = 0;
   for (std::uint32_t direction = 1u << 31; i != 0; i >>= 1, direction ^= direction >> 1)
@@ -54,7 +54,7 @@ constexpr std::uint32_t second_sobol_coordinate(std::uint32_t i) {
 /// shuffled independently per group (Burley 2020, "Practical Hash-based Owen Scrambling"); later groups are hashes.
 class Sampler {
  public:
-  /// Eye path: stratified over the passes of its pixel, as they are numbered here.
+  /// Eye path: stratified over the passes of its pixel, which `pass` numbers.
   static Sampler for_pixel(std::uint64_t seed, Stream stream, std::uint32_t pixel, std::uint32_t pass);
   /// Photon `index` of light `light`: stratified over the photons that this light emits in the pass.
   static Sampler for_light_path(std::uint64_t seed, Stream stream, std::uint32_t light, std::uint32_t pass,
@@ -67,8 +67,8 @@ class Sampler {
 
   /// Moves to the first of the four dimensions of `group`.
   void seek(std::uint32_t group) { position_ = group_size * group; }
-  /// The same, and draws the numbers now, of an odd group those of the group before it, too: beside a long computation
-  /// that they do not depend on, they are nearly free.
+  /// Like `seek`, but draws the group's numbers now (for an odd group also those of the group before it). Beside a long
+  /// computation that does not depend on them, they are nearly free.
   void draw_ahead(std::uint32_t group) {
     seek(group);
     if (samples_ == nullptr && !is_drawn()) draw();
@@ -111,8 +111,8 @@ class Sampler {
   std::uint32_t index_ = 0;           // position in the Sobol' sequence
   std::uint32_t reversed_index_ = 0;  // its bits reversed
   std::uint32_t position_ = 0;        // the next dimension
-  // The groups 2i and 2i + 1, of which drawn_ dimensions from drawn_from_ on are valid. Who needs the odd one (the
-  // visitor of an eye walk) mostly needs the even one, too (the walk), and two take hardly longer than one.
+  // Groups 2i and 2i + 1, of which drawn_ dimensions from drawn_from_ on are valid. Both are drawn together, because an
+  // eye walk mostly needs both (its visitor the odd group, the walk the even one) and two take hardly longer than one.
   std::uint32_t drawn_from_ = 0, drawn_ = 0;
   std::array<Group, 2> values_{};
 };

@@ -10,8 +10,8 @@
 
 namespace lanthorn {
 
-/// cos(x), sin(x) for |x| <= pi/4, by the first terms of Taylor's series: those left out are below half a unit in the
-/// last place.
+/// cos(x), sin(x) for |x| <= pi/4, by the first terms of the Taylor series; the omitted terms are below half a unit in
+/// the last place.
 inline Vec2 cos_and_sin_below_eighth(float x) {
   const float x2 = x * x;
   return {1 - x2 / 2 * (1 - x2 / 12 * (1 - x2 / 30 * (1 - x2 / 56))),

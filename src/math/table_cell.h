@@ -7,7 +7,7 @@
 
 namespace lanthorn {
 
-/// The nodes of a table between which a value lies: `low` and the next, `fraction` of the way.
+/// The nodes of a table between which a value lies: `low` and the next one. `fraction` in [0,1]: position between them.
 struct TableCell {
   std::size_t low = 0;
   float fraction = 0;

@@ -33,8 +33,8 @@ std::uint32_t TreeDistribution::add_inner(std::size_t axis, std::uint32_t lower,
   return static_cast<std::uint32_t>(nodes_.size() - 1);
 }
 
-// Which half a number lies in is as good as random. So both walks below index by it instead of branching: a branch that
-// the processor guesses wrong would cost more than the node.
+// Which half a number lies in is unpredictable, so both walks below index by it instead of branching: a mispredicted
+// branch would cost more than the node.
 
 TreeDistribution::Sample TreeDistribution::sample(const Numbers& u) const {
   if (nodes_.empty()) return {u, 1};

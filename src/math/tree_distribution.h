@@ -40,7 +40,7 @@ class TreeDistribution {
 
   /// Monotone in each number, so stratification is preserved.
   Sample sample(const Numbers& u) const;
-  /// Density of these numbers: of those that are empty, integrated over all.
+  /// Density of these numbers, integrated over those that are empty.
   float pdf(const SomeNumbers& at) const;
   std::size_t size() const { return nodes_.size(); }
 

@@ -22,7 +22,7 @@ using glm::cross;
 using glm::dot;
 using glm::normalize;
 
-/// Absolute values of the components. glm's own takes them by calls through a pointer.
+/// Absolute values of the components; glm::abs would call a function through a pointer for each.
 inline Vec3 abs(const Vec3& v) { return {std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)}; }
 inline float length_squared(const Vec3& v) { return dot(v, v); }
 inline float distance_squared(const Point& a, const Point& b) { return length_squared(a - b); }

@@ -41,7 +41,8 @@ double WindowedPiecewiseConstant2d::integral(const Window& window) const {
   return integral(x1, y1) - integral(x0, y1) - integral(x1, y0) + integral(x0, y0);
 }
 
-/// Inverts `integral`, which rises from 0 at `low` and is linear between whole numbers: where it reaches `target`.
+/// Inverse of `integral`, which rises from 0 at `low` and is linear between whole numbers: the place where it reaches
+/// `target`.
 template <class Integral>
 WindowedPiecewiseConstant2d::Inverse WindowedPiecewiseConstant2d::invert(double low, double high, std::size_t cells,
                                                                          double target, const Integral& integral) {

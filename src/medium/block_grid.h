@@ -15,8 +15,8 @@
 
 namespace lanthorn {
 
-/// A number for each block of a coarse grid over a box, outside of which it is 0: upper bounds of a density, so that
-/// tracking takes long steps where the medium is thin, or the density of points drawn in it.
+/// A value for each block of a coarse grid over a box, 0 outside the box. Holds majorants of a density, so that
+/// tracking takes long steps where the medium is thin, or the density of sampled points.
 class BlockGrid {
  public:
   BlockGrid() = default;
@@ -40,8 +40,8 @@ class BlockGrid {
     return {corner(x, y, z), corner(x + 1, y + 1, z + 1)};
   }
 
-  /// Calls `visit(t0, t1, majorant)` for the pieces of the segment inside the box, in order, until it returns false.
-  /// The segment is in the medium's space; t is in units of its direction, which need not have unit length.
+  /// Calls `visit(t0, t1, value)` for the pieces of the segment inside the box, in order, until it returns false. The
+  /// segment is in the medium's space; t is in units of its direction, which need not have unit length.
   template <class Visit>
   void for_each_piece(const Segment& segment, Visit&& visit) const;
 

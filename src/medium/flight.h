@@ -27,15 +27,15 @@ struct Flight {
   std::optional<float> pdf = 1.0f;
 };
 
-/// What a segment lets through.
+/// Attenuation of light along a segment.
 struct Attenuation {
   Spectrum transmittance{1};
-  float optical_depth = 0;  ///< as MIS weights take it: by the mean of the wavelengths' extinction, on grids 0
+  float optical_depth = 0;  ///< for MIS weights: from the wavelengths' mean extinction; 0 on grids
 };
 
-/// Light and shade of a segment.
-struct Glow {
-  Spectrum emitted;  ///< radiance of volumetric emission along the segment, at its origin
+/// Emission and transmittance of a segment.
+struct VolumeEmission {
+  Spectrum emitted;  ///< volumetric emission along the segment, as radiance at its origin
   Spectrum transmittance{1};
 };
 

@@ -11,8 +11,8 @@ namespace {
 
 constexpr int channels = 4;
 
-// exp(-extinction length). Handles infinite lengths, for which a product with zero extinction would be undefined. Where
-// fog is grey, all components are the same.
+// exp(-extinction length). Handles infinite lengths, for which a product with zero extinction would be undefined.
+// Reuses the exponential of equal components, as in grey fog.
 Spectrum attenuated(const Spectrum& extinction, float length) {
   Spectrum result;
   for (int i = 0; i < channels; ++i) {
@@ -37,12 +37,12 @@ Attenuation HomogeneousMedium::attenuation(float length, const Wavelengths& w) c
 }
 
 // ∫ sigma_a L_e T(t) dt over the segment, in closed form.
-Glow HomogeneousMedium::glow(float length, const Wavelengths& w) const {
+VolumeEmission HomogeneousMedium::emission_along(float length, const Wavelengths& w) const {
   const Spectrum absorbed = sigma_a.evaluate(w), sigma_t = absorbed + sigma_s.evaluate(w);
-  Glow glow{emission.evaluate(w), attenuated(sigma_t, length)};
+  VolumeEmission result{emission.evaluate(w), attenuated(sigma_t, length)};
   for (int i = 0; i < channels; ++i)
-    glow.emitted[i] *= sigma_t[i] > 0 ? absorbed[i] / sigma_t[i] * (1 - glow.transmittance[i]) : 0.0f;
-  return glow;
+    result.emitted[i] *= sigma_t[i] > 0 ? absorbed[i] / sigma_t[i] * (1 - result.transmittance[i]) : 0.0f;
+  return result;
 }
 
 Flight HomogeneousMedium::fly(float length, const Spectrum& beta, const Wavelengths& w, HashRng& rng) const {

@@ -16,11 +16,11 @@ struct HomogeneousMedium {
   SpectrumCurve emission;          ///< radiance of an infinitely deep medium without scattering
   HenyeyGreenstein phase;
 
-  /// Per metre.
+  /// Extinction coefficient, per metre.
   Spectrum extinction(const Wavelengths& w) const { return sigma_a.evaluate(w) + sigma_s.evaluate(w); }
   /// exp(-extinction length).
   Attenuation attenuation(float length, const Wavelengths& w) const;
-  Glow glow(float length, const Wavelengths& w) const;
+  VolumeEmission emission_along(float length, const Wavelengths& w) const;
   /// Samples a distance from the mean of the channels' free-flight densities, weighted by their throughput `beta`
   /// (Wilkie et al. 2014): weights stay bounded however much the channels differ.
   Flight fly(float length, const Spectrum& beta, const Wavelengths& w, HashRng& rng) const;

@@ -64,12 +64,12 @@ Flight fly_through(const M& m, const Segment& s, const Spectrum& beta, const Wav
   return track_flight(m, in_medium(m, s), beta, w, rng);
 }
 
-Glow glow_of(const HomogeneousMedium& m, const Segment& s, const Wavelengths& w, HashRng&) {
-  return m.glow(s.length, w);
+VolumeEmission emission_in(const HomogeneousMedium& m, const Segment& s, const Wavelengths& w, HashRng&) {
+  return m.emission_along(s.length, w);
 }
 template <class M>
-Glow glow_of(const M& m, const Segment& s, const Wavelengths& w, HashRng& rng) {
-  return track_glow(m, in_medium(m, s), w, rng);
+VolumeEmission emission_in(const M& m, const Segment& s, const Wavelengths& w, HashRng& rng) {
+  return track_emission(m, in_medium(m, s), w, rng);
 }
 
 Spectrum emission_of(const HomogeneousMedium& m, const Point&, const Wavelengths& w) {
@@ -93,7 +93,7 @@ bool scatters(const Medium& medium) {
 
 namespace {
 
-// Of coefficients that vary with wavelength alone.
+// For coefficients that vary with wavelength only.
 float albedo_of(const SpectrumCurve& sigma_a, const SpectrumCurve& sigma_s) {
   float largest = 0;
   const auto see = [&](float absorbed, float scattered) {
@@ -180,8 +180,8 @@ Flight fly(const Medium& medium, const Segment& segment, const Spectrum& beta, c
   return std::visit([&](const auto& m) { return fly_through(m, segment, beta, w, rng); }, medium);
 }
 
-Glow glow_along(const Medium& medium, const Segment& segment, const Wavelengths& w, HashRng& rng) {
-  return std::visit([&](const auto& m) { return glow_of(m, segment, w, rng); }, medium);
+VolumeEmission emission_along(const Medium& medium, const Segment& segment, const Wavelengths& w, HashRng& rng) {
+  return std::visit([&](const auto& m) { return emission_in(m, segment, w, rng); }, medium);
 }
 
 Spectrum emission_at(const Medium& medium, const Point& p, const Wavelengths& w) {

@@ -38,23 +38,23 @@ inline Spectrum transmittance(const Medium& medium, const Segment& segment, cons
 /// Scattering coefficient at a point, per metre.
 Spectrum scattering_at(const Medium& medium, const Point& p, const Wavelengths& w);
 
-// What MIS weights take for the densities of flights: the mean of the wavelengths, whichever a walk has chosen by.
+// Flight densities as MIS weights use them: from the wavelengths' mean extinction, whichever wavelength a walk used.
 
-/// Extinction per metre where it is the same everywhere; 0 on grids, which weights take as transparent.
+/// Extinction of a homogeneous medium, per metre; 0 for media on grids, which MIS weights treat as transparent.
 float mean_extinction(const Medium& medium, const Wavelengths& w);
 /// Density per metre with which walks scatter at a point that they reach.
 float collision_density(const Medium& medium, const Point& p, const Wavelengths& w);
 
-/// Length of the part of the segment on which the medium scatters light: a single precision number sees none of it
-/// beyond.
+/// Length of the part of the segment, from its origin, on which the medium scatters noticeable light, metres: beyond
+/// it, transmittance is lost in single precision.
 float scattering_length(const Medium& medium, const Segment& segment, const Wavelengths& w);
 
 /// Lets a walk of throughput `beta` cross the segment or scatter on it; samples free flight.
 Flight fly(const Medium& medium, const Segment& segment, const Spectrum& beta, const Wavelengths& w, HashRng& rng);
 
-/// Volumetric emission of the segment: what an eye at its origin sees, whatever scatters on the way. Unbiased; exact if
-/// there is a closed form.
-Glow glow_along(const Medium& medium, const Segment& segment, const Wavelengths& w, HashRng& rng);
+/// Volumetric emission of the whole segment as seen from its origin, attenuated on the way, wherever a walk scatters.
+/// Unbiased; exact if there is a closed form.
+VolumeEmission emission_along(const Medium& medium, const Segment& segment, const Wavelengths& w, HashRng& rng);
 
 /// Emission coefficient at a point: radiance per metre.
 Spectrum emission_at(const Medium& medium, const Point& p, const Wavelengths& w);
@@ -64,17 +64,17 @@ struct MediumBox {
   Bounds box;  ///< in the medium's space
   Transform to_medium;
 
-  /// In the world, m³.
+  /// Volume in the world, m³.
   double volume() const;
 };
-/// Empty if the medium fills whatever space surfaces give it.
+/// Nullopt for a homogeneous medium, which fills the space that surfaces enclose.
 std::optional<MediumBox> box_of(const Medium& medium);
 
 /// False if the medium only absorbs and emits. May be true for a medium on a grid whose values are all 0.
 bool scatters(const Medium& medium);
 
-/// The largest share of extinction that is scattering, of any channel of either colour mode; an upper bound of it for
-/// media with RGB grids. 0 if the medium does not scatter.
+/// Largest single-scattering albedo over the channels of both colour modes; an upper bound for media with RGB grids. 0
+/// if the medium does not scatter.
 float largest_albedo(const Medium& medium);
 
 /// True if the medium has volumetric emission.

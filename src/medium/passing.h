@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Flights that end where they scatter, seen at the points that they pass.
+// Light that passes a point of a flight, for flights that end where they scatter.
 #pragma once
 
 #include <optional>
@@ -13,9 +13,9 @@ namespace lanthorn {
 /// True if the probability with which flights (`fly`) pass a point is known.
 inline bool knows_passing(const Medium& medium) { return std::holds_alternative<HomogeneousMedium>(medium); }
 
-/// Transmittance over a distance (m), divided by the probability with which a flight of throughput `beta` passes its
-/// end: what is left of its flux, by wavelength. 1 if all wavelengths are attenuated alike. Empty unless
-/// `knows_passing`.
+/// Transmittance over `distance` (m), divided by the probability that a flight of throughput `beta` passes its end: the
+/// flight's remaining flux relative to its start, by wavelength. 1 if all wavelengths are attenuated alike. Nullopt
+/// unless `knows_passing`.
 std::optional<Spectrum> passing_weight(const Medium& medium, float distance, const Spectrum& beta,
                                        const Wavelengths& w);
 

@@ -90,12 +90,12 @@ Flight track_flight(const Source& source, const Segment& segment, const Spectrum
   return flight;
 }
 
-/// Emission that the segment sends to its origin, and what it transmits: one sample of the emission in each block that
-/// the segment crosses, with the transmittance to it by ratio tracking. Where a flame is thin, tracking alone would
-/// meet it too rarely.
+/// Emission of the segment as seen from its origin, and its transmittance. Takes one sample of the emission in each
+/// block that the segment crosses, with the transmittance to it by ratio tracking. Tracking alone would rarely meet a
+/// thin flame.
 template <class Source>
-Glow track_glow(const Source& source, const Segment& segment, const Wavelengths& w, HashRng& rng) {
-  Glow glow;
+VolumeEmission track_emission(const Source& source, const Segment& segment, const Wavelengths& w, HashRng& rng) {
+  VolumeEmission result;
   const float bound = source.extinction_bound(w);
   const auto point = [&](float t) { return segment.origin + t * segment.direction; };
   source.majorants.for_each_piece(segment, [&](float t0, float t1, float density) {
@@ -104,20 +104,19 @@ Glow track_glow(const Source& source, const Segment& segment, const Wavelengths&
     const float sampled = lerp(rng.next(), t0, t1);
     float t = t0 - std::log1p(-rng.next()) / majorant;
     const auto collide_until = [&](float end) {
-      for (; t < end && !glow.transmittance.is_black(); t -= std::log1p(-rng.next()) / majorant)
-        tracking_detail::attenuate(glow.transmittance, source.at(point(t), w), majorant, rng);
+      for (; t < end && !result.transmittance.is_black(); t -= std::log1p(-rng.next()) / majorant)
+        tracking_detail::attenuate(result.transmittance, source.at(point(t), w), majorant, rng);
     };
     collide_until(sampled);
-    glow.emitted += glow.transmittance * source.emitted(point(sampled), w) * (t1 - t0);
+    result.emitted += result.transmittance * source.emitted(point(sampled), w) * (t1 - t0);
     collide_until(t1);
-    return !glow.transmittance.is_black();
+    return !result.transmittance.is_black();
   });
-  return glow;
+  return result;
 }
 
-/// Ratio tracking (Novák et al. 2014). Calls `step(t, estimate)`
-/// at each collision: `estimate` is that of the transmittance from there to the next collision. It is unbiased at every
-/// point of the segment.
+/// Ratio tracking (Novák et al. 2014). Calls `step(t, estimate)` at each collision: `estimate` is the transmittance
+/// from there to the next collision, unbiased at every point of the segment.
 template <class Source, class Step>
 void track_transmittance(const Source& source, const Segment& segment, const Wavelengths& w, HashRng& rng,
                          Step&& step) {

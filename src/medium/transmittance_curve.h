@@ -14,7 +14,7 @@ class TransmittanceCurve {
  public:
   TransmittanceCurve(const Medium& medium, const Segment& segment, const Wavelengths& w, HashRng& rng);
 
-  /// Up to a finite distance (m).
+  /// Transmittance from the origin to a finite distance (m).
   Spectrum to(float distance) const;
 
  private:

@@ -42,14 +42,14 @@ T header_at(std::string_view bytes, std::size_t at, const std::string& file) {
 // Files of other versions have other headers.
 void check_version(const nanovdb::io::Header& header, const std::string& file) {
   const std::string name = "file \"" + printable(file) + "\"";
-  if (header.magic != NANOVDB_MAGIC_NUMBER) throw Error(name + " is no NanoVDB file");
+  if (header.magic != NANOVDB_MAGIC_NUMBER) throw Error(name + " is not a NanoVDB file");
   const nanovdb::Version& version = header.version;
   if (version.getMajor() == NANOVDB_MAJOR_VERSION_NUMBER) return;
   const std::string read = std::to_string(NANOVDB_MAJOR_VERSION_NUMBER);
   throw Error("NanoVDB " + name + " has version " + std::to_string(version.getMajor()) + "." +
               std::to_string(version.getMinor()) + "." + std::to_string(version.getPatch()) +
-              " of the format: versions " + read +
-              ".x are read. nanovdb_convert of OpenVDB makes one from the .vdb file");
+              " of the format; expected version " + read +
+              ".x. OpenVDB's nanovdb_convert makes such a file from the .vdb file");
 }
 
 // Checks the sizes in a file's headers, which NanoVDB trusts: it would allocate whatever they claim, and loop for ever
@@ -98,7 +98,7 @@ VdbDensity::VdbDensity(const std::string& file, const std::string& name, const F
   }
   grid->floats = grid->handle.grid<float>();
   if (grid->floats == nullptr)
-    throw Error("NanoVDB file \"" + printable(file) + "\" has no grid of floats that is called " + in_quotes(name));
+    throw Error("NanoVDB file \"" + printable(file) + "\" has no grid of floats called " + in_quotes(name));
   if (!nanovdb::isValid(*grid->floats, true)) damaged(file);
   grid_ = std::move(grid);
 }

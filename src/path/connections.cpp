@@ -10,7 +10,7 @@ namespace lanthorn {
 
 namespace {
 
-// A vertex of a subpath, as weights see light that arrives from another vertex.
+// A vertex of a subpath as MIS weights see it for light that arrives from another vertex.
 struct Arrival {
   float cos = 1;         // factor that makes a density from there one per area
   float reverse = 0;     // density per solid angle of scattering from there to the previous vertex
@@ -18,7 +18,7 @@ struct Arrival {
   FlightDensity flight;  // of the subpath
   float sin = -1;        // in a medium, of the angle between both flights
 
-  // By the other kind of walk, over that per solid angle and over 1 / distance².
+  // Density of the other kind of walk arriving here, divided by its density per solid angle and by 1 / distance².
   float density(float pass) const { return cos * pass * flight.collision; }
   // `volume` as this subpath's kind of walk sees it (`VolumeMerging::reversed`); `coherence` of the eye path before.
   float volume_merging(const VolumeMerging& volume, float pass, float coherence) const {
@@ -105,7 +105,8 @@ struct EmittedRay {
   EmitterHit origin;  // of lights without surface any point of the ray
   Direction direction;
 };
-// With which light paths start there, per area times per solid angle. `of_direct_light`: as a part of such a path.
+// Density with which light paths start on the ray, per area times per solid angle. `of_direct_light`: the path is
+// direct light.
 float density_of_start(const PathContext& path, const Bidirectional& pass, const EmittedRay& ray,
                        bool of_direct_light) {
   const EmissionPdf pdf = pdf_emission(path.scene.lights()[ray.light], ray.origin, ray.direction);
@@ -137,7 +138,7 @@ float weight_of(const PathContext& path, const Bidirectional& pass, const Vertex
   return pass.weigh(sum_of_next_event(at_eye, event.pmf * l.pdf, pdf_walk, pass.techniques));
 }
 
-// A light that an eye walk has come upon.
+// A light that an eye walk has hit.
 struct LightHit {
   std::uint32_t index;
   EmitterHit at;     // of lights without surface any point of the ray
@@ -272,7 +273,8 @@ Spectrum hit_environment(const PathContext& path, const Bidirectional& pass, con
   return sum;
 }
 
-Spectrum hit_glow(const PathContext& path, const Bidirectional& pass, const EmissionVertex& v, Subpath subpath) {
+Spectrum hit_volume_emission(const PathContext& path, const Bidirectional& pass, const EmissionVertex& v,
+                             Subpath subpath) {
   const WalkState& state = v.state;
   const std::optional<std::uint32_t> index = path.scene.volume_light(state.medium);
   if (!index || state.depth == 0) return state.beta * v.radiance;

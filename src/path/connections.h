@@ -17,7 +17,7 @@ struct Bidirectional {
   const View& view;
   Techniques techniques;
   const EmissionDensities& emission;
-  TechniqueSum* weighed = nullptr;  ///< gets what each weight is made from
+  TechniqueSum* weighed = nullptr;  ///< receives the densities behind each weight; may be null
 
   float weigh(const TechniqueSum& sum) const {
     if (weighed) *weighed = sum;
@@ -29,8 +29,9 @@ struct Bidirectional {
 /// Copies a vertex of a light walk, so that it can be kept for the pass.
 LightVertex keep_vertex(const SurfaceVertex& v, const Subpath& subpath);
 LightVertex keep_vertex(const MediumVertex& v, const Subpath& subpath);
-/// The same of a light walk's flight through a medium, of those of which the `share` is kept; up to the next surface,
-/// as far as the walk could have scattered. Empty if it could nowhere. `subpath` departs for the flight.
+/// Keeps a light walk's flight through a medium, up to the next surface, as far as the walk could have scattered.
+/// `share`: fraction of the light paths whose flights are kept. Nullopt if the walk could scatter nowhere. `subpath`
+/// departs for the flight.
 std::optional<LightBeam> keep_beam(const PathContext& path, const FlownSegment& flight, float time, float share,
                                    Subpath& subpath);
 
@@ -44,7 +45,8 @@ Spectrum hit_emitter(const PathContext& path, const Bidirectional& pass, const S
 Spectrum hit_environment(const PathContext& path, const Bidirectional& pass, const EscapeVertex& v,
                          const Subpath& subpath);
 /// The eye walk's ray crosses a medium that emits, after leaving the vertex where `subpath` has arrived.
-Spectrum hit_glow(const PathContext& path, const Bidirectional& pass, const EmissionVertex& v, Subpath subpath);
+Spectrum hit_volume_emission(const PathContext& path, const Bidirectional& pass, const EmissionVertex& v,
+                             Subpath subpath);
 
 /// Next-event estimation at an eye vertex. Draws from the visitor's dimensions.
 DirectLight next_event(const PathContext& path, const Bidirectional& pass, const SurfaceVertex& v,

@@ -83,11 +83,11 @@ Passage passage_to(const PathContext& path, const Vertex& vertex, const NextEven
   const MediumId medium = medium_towards(vertex, l.wi);
   const std::uint32_t dimensions = visitor_dimensions(vertex.state.depth);
   if (is_volume(path.scene.lights()[event.light]))
-    return {glow(path, ray, medium, path.scene.light_media(event.light).inside, dimensions)};
+    return {volume_emission(path, ray, medium, path.scene.light_media(event.light).inside, dimensions)};
   return passage(path, ray, medium, dimensions);
 }
 
-// Only the part of the sample's light that arrives.
+// Multiplies the sample's radiance by the fraction that arrives; nullopt if none does.
 template <class Vertex>
 std::optional<NextEvent> visible(const PathContext& path, const Vertex& vertex, std::optional<NextEvent> e) {
   if (!e) return e;
@@ -141,7 +141,7 @@ Spectrum detail::hit_light(const PathContext& path, const SurfaceVertex& vertex,
   return state.beta * radiance * hit_weight(state, pdf_light);
 }
 
-Spectrum hit_glow(const PathContext& path, const EmissionVertex& vertex) {
+Spectrum hit_volume_emission(const PathContext& path, const EmissionVertex& vertex) {
   const WalkState& state = vertex.state;
   const std::optional<std::uint32_t> index = path.scene.volume_light(state.medium);
   if (!index) return state.beta * vertex.radiance;

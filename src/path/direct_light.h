@@ -26,16 +26,17 @@ struct NextEvent {
   std::uint32_t light = 0;
   float pmf = 0;  ///< probability with which that light was chosen
   LightSample sample;
-  /// state.beta * f * |cos| * L / (pmf * pdf), times what arrives of it, once that has been computed (`arriving`).
+  /// state.beta * f * |cos| * L / (pmf * pdf); after the visibility test also times the fraction that arrives
+  /// (`arriving`).
   Spectrum radiance;
   float pdf_walk = 0;  ///< density with which the walk would sample this direction, per solid angle
   bool dispersed = false;
-  float optical_depth = 0;  ///< of the way to the light (`Passage`), if its transmittance has been computed
+  float optical_depth = 0;  ///< of the way to the light (`Passage`), once its transmittance has been computed
 };
 /// Chooses a light by the light BVH and samples it. Empty if there is no light or it is occluded.
 std::optional<NextEvent> sample_next_event(const PathContext& path, const SurfaceVertex& vertex);
 std::optional<NextEvent> sample_next_event(const PathContext& path, const MediumVertex& vertex);
-/// The same of a given light at a point, which needs no random numbers.
+/// The same for a given point-like light, whose sample needs no random numbers.
 std::optional<NextEvent> sample_next_event_of(const PathContext& path, const MediumVertex& vertex,
                                               const SampledLight& light);
 
@@ -43,8 +44,8 @@ std::optional<NextEvent> sample_next_event_of(const PathContext& path, const Med
 
 /// Step 1: a sample that ignores occlusion. Empty if its contribution is zero.
 std::optional<NextEvent> sample_unshadowed(const PathContext& path, const SurfaceVertex& vertex);
-/// Step 2: the part of its radiance that arrives, by a shadow ray and the transmittance of media. Of media that emit,
-/// whose radiance is 1, all that they send along the ray.
+/// Step 2: the factor of its radiance that arrives, by a shadow ray and the transmittance of media. For an emissive
+/// medium, whose samples have radiance 1: its emission along the ray.
 Spectrum arriving(const PathContext& path, const SurfaceVertex& vertex, const NextEvent& event);
 /// Step 3: the sample with its MIS weight against a walk that samples the direction with density `pdf_walk`, per solid
 /// angle, and so may hit the light itself.
@@ -64,7 +65,7 @@ inline float walk_density(const NextEvent& event, const NarrowContinuation& answ
 }
 
 /// Direct light at the vertex, on a surface or in a medium, by one sample of one light, which the light BVH chooses.
-/// Black if there is no light or it is occluded. `answer` is the visitor's to the walk: where it stops the walk,
+/// Black if there is no light or it is occluded. `answer`: the visitor's answer to the walk; if it stops the walk,
 /// next-event estimation has weight 1.
 template <class Vertex, class Answer>
 DirectLight next_event(const PathContext& path, const Vertex& vertex, const Answer& answer) {
@@ -76,14 +77,15 @@ namespace detail {
 Spectrum hit_light(const PathContext& path, const SurfaceVertex& vertex, std::uint32_t light);
 }
 
-/// Emission of the surface that the walk has hit, times state.beta and the MIS weight. Divides by
-/// `state.share`: the part of the light that the previous visitor estimated is indirect light only.
+/// Emission of the surface that the walk has hit, times state.beta and the MIS weight. Divides by `state.share`,
+/// because the previous visitor's part contained indirect light only.
 inline Spectrum hit_emitter(const PathContext& path, const SurfaceVertex& vertex) {
   return vertex.at.light ? detail::hit_light(path, vertex, *vertex.at.light) : Spectrum();
 }
-/// The same for a medium that the walk's ray crosses. What media that are no lights emit is nobody else's and has
-/// weight 1: methods that estimate the light of non-delta lobes otherwise follow a branch for it (`add_unlit_glow`).
-Spectrum hit_glow(const PathContext& path, const EmissionVertex& vertex);
+/// The same for a medium that the walk's ray crosses. No other technique samples emission from media that are not
+/// lights, so its weight is 1. Methods that estimate the light of non-delta lobes otherwise follow a branch for it
+/// (`add_unlit_emission`).
+Spectrum hit_volume_emission(const PathContext& path, const EmissionVertex& vertex);
 /// The same for infinite lights when the walk has left the scene.
 Spectrum hit_environment(const PathContext& path, const EscapeVertex& vertex);
 

@@ -20,11 +20,10 @@ struct EmissionVisitor {
     return rest();
   }
   void operator()(const EmissionVertex& vertex) {
-    const bool is_unlit = share.unlit_glow && !path.scene.volume_light(vertex.state.medium);
-    if (is_unlit || is_seen(vertex.state)) layers.add_hit(vertex, hit_glow(path, vertex));
+    const bool is_unlit = share.unlit_emission && !path.scene.volume_light(vertex.state.medium);
+    if (is_unlit || is_seen(vertex.state)) layers.add_hit(vertex, hit_volume_emission(path, vertex));
   }
-  // A surface with delta and other lobes may have scattered the walk by a non-delta lobe: then its emission is not
-  // added.
+  // Emission is not added if a surface with delta and other lobes has scattered the walk by a non-delta lobe.
   Continuation operator()(const SurfaceVertex& vertex) {
     if (vertex.state.non_delta > 0 || vertex.state.depth > share.scatterings + 1) return rest();
     layers.see(vertex);
@@ -38,19 +37,19 @@ struct EmissionVisitor {
  private:
   // Emission that the walk reaches next is directly visible, or visible by way of delta scatterings alone.
   bool is_seen(const WalkState& state) const { return state.non_delta == 0 && state.depth <= share.scatterings; }
-  Continuation rest() const { return share.unlit_glow ? Continuation::go_on() : Continuation::stop(); }
+  Continuation rest() const { return share.unlit_emission ? Continuation::go_on() : Continuation::stop(); }
 };
 
 }  // namespace
 
 RayCounts see_emission(const RenderJob& job, const EyeShare& share, std::uint32_t pass, const FilmPass& film) {
-  const WalkLimits limits{share.unlit_glow ? job.settings.max_depth : share.scatterings, 3};
+  const WalkLimits limits{share.unlit_emission ? job.settings.max_depth : share.scatterings, 3};
   RayCounts rays =
       trace_eye_paths(job, {pass, limits}, film,
                       [&](const PathContext& path, const EyeStart& start, const PixelPlace&, LightLayers& layers) {
                         walk_from_camera(path, start.camera, job.view.medium, EmissionVisitor{path, share, layers});
                       });
-  rays.eye = {};  // paths to emission alone: the limit cuts off nothing of what they look for
+  rays.eye = {};  // these paths look for emission only, so the depth limit cuts off none of their light
   return rays;
 }
 

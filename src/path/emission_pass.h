@@ -11,8 +11,8 @@ namespace lanthorn {
 
 /// The light that these eye paths add.
 struct EyeShare {
-  int scatterings = 0;      ///< emission seen after at most this many delta scatterings and no others
-  bool unlit_glow = false;  ///< that of media that are no lights, after any scatterings
+  int scatterings = 0;          ///< emission seen after at most this many delta scatterings and no others
+  bool unlit_emission = false;  ///< emission of media that are not lights, after any scatterings
 };
 
 /// Adds one sample to each pixel: the light that `share` names, and albedo, normal and depth.

@@ -124,7 +124,7 @@ RayCounts trace_eye_paths(const RenderJob& job, const EyePass& pass, const FilmP
   if (partial) partial->end_trace();
   return rays;
 }
-/// The same for eye paths whose times and wavelengths are their own.
+/// The same for eye paths that each draw their own time and wavelengths.
 template <class Trace>
 RayCounts trace_eye_paths(const RenderJob& job, const EyePass& pass, const FilmPass& film, Trace&& trace) {
   return trace_eye_paths(job, pass, film, OwnPathDraw(job), trace);

@@ -21,7 +21,7 @@ struct LensLight {
   float optical_depth = 0;  ///< of the way (`Passage`)
 };
 
-/// Where on the film a light vertex would be seen, if nothing is in between. Draws from the visitor's dimensions.
+/// Film position at which the lens would see a light vertex, ignoring occlusion. Draws from the visitor's dimensions.
 std::optional<CameraConnection> find_lens(const PathContext& path, const View& view, const SurfaceVertex& vertex);
 std::optional<CameraConnection> find_lens(const PathContext& path, const View& view, const MediumVertex& vertex);
 

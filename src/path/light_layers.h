@@ -35,7 +35,7 @@ class LightLayers {
     has_parts_ = true;
   }
 
-  /// The estimated bias of light that is added as well.
+  /// Adds the estimated bias of light that is added separately.
   void add_bias(const Spectrum& bias, bool dispersed) { bias_ += dispersed ? bias * w_.dispersed : bias; }
 
   /// Light that the walk finds by hitting an emitter at this vertex; `part` as above.
@@ -101,7 +101,7 @@ class LightLayers {
   }
 
  private:
-  // What scatters a walk after its first non-delta scattering changes nothing.
+  // Only the walk up to its first non-delta scattering decides where light comes from.
   void come_from(bool medium, const WalkState& state) {
     if (state.non_delta == 0) from_medium_ = medium;
   }
@@ -151,7 +151,7 @@ class LightLayers {
   Spectrum directly_seen_;                            // emission, a part of the sum of its class
   Spectrum directly_seen_in_media_;                   // the part of it that media emit
   std::optional<std::size_t> part_of_directly_seen_;  // which holds it, too
-  bool has_parts_ = false, has_media_ = false;        // save converting black sums
+  bool has_parts_ = false, has_media_ = false;        // skip the conversion of black sums
 };
 
 }  // namespace lanthorn

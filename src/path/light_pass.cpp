@@ -8,7 +8,7 @@ namespace lanthorn {
 
 namespace {
 
-// Triangles from which on a scene does not fit into a core's own cache.
+// Number of triangles from which on a scene exceeds a core's private cache.
 constexpr std::uint64_t large_scene = 8192;
 
 PhotonAllocation allocate(const Scene& scene, const LightPass& pass) {

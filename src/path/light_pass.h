@@ -49,8 +49,8 @@ struct LightPass {
   std::uint32_t pass = 0;
   std::uint64_t paths = 0;  ///< emitted by all lights together
   const EmissionGuide* guide = nullptr;
-  LightPathBlock block = {};  ///< of these paths, those that are traced
-  bool is_in_order = false;   ///< traces them by number, in large scenes too
+  LightPathBlock block = {};  ///< the part of these paths that is traced
+  bool is_in_order = false;   ///< traces paths in ascending order even in large scenes
 };
 
 /// The light paths of a pass, distributed among the lights by PhotonAllocation, or one block of them, in the order in

@@ -43,9 +43,9 @@ struct LightBeam {
   float time = 0;
   MediumId medium = MediumId::vacuum;
   Spectrum beta;        ///< flux at the origin, divided by the number of light paths of the pass that have beams
-  Departure departure;  ///< of the subpath that flies there
+  Departure departure;  ///< how the subpath left its last vertex for this flight
   PathStart start;
-  int depth = 0;  ///< of a vertex on the way
+  int depth = 0;  ///< of a vertex on the flight
   bool caustic = false;
   bool dispersed = false;
 };
@@ -83,7 +83,7 @@ class LightVertices {
     const std::uint32_t begin = i == 0 ? 0 : c.ends[i - 1];
     return std::span(c.vertices).subspan(begin, c.ends[i] - begin);
   }
-  /// The vertices for which `is_wanted`, path by path. Found in parallel.
+  /// The vertices for which `is_wanted` returns true, path by path. Found in parallel.
   template <class Predicate>
   std::vector<const LightVertex*> select(Predicate&& is_wanted) const {
     std::vector<std::size_t> first(chunks_.size() + 1);  // of a chunk

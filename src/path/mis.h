@@ -4,7 +4,7 @@
 // it is here; other files supply the densities.
 //
 // - Two techniques, a light sample and the walk's hit: `power_heuristic` (math/power_heuristic.h).
-// - Sets of samples added up without regard to which made what: `over_balanced`.
+// - Several sets of samples that are summed, whichever set a sample is from: `over_balanced`.
 // - A sample drawn from one of two densities: `mixture_pdf`.
 // - The techniques of bidirectional methods: `sum_of_hit` and the functions after it, from sums that `SubpathDensities`
 //   carries from vertex to vertex. A test compares them with products of densities (tests/unit/path/mis_test.cpp).
@@ -56,7 +56,7 @@ inline float mixture_pdf(float pdf, float other, float share) { return (1 - shar
 // w_eye is the same with both walks exchanged (TR eq. 41). For a merge, divide by M_m instead; then w_light is
 // (d_VCM(m) + r_m d_VC(m)) / η (TR eq. 38).
 //
-// The walks begin otherwise (TR eqs. 31-33). Next-event estimation chooses x_0 with a density of its own, p_direct:
+// The walks begin differently (TR eqs. 31-33). Next-event estimation chooses x_0 with a density of its own, p_direct:
 // d_VCM(1) = p_direct / (p_0 p_1), d_VC(1) = g_0 / (p_0 p_1). All N light paths are connected to the lens, and nothing
 // begins beyond it: for the eye walk, d_VCM = N / q_k and d_VC = 0.
 // At a delta lobe no technique begins. Both walks have the same delta function in their densities, which cancels: η
@@ -68,13 +68,13 @@ inline float mixture_pdf(float pdf, float other, float share) { return (1 - shar
 //
 // In media the same recursions hold with the densities of flights (`FlightDensity`), and with one more sum, for merging
 // there by points and beams (`VolumeMerging`; Křivánek et al. 2014, "Unifying Points, Beams, and Paths in Volumetric
-// Light Transport Simulation"). Merging in media counts by the *coherence* of the eye path up to there
-// (path/coherence.h): where eye paths have spread widely, the n photons that one of them meets say less than n samples
-// of the path, which the balance heuristic does not know.
+// Light Transport Simulation"). Merging in media is weighted by the *coherence* of the eye path up to there
+// (path/coherence.h): where eye paths have spread widely, the n photons that one of them meets carry less information
+// than n independent samples, which the balance heuristic does not know.
 //
-// Densities need not be those of the walks to the last factor (roulette is left out, and flights are those of a mean
-// wavelength): weights only have to sum to 1 over the techniques that make a path, which they do as long as all
-// techniques take the same functions for them.
+// Densities need not be exactly those of the walks (Russian roulette is left out, and flights use the mean extinction
+// of the wavelengths): weights only have to sum to 1 over the techniques that make a path, which they do as long as all
+// techniques use the same functions for them.
 
 /// Density of a flight to a vertex: a function of the segment and of the vertex, the same for walks in both directions.
 struct FlightDensity {
@@ -82,7 +82,7 @@ struct FlightDensity {
   float collision = 1;  ///< in a medium: density per metre of scattering at the vertex, once there; on surfaces 1
 
   float arrival() const { return pass * collision; }
-  /// `optical_depth` of the segment. What is small is bounded, so that products of reciprocals stay finite.
+  /// `optical_depth` of the segment. Small results are bounded from below, so that products of reciprocals stay finite.
   static float passing(float optical_depth) {
     return optical_depth > 0 ? std::exp(-std::min(optical_depth, 18.0f)) : 1.0f;
   }
@@ -132,8 +132,8 @@ struct Techniques {
   /// η_VCM = light paths π r² (TR eq. 20): how much denser paths are drawn by merging than by connecting; 0 without
   /// merging. It may differ between pixels, as their radii do: the same pixel, the same η for all techniques.
   float merging = 0;
-  /// Vertices are connected to lights and to the lens. Photons straight from a light are merged without that only:
-  /// next-event estimation finds their light as well, and without the dark edges of merging.
+  /// Vertices are connected to lights and to the lens. Photons straight from a light are merged only without
+  /// connections: next-event estimation finds their light as well, and without the dark edges of merging.
   bool connects = true;
   float connections = 1;   ///< light paths to whose vertices each eye vertex is connected; may differ between pixels
   VolumeMerging volume{};  ///< photons straight from a light are merged, too
@@ -145,9 +145,9 @@ struct Techniques {
   bool goes_on = true;
 };
 
-/// What weights need to know of a subpath up to a vertex: d_VCM = `end` + c `vcm` and d_VC = `ends` + c `vc` + `media`
-/// + η `vm`, with c light paths that each vertex is connected to. The `end` of a light path are next-event estimation
-/// and the eye path's hit, that of an eye path is the lens.
+/// The data of a subpath up to a vertex that MIS weights need: d_VCM = `end` + c `vcm` and d_VC = `ends` + c `vc` +
+/// `media` + η `vm`, where each vertex is connected to c light paths. The `end` of a light path is next-event
+/// estimation and the eye path's hit; the `end` of an eye path is the lens.
 struct VertexDensities {
   float end = 0;    ///< at the first vertex: next-event estimation, or the lens
   float ends = 0;   ///< the same at a later vertex, and the hit of the light
@@ -163,8 +163,8 @@ struct Scattering {
   float pdf = 0;            ///< of the direction, per solid angle
   float reverse = 0;        ///< with which the other walk goes on to the vertex before, per solid angle
   bool merges = false;      ///< photons are merged at the vertex, on a surface
-  float merging_media = 0;  ///< of merging at the vertex in a medium, what is known before the next flight
-  float coherence = 1;      ///< of a light path's vertex, by which merging in media before it counts
+  float merging_media = 0;  ///< the part of merging at the vertex in a medium that is known before the next flight
+  float coherence = 1;      ///< of a light path's vertex: the weight of merging in media before it
 };
 
 /// The same during a walk.
@@ -173,7 +173,8 @@ struct SubpathDensities : VertexDensities {
 
   float vm_apart = 0;  ///< all ways to merge on surfaces at vertices before the last one, over η
 
-  /// Of an eye path (TR eqs. 31-33), before the geometry of its first vertex. `pdf`: of its first ray, per solid angle.
+  /// Start of an eye path (TR eqs. 31-33), before the geometry of its first vertex. `pdf`: of its first ray, per solid
+  /// angle.
   static SubpathDensities from_lens(float light_paths, float pdf) {
     SubpathDensities result;
     result.end = light_paths / pdf;
@@ -188,7 +189,7 @@ struct SubpathDensities : VertexDensities {
     result.ends = cos / traced;
     return result;
   }
-  /// Makes the start of a light path that has come to its first vertex `ratio` times as dense.
+  /// Makes the start of a light path `ratio` times as dense, once the path has reached its first vertex.
   void start_denser(float ratio) {
     end /= ratio;
     ends /= ratio;
@@ -217,8 +218,8 @@ struct SubpathDensities : VertexDensities {
     vm_apart = vm;
     end = vcm = 0;
   }
-  /// The flight to the next vertex, before `arrive`; `collision` at the vertex before, and `over_pass`: the part of
-  /// merging there that is over the probability of passing this flight.
+  /// The flight to the next vertex, before `arrive`. `collision`: `FlightDensity::collision` at the vertex before.
+  /// `over_pass`: the part of merging there that is divided by the probability of passing this flight.
   void fly(const FlightDensity& flight, float collision, float over_pass) {
     const float ratio = collision / flight.collision;
     end /= flight.arrival();
@@ -256,20 +257,20 @@ struct TechniqueDensities {
   float all() const { return walk + lens + connections + merging + media; }
 };
 
-/// The densities of all techniques that make a path, over a unit of their own.
+/// The densities of all techniques that can make a path, relative to a common unit.
 struct TechniqueSum {
   float own = 1;                ///< of the technique that made it
   TechniqueDensities within{};  ///< of short eye paths (`Techniques::goes_on`)
   TechniqueDensities beyond{};  ///< of longer ones; some of those that a longer eye path made are in `within`
   bool is_beyond = false;       ///< the technique that made it is one of these
 
-  /// The part in which the technique is that made the path. `longer`: by a longer eye path.
+  /// The part that contains the technique that made the path. `longer`: it used a longer eye path.
   TechniqueDensities& made_by(bool longer) {
     is_beyond = longer;
     return longer ? beyond : within;
   }
   float all() const { return within.all() + beyond.all(); }
-  /// Of the balance heuristic.
+  /// Weight of the balance heuristic.
   float weight(const Techniques& t) const { return own / (t.goes_on ? all() : within.all()); }
 };
 
@@ -279,9 +280,9 @@ struct SubpathEnd {
   float reverse = 0;       ///< with which the other walk goes on from here to the vertex before, per solid angle
   bool scattered = false;  ///< the subpath has scattered before by a lobe that is not delta
   float coherence = 1;     ///< at a light path: of the eye path up to and including this vertex
-  float TechniqueDensities::*end = nullptr;  ///< what it ends with: `lens` of an eye path, `walk` of a light path
+  float TechniqueDensities::*end = nullptr;  ///< end of the subpath: `lens` of an eye path, `walk` of a light path
 
-  /// Adds `factor` times r d_VC: all techniques that begin at vertices before, but for the connection to this one.
+  /// Adds `factor` times r d_VC: all techniques that begin at earlier vertices, except the connection to this one.
   void add_earlier(float factor, const Techniques& t, TechniqueDensities& sum) const {
     const float back = factor * reverse;
     sum.*end += back * part_of_end(t) * densities.ends;
@@ -327,7 +328,7 @@ struct ConnectedEnd : SubpathEnd {
   }
 };
 
-/// Whether light paths can make the path of an eye walk that hits a light there.
+/// True if light paths can also make the path of an eye walk that hits a light at this vertex.
 inline bool has_light_paths(const SubpathDensities& at_light, const Techniques& t) {
   return t.lens_part * at_light.ends + t.connections * at_light.vc + t.merging * at_light.vm_apart +
              t.volume_part * at_light.media !=

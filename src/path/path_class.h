@@ -21,8 +21,8 @@ inline constexpr std::size_t path_class_count = 4;
 /// medium, or a medium emitted the light that is seen. It repeats light of the path classes, and comes after them.
 inline constexpr std::size_t media_layer = path_class_count;
 
-/// The layers of methods that distinguish path classes: these, and that of media if the scene has some that scatter or
-/// emit.
+/// The layers of methods that distinguish path classes: one for each class, and one for media if the scene has
+/// scattering or emissive media.
 FilmContents path_layers(const Scene& scene);
 
 /// Class of light that the walk finds by hitting an emitter, or of volumetric emission along a ray that it follows in

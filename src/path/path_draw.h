@@ -21,9 +21,9 @@ struct PathDraw {
   Wavelengths w;
 };
 
-/// Wavelengths of two numbers in [0,1). The four wavelengths of spectral mode are an offset within a quarter of the
+/// Wavelengths from two numbers in [0,1). The four wavelengths of spectral mode are an offset within a quarter of the
 /// range and its three shifts: the offset decides the tint and must itself be stratified over paths or passes. Which of
-/// the four is the hero is drawn apart. RGB mode uses the offset alone.
+/// the four is the hero is drawn separately. RGB mode uses the offset alone.
 inline Wavelengths wavelengths_of(ColorMode mode, float offset, float hero) {
   if (mode == ColorMode::rgb) return Wavelengths::rgb(offset);
   return Wavelengths::spectral(0.25f * (offset + std::floor(4 * hero)));
@@ -39,8 +39,8 @@ inline PathDraw draw_time_and_wavelengths(const Camera& camera, ColorMode mode, 
 /// True if it matters at what time a path sees the scene.
 inline bool depends_on_time(const RenderJob& job) { return job.scene.has_motion() || job.view.camera.moves(); }
 
-/// Draws time and wavelengths of each path by itself. Where nothing depends on them, all paths have the same and no
-/// random numbers are drawn: in RGB mode only dispersion asks for a wavelength.
+/// Draws time and wavelengths of each path separately. If nothing depends on them, all paths share the same values and
+/// no random numbers are drawn: in RGB mode only dispersion needs a wavelength.
 class OwnPathDraw {
  public:
   explicit OwnPathDraw(const RenderJob& job) : camera_(job.view.camera), mode_(job.settings.color) {
@@ -71,16 +71,17 @@ inline PlaceInHalf place_in_half(std::uint32_t number, std::uint32_t parts) {
 
 /// The wavelengths of sequence `seed`, each of which all paths of a pass share. The first 2^m offsets are equidistant,
 /// shifted by a number that depends on the seed: their mean is a rectangle rule with 4 · 2^m nodes, which for smooth
-/// spectra converges much faster than stratified random offsets do. The parts of the shutter interval are ordered by
-/// bit reversal, the first Sobol' coordinate; the offset is the second, so that the colour of a pass does not follow
-/// its time.
+/// spectra converges much faster than stratified random offsets. The parts of the shutter interval are ordered by bit
+/// reversal, the first Sobol' coordinate; the offset is the second, so that the colour of a pass does not follow its
+/// time.
 ///
-/// Where something `disperses`, light has the colour of the heroes alone, and these must be as even as the offsets are.
-/// In spectral mode 32 numbers are then a block of eight offsets, of which each of the four wavelengths is the hero
-/// once. After a block, the heroes are the same rectangle rule with 32 nodes that all wavelengths are. Eight numbers
-/// have the eight offsets, and their heroes lie in the eight eighths of the range. Of the orders with these properties,
-/// this is one whose heroes have the best colour after 2, 4, 8 and 16 numbers. `round` changes which offsets go with
-/// which quarter of the shutter interval, and heroes go with all quarters alike.
+/// If something `disperses`, dispersed light has the colour of the hero wavelengths alone, so these must be as evenly
+/// spread as the offsets. In spectral mode, 32 consecutive numbers then form a block of eight offsets, each used four
+/// times, with each of its four wavelengths as the hero once. Over a block, the heroes form the same rectangle rule
+/// with 32 nodes as all wavelengths do. Eight consecutive numbers use all eight offsets, and their heroes lie in
+/// different eighths of the range. Among the orders with these properties, this is one whose heroes have the best
+/// colour after 2, 4, 8 and 16 numbers. `round` changes which offsets go with which quarter of the shutter interval, so
+/// that heroes go with all quarters equally.
 inline Wavelengths wavelengths_in_order(std::uint64_t seed, ColorMode mode, std::uint32_t number, bool disperses) {
   const float shift = unit_float(hash_words({seed, static_cast<std::uint64_t>(Stream::pass), 1}));
   const auto shifted = [shift](float u) { return u + shift < 1 ? u + shift : u + shift - 1; };
@@ -103,8 +104,8 @@ inline Wavelengths wavelengths_of_pass(std::uint64_t seed, ColorMode mode, const
   return wavelengths_in_order(own, mode, place.number, disperses);
 }
 
-/// What the paths of a pass share in methods that cache light paths: their wavelengths, and a part of the shutter
-/// interval. Every path has a time of its own in that part. A photon is seen by eye paths of other times, but of the
+/// Values that the paths of a pass share in methods that cache light paths: their wavelengths, and a part of the
+/// shutter interval. Every path has its own time in that part. A photon is seen by eye paths of other times, but of the
 /// same part. Over 16 passes the parts cover the interval once, over the next 64 once more in quarters of these, and so
 /// on: the time between photon and eye tends to 0, and any number of passes is spread over the whole interval.
 struct PassDraw {

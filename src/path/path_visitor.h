@@ -37,7 +37,7 @@ struct PathVisitor {
     layers.see(ray);
     layers.add(class_of_next_event(ray.state), direct.radiance, direct.dispersed);
   }
-  void operator()(const EmissionVertex& vertex) { layers.add_hit(vertex, hit_glow(path, vertex)); }
+  void operator()(const EmissionVertex& vertex) { layers.add_hit(vertex, hit_volume_emission(path, vertex)); }
   void operator()(const EscapeVertex& vertex) { layers.add_hit(vertex, hit_environment(path, vertex)); }
 
   /// Adds the light of both techniques at a vertex that the walk leaves with this answer.
@@ -52,16 +52,16 @@ struct PathVisitor {
   }
 };
 
-/// Collects the emission of media that are no lights, along a branch from a vertex where photons account for all other
+/// Collects the emission of media that are not lights, along a branch from a vertex where photons account for all other
 /// light.
-struct UnlitGlowVisitor {
+struct UnlitEmissionVisitor {
   const PathContext& path;
   LightLayers& layers;
 
   Continuation operator()(const SurfaceVertex&) const { return Continuation::go_on(); }
   Continuation operator()(const MediumVertex&) const { return Continuation::go_on(); }
   void operator()(const EmissionVertex& vertex) const {
-    if (!path.scene.volume_light(vertex.state.medium)) layers.add_hit(vertex, hit_glow(path, vertex));
+    if (!path.scene.volume_light(vertex.state.medium)) layers.add_hit(vertex, hit_volume_emission(path, vertex));
   }
   void operator()(const EscapeVertex&) const {}
 };
@@ -81,13 +81,14 @@ inline void add_sky(const PathContext& path, const SurfaceVertex& vertex, LightL
   layers.add_hit(sky, hit_environment(path, sky));
 }
 
-/// Adds the emission of media that are no lights that a vertex's wide lobes scatter to the eye. `path` is that of the
-/// walk that reached the vertex.
-inline void add_unlit_glow(const PathContext& path, const SurfaceVertex& vertex, const LobeSplit& split,
-                           LightLayers& layers) {
-  if (!path.scene.has_unlit_glow()) return;
+/// Adds the emission of media that are not lights, as far as a vertex's wide lobes scatter it to the eye. `path`: the
+/// path of the walk that reached the vertex.
+inline void add_unlit_emission(const PathContext& path, const SurfaceVertex& vertex, const LobeSplit& split,
+                               LightLayers& layers) {
+  if (!path.scene.has_unlit_emission()) return;
   Sampler own = path.sampler.fork(visitor_dimensions(vertex.state.depth));
-  branch_walk<Transport::radiance>(path.with(own), vertex, WideContinuation{{}, split}, UnlitGlowVisitor{path, layers});
+  branch_walk<Transport::radiance>(path.with(own), vertex, WideContinuation{{}, split},
+                                   UnlitEmissionVisitor{path, layers});
 }
 
 }  // namespace lanthorn

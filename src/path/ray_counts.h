@@ -15,7 +15,7 @@ class SharedRayCounts {
     const std::lock_guard lock(mutex_);
     sum_ += counts;
   }
-  /// When all have been added.
+  /// To be called when all threads have added their counts.
   const RayCounts& sum() const { return sum_; }
 
  private:

@@ -20,8 +20,9 @@ struct RenderSettings {
   /// light paths, and an eye path in every pixel. 1 for RGB colour and for methods whose paths draw their wavelengths.
   std::uint32_t parts = 1;
   std::uint64_t photons = 0;  ///< light paths per part of a pass
-  /// Light paths whose photons are in memory at once, of methods that can gather from some photons after the others.
-  /// Fixed, so that no sum depends on the memory that there is; as many as a picture of 3840 x 2160 has by default.
+  /// Light paths whose photons are in memory at once, for methods that can gather from blocks of photons one after the
+  /// other. Fixed, so that no sum depends on the available memory: about the default number for a picture of 3840 x
+  /// 2160.
   std::uint64_t photon_block = std::uint64_t{1} << 23;
   std::uint64_t memory = std::uint64_t{1} << 30;  ///< bytes for methods that work in blocks of pixels
 };

@@ -21,7 +21,7 @@ struct PathLayers {
   PathClass path_class;
   bool from_medium;  ///< see media_layer
 };
-/// Those of light that a light walk's vertex sends to the lens.
+/// Layers of the light that a light walk's vertex sends to the lens.
 inline PathLayers layers_of_splat(const SurfaceVertex& v) { return {class_of_splat(v.state), false}; }
 inline PathLayers layers_of_splat(const MediumVertex& v) { return {class_of_splat(v.state), true}; }
 

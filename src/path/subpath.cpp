@@ -17,7 +17,8 @@ float next_event_density(const Scene& scene, std::uint32_t index, const Point& f
 
 namespace {
 
-// Of a flight. One that floats round away still has a direction, and densities by it.
+// Squared length of a flight, bounded from below: a flight whose length rounds to 0 still has a direction, and hence
+// densities.
 float squared_length(const Point& from, const Point& to) {
   constexpr float least = 1e-24f;
   return std::max(distance_squared(from, to), least);
@@ -47,7 +48,7 @@ float direct_density(const Scene& scene, const PathStart& start, const FirstVert
   return has_surface(scene.lights()[start.light]) ? chosen * e.cos_origin / at.distance2 : chosen;
 }
 
-// Where on a ray through a medium the light path has started is no part of the path that weights know.
+// MIS weights do not distinguish where on a ray through an emissive medium a light path started.
 EmissionSample emission_seen_from(const Light& light, const PathStart& start, const FirstVertex& at) {
   EmissionSample result = start.emission;
   if (is_volume(light))
@@ -55,12 +56,12 @@ EmissionSample emission_seen_from(const Light& light, const PathStart& start, co
   return result;
 }
 
-// Optical depth of the first flight, likewise.
+// Optical depth of the first flight; 0 from an emissive medium, for the same reason.
 float optical_depth_from(const Scene& scene, const PathStart& start, float optical_depth) {
   return !start.is_eye() && is_volume(scene.lights()[start.light]) ? 0.0f : optical_depth;
 }
 
-// Densities of the start, but for the geometry of the first vertex (TR eqs. 31-33).
+// Densities of the start, without the geometry of the first vertex (TR eqs. 31-33).
 SubpathDensities densities_of_start(const Scene& scene, const PathStart& start, const Techniques& techniques,
                                     const Point& from, const FirstVertex& at) {
   if (start.is_eye()) return SubpathDensities::from_lens(techniques.light_paths, lens_density(*start.camera, from, at));
@@ -115,7 +116,7 @@ void Subpath::depart(const WalkState& state, const Direction& direction) {
     merging = coherence_ * merged.a;
     departure_.over_pass = coherence_ * merged.b / state.pdf_direction;
   }
-  // The coherence of an eye path counts for what follows, that of a light path's vertices for what was before.
+  // The coherence of an eye path applies to later vertices, the coherence of a light path's vertex to earlier ones.
   if (start_.is_eye()) coherence_ = coherence_beyond();
   departure_.densities.scatter({.cos = cos,
                                 .pdf = state.pdf_direction,

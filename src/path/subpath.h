@@ -36,7 +36,7 @@ struct PathStart {
   bool is_eye() const { return camera != nullptr; }
 };
 
-/// How a subpath leaves its last vertex. From this follow its densities wherever it could scatter on its way.
+/// How a subpath leaves its last vertex. Its densities at any point of the way where it could scatter follow from this.
 struct Departure {
   SubpathDensities densities;  ///< after `SubpathDensities::scatter`; before the first vertex 0
   float collision = 1;         ///< at the last vertex (`FlightDensity`)
@@ -44,7 +44,7 @@ struct Departure {
   float optical_depth = 0;     ///< flown since then
   Point from{0};               ///< the last vertex
   Direction direction{0, 0, 1};
-  bool is_first = true;  ///< there is no vertex yet: from the lens or the light
+  bool is_first = true;  ///< the subpath has no vertex yet, and leaves the lens or the light
 };
 
 /// Densities of a subpath that scatters in a medium, on its way.
@@ -53,8 +53,8 @@ struct VolumeArrival {
   FlightDensity flight;
 };
 
-/// If the subpath that leaves like this scattered at p, whose density of collisions is `collision`, after flying
-/// through `optical_depth` more. `start` is needed for the first vertex only.
+/// Densities of a subpath that leaves like `departure`, if it scattered at `p` after flying through `optical_depth`
+/// more. `collision`: density of collisions at p, per metre. `start` is needed for the first vertex only.
 VolumeArrival arrive_in_medium(const Scene& scene, const PathStart& start, const Departure& departure,
                                const Techniques& techniques, const Point& p, float time, float optical_depth,
                                float collision);
@@ -91,9 +91,9 @@ class Subpath {
   const SubpathDensities& densities() const { return departure_.densities; }
   /// The same at the first vertex of a light path, if the light is direct.
   SubpathDensities densities_of_direct_light() const;
-  /// Of the flight to the last vertex.
+  /// Density of the flight to the last vertex.
   const FlightDensity& flight() const { return flight_; }
-  /// Of an eye path: share of merging in media that counts at the last vertex, or on the flight after `depart`.
+  /// For an eye path: share of merging in media that counts at the last vertex, or on the flight after `depart`.
   float coherence() const { return coherence_; }
   /// The same where the path goes on from the last vertex, but not by a delta lobe.
   float coherence_beyond() const { return coherence_ * previous_.coherence; }

@@ -38,7 +38,7 @@ Passage pass_media(const PathContext& path, const Ray& ray, MediumId medium, Has
     return !result.transmittance.is_black();
   };
   if (!path.scene.has_interfaces()) {
-    // All of the way is in one medium, and whatever is on it blocks it.
+    // The whole way lies in one medium, and any surface on it blocks.
     ++path.counts.shadow;
     if (!path.scene.visible(ray) || !attenuate(medium, {ray.origin, ray.direction, ray.t_max})) return {};
     return result;
@@ -59,12 +59,13 @@ Passage passage(const PathContext& path, const Ray& ray, MediumId medium, std::u
   return {path.scene.visible(ray) ? Spectrum(1) : Spectrum(), medium};
 }
 
-Spectrum glow(const PathContext& path, const Ray& ray, MediumId medium, MediumId glowing, std::uint32_t dimensions) {
+Spectrum volume_emission(const PathContext& path, const Ray& ray, MediumId medium, MediumId emissive,
+                         std::uint32_t dimensions) {
   HashRng rng = path.sampler.generator(dimensions);
   Spectrum sum, transmitted(1);
   cross_interfaces(path, ray, medium, [&](MediumId here, const Segment& way, bool is_blocked) {
-    if (here == glowing) {
-      const Glow part = glow_along(path.scene.medium(here), way, path.w, rng);
+    if (here == emissive) {
+      const VolumeEmission part = emission_along(path.scene.medium(here), way, path.w, rng);
       sum += transmitted * part.emitted;
       transmitted *= part.transmittance;
     } else if (here != MediumId::vacuum && !is_blocked) {

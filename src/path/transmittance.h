@@ -21,9 +21,10 @@ struct Passage {
 
 /// Passage of light that travels from the ray's origin, which lies in `medium`, to its end.
 Passage passage(const PathContext& path, const Ray& ray, MediumId medium, std::uint32_t dimensions);
-/// Radiance that the medium `glowing`, wherever the ray comes through it, sends to the ray's origin in `medium`. The
-/// ray is infinite.
-Spectrum glow(const PathContext& path, const Ray& ray, MediumId medium, MediumId glowing, std::uint32_t dimensions);
+/// Radiance that the medium `emissive` sends to the ray's origin, from all parts of the ray inside that medium. The
+/// origin lies in `medium`; the ray is infinite.
+Spectrum volume_emission(const PathContext& path, const Ray& ray, MediumId medium, MediumId emissive,
+                         std::uint32_t dimensions);
 /// Passage of a photon's light from infinity, where it starts in `medium`, to the photon's origin.
 Passage passage_from_infinity(const PathContext& path, const EmissionSample& emission, MediumId medium, float time,
                               std::uint32_t dimensions);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// What a walk passes to its visitor: vertices on surfaces and in participating media, and the escape from the scene at
-// its end.
+// The events that a walk passes to its visitor: vertices on surfaces and in participating media, and the escape from
+// the scene at its end.
 #pragma once
 
 #include <cmath>
@@ -78,8 +78,8 @@ Ray ray_to_light(const Vertex& v, const LightSample& l) {
   if (!std::isfinite(l.distance)) return ray_towards(v, l.wi);
   return ray_to(v, l.wi, SegmentEnd{l.position, l.normal, l.position_error});
 }
-/// The medium in which such a ray starts. One that stays on the side from which the walk came stays in its medium, even
-/// where the shape claims another, as opaque ones do that are inside out.
+/// The medium in which such a ray starts. A ray that stays on the side from which the walk came stays in the walk's
+/// medium, even if the shape declares another medium there, as opaque shapes that are inside out do.
 inline MediumId medium_towards(const SurfaceVertex& v, const Direction& direction) {
   if (!v.at.media.is_transition() || (dot(direction, v.at.normal) > 0) == (dot(v.wi, v.at.normal) > 0))
     return v.state.medium;
@@ -114,8 +114,8 @@ struct FlownSegment {
   /// Density per metre with which the flight ended there if it scattered, otherwise the probability of no scattering.
   /// Empty if unknown (see Flight).
   std::optional<float> pdf;
-  /// Of the surfaces or interfaces where the flight begins and where it would reach the next one, on either side; 0 if
-  /// there is none.
+  /// Normals of the surfaces or interfaces where the flight begins and where it would reach the next one, on either
+  /// side; 0 if there is none.
   Normal begin_normal{0}, end_normal{0};
 };
 
@@ -125,7 +125,7 @@ struct EscapeVertex {
   Direction direction;  ///< of the ray that left the scene
 };
 
-/// What a walk carries on in one direction.
+/// The part of the light that a walk carries on in one direction.
 struct WalkShare {
   float part = 1;         ///< of the direction's light, in [0,1]; the visitor has found the rest
   float probability = 1;  ///< with which the walk goes there, in (0,1], or 0 if it has no part; the walk divides by it
@@ -133,9 +133,9 @@ struct WalkShare {
 
 /// A visitor's answer: whether the walk goes on. The visitor must pass the same answer to `next_event`.
 ///
-/// `towards(pdf)` is what the walk carries in a direction that the closure samples with density `pdf` (1/sr; infinite
-/// for delta lobes). `branches_to_sky()`: the visitor follows a branch in a direction of the closure up to infinite
-/// lights (`add_sky`), and the walk's next hit of them does not count, but through a delta lobe.
+/// `towards(pdf)` is the walk's share in a direction that the closure samples with density `pdf` (1/sr; infinite for
+/// delta lobes). `branches_to_sky()`: the visitor follows a branch in a direction of the closure up to infinite lights
+/// (`add_sky`); the walk's next hit of them then counts only after a delta lobe.
 struct Continuation {
   bool goes_on = true;
 
@@ -152,14 +152,14 @@ struct GuidedContinuation : Continuation {
   Guidance guidance;
 };
 
-/// The answer of a visitor that estimates the light of wide lobes itself, from a cache: the walk carries that of narrow
-/// ones. It follows it with a probability of `eagerness` times that part, 1 at most.
+/// The answer of a visitor that estimates the light of wide lobes itself, from a cache. The walk carries the part of
+/// narrow lobes; it continues with probability `eagerness` times that part, at most 1.
 struct NarrowContinuation : Continuation {
   LobeSplit split = LobeSplit::all_narrow();
   float eagerness = 1;
   bool has_sky_branch = false;
 
-  /// Of a vertex whose light is divided thus.
+  /// The answer at a vertex whose light `split` divides.
   static NarrowContinuation of(const LobeSplit& split, float eagerness = 1) {
     return {{!split.is_all_wide()}, split, eagerness};
   }
@@ -174,7 +174,7 @@ struct NarrowContinuation : Continuation {
   }
 };
 
-/// The answer for the light of wide lobes, for a walk that finds what the cache would.
+/// The answer of a walk that finds the light of wide lobes in place of a cache.
 struct WideContinuation : GuidedContinuation {
   LobeSplit split;
   float factor = 1;  ///< 1 / number of such walks

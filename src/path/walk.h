@@ -59,9 +59,9 @@ constexpr float closure_ratio(const BsdfSample&) { return 1; }
 constexpr float closure_ratio(const GuidedSample& s) { return s.closure_ratio; }
 
 /// Spread of a ray in a direction that was drawn with density `pdf` per solid angle: as if the vertex had sent 256
-/// rays, each of which had a cone of its own (path footprints, Bekaert et al. 2003, "A custom designed density
-/// estimator for light transport"). At most that of a diffuse surface, 1/16. Delta lobes have 0: what lies behind
-/// curved mirrors and lenses may be magnified. So have light paths, whose vertices may be seen by the camera.
+/// rays, each with its own cone (path footprints, Bekaert et al. 2003, "A custom designed density estimator for light
+/// transport"). At most that of a diffuse surface, 1/16. Delta lobes have spread 0, because curved mirrors and lenses
+/// may magnify what lies behind them. So do light paths, because the camera may see their vertices.
 inline float spread_of(float pdf) {
   constexpr float rays = 256, most = 1.0f / 16;
   return std::fmin(most, 1 / std::sqrt(rays * pi * pdf));
@@ -193,17 +193,18 @@ void show(Visit& visit, const WalkState& state, const Ray& ray, const Normal& be
   }
 }
 
-/// Draws the numbers of the vertex that the next ray may find. Most visitors of light walks need none.
+/// Draws ahead the random numbers of the next vertex: the visitor's in eye walks, the walk's own in light walks, whose
+/// visitors mostly need none.
 template <Transport transport>
 void draw_ahead(const PathContext& path, int depth) {
   constexpr bool is_eye_walk = transport == Transport::radiance;
   path.sampler.draw_ahead(is_eye_walk ? visitor_dimensions(depth) : walk_dimensions(depth));
 }
 
-/// Where a flight through a medium ends: at the end of the ray, with the walk, or where it scatters.
+/// How the crossing of a medium ends: the walk passes to the end of the ray, ends, or scatters.
 enum class Crossing : std::uint8_t { passed, ended, scattered };
 
-/// Takes the walk through its medium to the surface `at`, or to infinity. Where it scatters, `ray` becomes the next.
+/// Takes the walk through its medium to the surface `at`, or to infinity. If it scatters, `ray` becomes the next ray.
 template <class Visit>
 Crossing cross_medium(const PathContext& path, Ray& ray, const Normal& begin_normal,
                       const std::optional<SurfacePoint>& at, HashRng& flights, WalkState& state, Visit& visit) {
@@ -212,7 +213,7 @@ Crossing cross_medium(const PathContext& path, Ray& ray, const Normal& begin_nor
   const Segment way{ray.origin, ray.direction, length};
   if constexpr (requires(const EmissionVertex& vertex) { visit(vertex); })
     if (is_emissive(medium)) {
-      const Spectrum emitted = glow_along(medium, way, path.w, flights).emitted;
+      const Spectrum emitted = emission_along(medium, way, path.w, flights).emitted;
       if (!emitted.is_black()) visit(EmissionVertex{state, ray.direction, emitted});
     }
   if constexpr (requires(const MediumRay& in_medium) { visit(in_medium); }) visit(MediumRay{state, way, ray.time});
@@ -283,8 +284,8 @@ void walk(const PathContext& path, Ray ray, WalkState& state, Visit&& visit) {
   }
 }
 
-/// The first ray of one more path from a vertex, through its non-delta lobes only, with the given answer. Empty if a
-/// delta lobe is drawn. For methods that split paths; `path` belongs to the branch, and `state` becomes that of the
+/// The first ray of an additional path from a vertex, through its non-delta lobes only, with the given answer. Empty if
+/// a delta lobe is drawn. For methods that split paths; `path` belongs to the branch, and `state` becomes that of the
 /// ray.
 template <Transport transport, class Answer>
 std::optional<Ray> branch_ray(const PathContext& path, const SurfaceVertex& vertex, const Answer& answer,
@@ -336,8 +337,8 @@ inline Ray spawn_from_light(const EmissionSample& emission, float time) {
   return spawn_ray(at, emission.direction);
 }
 
-/// Notes the end of a path whose throughput at its start was `start`. Roulette keeps throughputs about as large as at
-/// the start; `most` only keeps whole numbers from overflowing.
+/// Records the end of a path. `start`: throughput at its start. Russian roulette keeps throughputs about as large;
+/// `most` only prevents integer overflow.
 inline void note_end(const PathContext& path, const WalkState& end, const Spectrum& start, PathEnds& ends) {
   ++ends.paths;
   if (end.depth <= path.limits.max_depth) return;

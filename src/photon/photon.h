@@ -46,7 +46,7 @@ struct Photon {
   Direction wi;    ///< towards the previous vertex of the light path, world
   Normal normal;   ///< of the surface, world
   PhotonFlags flags;
-  float flight = 0;  ///< length of the last segment of the light path, m; of use on surfaces
+  float flight = 0;  ///< length of the last segment of the light path, m; used on surfaces only
 
   /// Power times grazing_gain, as maps store it.
   Spectrum gained_power() const { return power * grazing_gain(std::fabs(dot(wi, normal))); }
@@ -88,7 +88,7 @@ Vec3 decode_octahedral(std::uint32_t code) {
 /// range of half floats and RGB9E5. Powers down to 2^-28 of the largest keep the full precision of half floats.
 float power_unit(float largest_power);
 
-/// The power of two (m) from which the lengths of flights are counted, so that the longest one can be.
+/// The power of two (m) in whose units a map codes the lengths of flights, so that the longest one fits.
 float flight_unit(float longest_flight);
 
 /// Units in which a map stores its photons.

@@ -36,7 +36,7 @@ class PhotonMap {
     /// Surface normal at the photon. nullopt in spectral mode, whose records do not store it.
     std::optional<Normal> normal() const { return stored().normal(map_->mode_); }
     PhotonFlags flags() const { return stored().flags(map_->mode_); }
-    /// At most the length of the light path's last segment, m; not less than an eighth of it, but at grazing incidence.
+    /// At most the length of the light path's last segment, m; at least an eighth of it, except at grazing incidence.
     float flight() const { return stored().flight(map_->mode_) * map_->units_.flight; }
 
    private:

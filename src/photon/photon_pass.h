@@ -27,8 +27,8 @@ struct MediumPhoton {
   Beam beam(float radius) const { return {photon.position, -photon.wi, length, radius}; }
 };
 
-/// Whether the flights of a light path are among the `share` that is kept. A choice by chance: every path counts by the
-/// same factor, wherever it starts.
+/// True if the flights of a light path are among the `share` that is kept. The choice is random, with the same
+/// probability for all paths, so that all kept flights are weighted by the same factor, wherever they start.
 inline bool keeps_beams(const Sampler& of_path, float share) { return of_path.generator(1).next() < share; }
 
 /// The photons that a pass stores.
@@ -49,13 +49,13 @@ using PhotonChunks = std::vector<std::vector<std::vector<Photon>>>;
 /// path by path, independent of the number of threads. Reuses its memory from pass to pass.
 class PhotonTracer {
  public:
-  /// All photons of the pass share `draw`. `guide` may be null; the pass has none of its own.
+  /// All photons of the pass share `draw`. `guide` may be null; `pass.guide` must be null.
   void trace(const Scene& scene, LightPass pass, const PhotonRule& rule, const PassDraw& draw,
              const LightGuide* guide = nullptr);
 
-  /// On surfaces, of a class.
+  /// Photons on surfaces, of one class.
   std::span<const std::vector<Photon>> chunks(std::size_t flux_class = 0) const { return photons_[flux_class]; }
-  /// In media, by the same chunks; none if the rule asks for none.
+  /// Photons in media, by the same chunks; none if the rule asks for none.
   std::span<const std::vector<MediumPhoton>> medium_chunks() const { return medium_photons_; }
   /// Light paths of the block, or of the whole pass.
   std::uint64_t emitted() const { return emitted_; }

@@ -14,7 +14,7 @@ namespace lanthorn {
 
 namespace {
 
-// What decides the wavelengths of a render's passes.
+// The data that determine the wavelengths of a render's passes.
 struct WavelengthSets {
   std::uint64_t seed = 0, per_pass = 1;
   bool disperses = false;
@@ -62,7 +62,7 @@ Rgb colour_balance(const RenderState& state, std::span<const PassRange> passes) 
     }
   const auto all = static_cast<double>(count * sets->per_pass);
   const auto factor = [&](double channel) {
-    constexpr double largest = 100;  // wavelengths that all miss a channel say nothing about it
+    constexpr double largest = 100;  // bound for wavelengths that all miss a channel
     return static_cast<float>(channel * largest > all ? all / channel : 1.0);
   };
   return {factor(sum[0]), factor(sum[1]), factor(sum[2])};

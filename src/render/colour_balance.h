@@ -12,16 +12,15 @@ namespace lanthorn {
 
 /// Factors of R, G and B that make white light white again after these passes.
 ///
-/// If all light of a pass, or of its part, has the same four wavelengths, white light has a colour of its own in it:
-/// blue may be a fifth off. That colour is a function of the wavelengths alone, so that the sums can be divided by its
-/// mean over the passes: a ratio estimator with the illuminant D65 as its control. It is exact for light of D65's
-/// spectrum after any number of passes, and for all spectra in the limit, where the factors tend to 1.
-/// (A full matrix, fitted to smooth reflectances, was no nearer to the colours of others, and mixes the channels'
-/// noise.)
+/// If all light of a pass, or of a part of it, has the same four wavelengths, white light is tinted: blue may be off by
+/// a fifth. That tint is a function of the wavelengths alone, so that the sums can be divided by its mean over the
+/// passes: a ratio estimator with the illuminant D65 as its control. It is exact for light of D65's spectrum after any
+/// number of passes, and for all spectra in the limit, where the factors tend to 1. (A full matrix, fitted to smooth
+/// reflectances, did not improve other colours, and mixes the channels' noise.)
 ///
 /// (1, 1, 1) for methods whose paths have wavelengths of their own, and for RGB colour.
 Rgb colour_balance(const RenderState& state);
-/// With other passes than the state's.
+/// The same for `passes` instead of the state's.
 Rgb colour_balance(const RenderState& state, std::span<const PassRange> passes);
 
 }  // namespace lanthorn

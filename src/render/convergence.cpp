@@ -99,7 +99,7 @@ std::optional<std::vector<Image>> render_run(const Scene& scene, const ViewDescr
 
 Convergence measure_convergence(const Scene& scene, const ViewDescription& view, const RenderOptions& options,
                                 const ConvergenceSettings& settings, const std::optional<Image>& reference) {
-  if (settings.runs < 2) throw Error("--runs: expected 2 or more; one render says nothing of its noise");
+  if (settings.runs < 2) throw Error("--runs: expected 2 or more; a single render does not show its noise");
   std::vector<Moments> moments;
   Convergence result;
   while (result.runs < settings.runs) {

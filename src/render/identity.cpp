@@ -125,7 +125,7 @@ std::uint64_t hash_of(const SceneDescription& scene) {
                      std::bit_cast<std::uint32_t>(e.scale), up, hash_bytes(std::as_bytes(std::span(name)))});
 }
 
-// What must be equal for two states to belong together.
+// The values that must be equal for two states to belong together.
 nlohmann::json identity(const Scene& scene, const ViewDescription& view, const RenderPlan& plan) {
   const SceneDescription& description = scene.description();
   const RenderSettings& s = plan.settings;
@@ -145,7 +145,7 @@ nlohmann::json identity(const Scene& scene, const ViewDescription& view, const R
       {"crop", {window.x0, window.y0, window.x1, window.y1}},
       {"filter", describe_filter(view.filter)},
   };
-  // Named after the density of wavelengths: passes drawn by another one have another colour balance.
+  // Named after the density of wavelengths: passes drawn with another density have another colour balance.
   if (plan.integrator->passes_share_wavelengths() && s.color == ColorMode::spectral) {
     result["plateau_wavelength_sets"] = s.parts;
     if (scene.has_dispersion()) result["heroes_in_blocks"] = true;  // by `wavelengths_in_order`

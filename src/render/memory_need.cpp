@@ -21,7 +21,7 @@ namespace {
 // Light paths traced to measure how many photons each stores: 4096 give the mean to a few percent.
 constexpr std::uint64_t probed_paths = 4096;
 
-// What a light path stores, on surfaces and in media, in the mean.
+// Mean storage of a light path, on surfaces and in media.
 struct Stored {
   double photons = 0, bytes = 0;
 };
@@ -72,7 +72,7 @@ std::size_t plan_memory(const Scene& scene, const View& view, const Integrator& 
   const Limit limit = limit_of(option);
   const MemoryUse use = integrator.memory_use(settings);
   const int width = view.window.width(), height = view.window.height();
-  // At the end the picture stands beside the sums, with what its error is measured from.
+  // At the end, the picture and the data that its error is measured from exist beside the sums.
   constexpr double film_bytes = 1.5 * sizeof(std::int64_t);
   const double pixels = static_cast<double>(width) * height;
   const double film = pixels * (film_bytes * static_cast<double>(Film::stride(contents)) + use.per_pixel);
@@ -87,7 +87,7 @@ std::size_t plan_memory(const Scene& scene, const View& view, const Integrator& 
   const double of_blocks = held < settings.photons ? pixels * use.per_pixel_of_blocks : 0;
   const double photons = static_cast<double>(held) * (per_path.bytes + use.per_light_path) + of_blocks;
   if (film + photons > limit.bytes) throw Error(too_many_photons(settings, use, per_path, photons, film, limit));
-  // Random numbers and maps count to 2^32.
+  // Random numbers and maps have indices of 32 bits.
   constexpr double most_numbers = std::numeric_limits<std::uint32_t>::max();
   if (std::max(static_cast<double>(settings.photons), static_cast<double>(held) * per_path.photons) > most_numbers)
     throw Error(fmt::format("--photons {}: a pass has {:.0f} light paths and as many photons at most", settings.photons,

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// What the name of an integrator in a scene file stands for. It is pbrt's name, or our own.
+// The integrator that a name in a scene file stands for: pbrt's name, or our own.
 #pragma once
 
 #include <optional>
@@ -10,7 +10,7 @@
 
 namespace lanthorn {
 
-/// The default method, and what it is without its pilot.
+/// The default method, and the method that it is without its pilot.
 inline constexpr const char *automatic_method = "auto", *method_without_pilot = "vcm";
 
 /// Our integrator's name, e.g. "light" for "lightpath"; empty for names that are not known. The file's parameters are

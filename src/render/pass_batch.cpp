@@ -73,7 +73,7 @@ std::size_t BatchSize::next(std::uint64_t most, std::optional<double> seconds_le
   // Users wait for the end of a batch. Long passes spend little of their time at the ends of phases.
   constexpr double long_pass = 5;  // s
   if (*seconds_of_pass_ > long_pass) return 1;
-  // Two hide the end of each phase; of short passes more, so that ends of batches are rare, too.
+  // Two passes hide the end of each other's phases. Short passes need more, so that ends of batches are rare, too.
   constexpr double batch_seconds = 0.2;
   constexpr double fewest = 2, many = 64;
   double wanted = std::clamp(batch_seconds / *seconds_of_pass_, fewest, many);
@@ -87,7 +87,8 @@ BatchReport render_batch(const RenderJob& job, RenderPlan& plan, const std::vect
   BatchReport report;
   report.passes.resize(passes.size());
   std::vector<PhaseSeconds> seconds(passes.size());
-  // TBB would cut the loops of the other passes short, and they would go on with half of their photons.
+  // Exceptions wait until all passes have ended: TBB would cut the loops of the other passes short, and these would go
+  // on with half of their photons.
   std::vector<std::exception_ptr> thrown(passes.size());
   parallel_for(std::size_t{0}, passes.size(), [&](std::size_t i) {
     try {

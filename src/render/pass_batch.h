@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Passes that are rendered at once, so that threads which find no more work in one pass go on with another.
+// Passes that are rendered at once, so that threads that find no more work in one pass go on with another.
 #pragma once
 
 #include <array>

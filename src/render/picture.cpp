@@ -29,7 +29,7 @@ std::uint64_t count(const Passes& passes) {
 
 std::uint64_t passes_or_one(const Passes& passes) { return std::max<std::uint64_t>(1, count(passes)); }
 
-// Those of the passes that are in this half.
+// The passes that belong to this half.
 Passes passes_in(const Passes& passes, FilmHalf half) {
   Passes own;
   for (const PassRange& range : passes)
@@ -53,14 +53,13 @@ MeasuredError measure_error(const RenderState& state, const Film& film, const Pa
   return measured;
 }
 
-// The picture with this before the name of each channel.
+// The picture with `prefix` before the name of each channel.
 Image prefixed(const std::string& prefix, Image image) {
   for (std::string& channel : image.channels) channel.insert(0, prefix);
   return image;
 }
 
-// Of each layer but `samples`, how much more the first half of the passes has than the picture; and that half's share
-// of the samples.
+// For each layer but `samples`, the first half of the passes minus the picture; for `samples`, that half's share.
 Image noise_of(const Image& picture, Image first_half) {
   const std::size_t channels = first_half.channel_count(), samples = channels - 1;
   std::vector<std::size_t> from;

@@ -22,8 +22,8 @@ namespace {
 
 constexpr std::uint64_t default_passes = 64;
 
-// In a medium of albedo a, light that scatters k times has a share of a^k left. The default lets it scatter until a
-// thousandth is left, within limits: the upper one is of media that absorb nothing.
+// In a medium of albedo a, a fraction a^k of the light is left after k scatterings. By default, light may scatter until
+// a thousandth is left, within limits; the upper one is for media that absorb nothing.
 int default_max_depth(const Scene& scene) {
   constexpr double least = 64, most = 4096, rest = 1e-3;
   const auto albedo = static_cast<double>(scene.largest_medium_albedo());
@@ -50,7 +50,7 @@ PassRange choose_passes(const description::RenderHints& hints, const RenderOptio
   return {0, hints.pixel_samples ? static_cast<std::uint64_t>(std::max(1, *hints.pixel_samples)) : default_passes};
 }
 
-// `auto` finds its own number from `automatic`. A file's number for passes of another method says nothing of it.
+// `auto` finds its own number from `automatic`. A file's number of photons for another method does not apply to it.
 std::uint64_t choose_light_paths(const description::RenderHints& hints, const RenderOptions& options,
                                  const std::string& method, std::uint64_t automatic) {
   if (options.photons) return *options.photons;

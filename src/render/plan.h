@@ -30,7 +30,7 @@ struct RenderPlan {
   std::string resumed_from{};  ///< the file of the state, for messages
 
   RenderJob job(const Scene& scene) const { return {scene, view, settings}; }
-  /// If a pass is given up, the integrator may keep the state of half a pass.
+  /// Replaces the integrator, which may hold the state of half a pass after a pass was given up.
   void renew_integrator() {
     integrator = info->make(parameters);
     is_prepared = false;

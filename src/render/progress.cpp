@@ -10,7 +10,7 @@ namespace lanthorn {
 
 namespace {
 
-// More passes than any render takes: these are no limit.
+// More passes than any render takes: such a number is no bound.
 constexpr std::uint64_t endless = 1u << 31;
 
 std::uint64_t passes_left(const PassRange& asked, const RenderState& state) {
@@ -22,7 +22,7 @@ std::uint64_t passes_left(const PassRange& asked, const RenderState& state) {
   return left;
 }
 
-// Of the passes of this call that the bound needs: at most nearly all, until it is reached.
+// Fraction of the passes that this call needs to reach the bound; below 1 until the bound is reached.
 double fraction_of_noise(double bound, const RenderState& state, const RenderStatistics& statistics) {
   if (!statistics.error || !statistics.error->is_known()) return 0;
   if (statistics.error->is_below(bound)) return 1;

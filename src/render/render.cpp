@@ -60,7 +60,7 @@ bool is_reached(const StopRule& stop, const RenderStatistics& statistics) {
 
 bool must_stop(const StopRule& stop, const RenderStatistics& statistics) {
   if (is_set(stop.drop) || is_reached(stop, statistics)) return true;
-  // At least one pass is rendered, however early the stop: there must be a picture.
+  // At least one pass is rendered, however early the stop, because there must be a picture.
   if (statistics.passes == 0) return false;
   return is_set(stop.interrupted) || (stop.seconds && statistics.seconds >= *stop.seconds);
 }
@@ -219,7 +219,7 @@ class PassLoop {
   Clock::time_point last_checkpoint_ = Clock::now();
 
   std::optional<TeamMember> member_;
-  std::optional<RenderState> total_;  // of rank 0: what has been gathered
+  std::optional<RenderState> total_;  // at rank 0: the sums gathered so far
   std::uint64_t passes_before_ = 0;
   RenderStatistics rendered_;  // since the last question
 };
@@ -242,7 +242,7 @@ void PassLoop::join_team() {
 
 PassLoop::Batch PassLoop::next_of_own() {
   if (is_over_ || must_stop(stop_, statistics_)) return {};
-  // A look at the error must find the passes that it is fixed to, and no others.
+  // The error must be looked at after exactly the number of passes that is fixed for the look.
   const std::uint64_t done = plan_.state.pass_count(),
                       most = stop_.noise ? next_look(done) - done : std::numeric_limits<std::uint64_t>::max();
   std::optional<double> left;

@@ -44,8 +44,7 @@ constexpr char magic[8] = {'L', 'A', 'N', 'T', 'H', 'O', 'R', 'N'};
 constexpr std::uint32_t format_version = 7, version_of_planes = 6;
 constexpr std::size_t crc_bytes = sizeof(std::uint32_t);
 constexpr int max_header_depth = 64;
-// Compression is by no more than this factor, of Zstandard (four bytes for a run of 2^17): a small file cannot claim a
-// large size.
+// Bound of Zstandard's compression factor (four bytes for a run of 2^17): a small file cannot claim a large size.
 constexpr std::uint64_t max_compression = 1 << 15;
 constexpr std::size_t sums_of_block = std::size_t{1} << 18;
 constexpr int compression_level = 1;
@@ -176,7 +175,7 @@ class HeaderDecoder {
   [[noreturn]] void fail(const std::string& message) const { throw Error({file_}, message); }
 
   std::int64_t integer(const json& value, std::int64_t low, std::int64_t high) const {
-    if (!value.is_number_integer()) fail("damaged: its header holds a number that is no integer");
+    if (!value.is_number_integer()) fail("damaged: its header holds a number that is not an integer");
     const bool above = value.is_number_unsigned() && value.get<std::uint64_t>() > static_cast<std::uint64_t>(high);
     const auto number = above ? high : value.get<std::int64_t>();
     if (above || number < low || number > high) fail("damaged: its header holds a number out of range");
@@ -184,7 +183,7 @@ class HeaderDecoder {
   }
   // Any 64-bit count is valid: merged states hold sums of counts.
   std::uint64_t count(const json& value) const {
-    if (!value.is_number_unsigned()) fail("damaged: its header holds a number that is no count");
+    if (!value.is_number_unsigned()) fail("damaged: its header holds a number that is not a count");
     return value.get<std::uint64_t>();
   }
 
@@ -205,7 +204,7 @@ class HeaderDecoder {
     const SpectralBuckets buckets{static_cast<std::size_t>(integer(found->at("count"), 1, most_buckets)),
                                   found->at("low").get<float>(), found->at("high").get<float>()};
     if (!(buckets.low >= 0 && buckets.high > buckets.low && buckets.high < max_wavelength))
-      fail("damaged: its buckets are no wavelengths");
+      fail("damaged: its buckets are not wavelengths");
     return buckets;
   }
 
@@ -296,11 +295,11 @@ class HeaderDecoder {
     state.integrator = parsed.at("integrator").get<std::string>();
     const json& settings = parsed.at("settings");
     if (!settings.is_object() || !settings.value("identity", json::object()).is_object())
-      fail("damaged: its settings are no object");
+      fail("damaged: its settings are not an object");
     state.settings = settings.dump();
     state.shardable = parsed.at("shardable").get<bool>();
     state.seconds = parsed.at("seconds").get<double>();
-    if (!(state.seconds >= 0 && state.seconds <= max_seconds)) fail("damaged: its time is not one");
+    if (!(state.seconds >= 0 && state.seconds <= max_seconds)) fail("damaged: its time is not valid");
     state.eye = decode_ends(parsed, "eye_paths");
     state.light = decode_ends(parsed, "light_paths");
     header.integrator_state_bytes = count(parsed.at("integrator_state_bytes"));

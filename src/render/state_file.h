@@ -22,7 +22,7 @@ struct ByteSource {
   std::function<void(std::uint64_t offset, std::span<std::byte> out)> read;
 };
 
-/// What the header of a state file says.
+/// The header of a state file.
 struct StateHeader {
   RenderState state;  ///< all but the film, which is empty, and the integrator's state
   int width = 0, height = 0, step_exponent = 0;
@@ -50,7 +50,7 @@ class StateReader {
   void add_to(Film& film) const;
 
  private:
-  /// Of the sums: a block of pixels with all planes or, in version 6, a plane of all pixels.
+  /// A part of the sums: a block of pixels with all planes or, in version 6, a plane of all pixels.
   struct Piece {
     std::uint64_t offset, bytes;  ///< in the file, compressed
   };
@@ -68,16 +68,16 @@ class StateReader {
 
   ByteSource source_;
   std::string file_;
-  std::uint64_t at_ = 0, end_ = 0;  // of what is not read yet, without the checksum
+  std::uint64_t at_ = 0, end_ = 0;  // the part that is not read yet, without the checksum
   std::uint32_t version_ = 0;
   StateHeader header_;
   std::vector<Piece> pieces_;
 };
 
-/// Of bytes, which must outlive the reader. `name`: of the file, in messages.
+/// A reader of bytes, which must outlive it. `name`: of the file, in messages.
 StateReader read_state(std::span<const std::byte> bytes, const std::string& name);
 
-/// Of a file. Throws Error also if it cannot be read.
+/// A reader of a file. Throws Error also if the file cannot be read.
 StateReader open_state_reader(const std::filesystem::path& path);
 
 }  // namespace lanthorn

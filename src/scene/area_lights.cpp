@@ -176,7 +176,7 @@ Rgb mean_colour(const Emission& emission, const AreaLight& light, float scale, s
   return least * scale * Rgb{1, 1, 1};
 }
 
-// The same as a flat spectrum: nobody asks for it at a wavelength, and there may be millions.
+// The same as a flat spectrum: it is never evaluated at a wavelength, and there may be millions.
 SpectrumCurve mean_radiance(const Emission& emission, const AreaLight& light, float scale, std::uint32_t samples) {
   const Rgb colour = mean_colour(emission, light, scale, samples);
   SpectrumCurve mean = SpectrumCurve::constant(max_component(colour));

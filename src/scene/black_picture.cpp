@@ -30,7 +30,7 @@ std::vector<Ray> view_rays(const View& view) {
   return rays;
 }
 
-// Whether surfaces are all around the point.
+// True if surfaces are all around the point.
 bool is_enclosed(const Scene& scene, const Point& from) {
   for (int i = 0; i < rays_across; ++i)
     for (int k = 0; k < rays_across; ++k) {

@@ -37,7 +37,7 @@ inline bool is_valid(const RTCRay& ray) {
 }
 
 inline RTCRay make_ray(const Point& origin, const Vec3& direction, float t_max, float time) {
-  // Embree reads four numbers at once, and would have to wait for each by itself to be stored.
+  // Stores four numbers at once: Embree reads four at once, and would stall on separate stores.
   using Four = float __attribute__((vector_size(16)));
   static_assert(offsetof(RTCRay, tnear) == 3 * sizeof(float) && offsetof(RTCRay, time) == 7 * sizeof(float));
   constexpr float t_min = std::numeric_limits<float>::min();  // more than 0: a ray may start exactly on a plane

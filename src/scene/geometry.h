@@ -202,7 +202,7 @@ class Geometry {
   std::vector<GeometryRecord> records_;
   Bounds bounds_;
   bool moves_ = false;
-  // Of the top level, for rays.
+  // Data of the top level, for rays.
   RTCScene scene_ = nullptr;
   const Placement* placements_ = nullptr;
   unsigned first_placement_ = 0, placement_count_ = 0;  // Embree geometries from first_placement_ on are placements

@@ -28,7 +28,7 @@ Pixels load_pixels(const std::string& filename, const FileAccess& access, ColorS
   TextureImage image = access.skip_missing && access.is_missing(filename)
                            ? TextureImage(Rgb{0.5f, 0.5f, 0.5f})
                            : TextureImage(filename, access, {{description::Encoding::automatic, 1, space}}, location);
-  // Besides the texels, a light keeps two numbers of each to sample it, and needs a third while it makes them.
+  // Besides the texels, a light keeps two numbers per texel for sampling, and needs a third while these are made.
   constexpr double bytes_for_sampling = 3 * sizeof(float);
   const int width = image.width(), height = image.height();
   require_memory(static_cast<double>(width) * height * bytes_for_sampling + static_cast<double>(image.bytes()),

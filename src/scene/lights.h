@@ -33,8 +33,8 @@ struct MadeLight {
   const description::Light& source;
   const Light& light;
 };
-/// As `make_light` for an environment that differs from `before` in its place and scale alone: it shares the image,
-/// which takes long to make. nullopt for all others.
+/// Like `make_light`, for an environment that differs from `before` in its transformation and scale only: shares the
+/// image, which takes long to make. Nullopt for all other lights.
 std::optional<Light> make_from(const MadeLight& before, const description::Light& light, const BoundingSphere& scene);
 
 }  // namespace lanthorn

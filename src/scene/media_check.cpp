@@ -17,7 +17,7 @@ namespace {
 
 const Wavelengths white_light = Wavelengths::rgb(0.5f);
 
-// Rays that arrive in the medium `around` at a place where the scene claims the medium `claimed`.
+// Rays that arrive in the medium `around` at a place where the scene declares the medium `claimed`.
 struct MediaConflict {
   MediumId around, claimed;
   Ray ray;                             // a ray that meets the conflicting interface first
@@ -117,12 +117,12 @@ std::optional<description::Warning> warning_of(const Scene& scene, const MediaCo
   if (conflict.light)
     return description::Warning{scene.light_location(*conflict.light),
                                 "light from here starts in " + claimed + ", but rays get here through " + around +
-                                    ": give the light the MediumInterface of what is around it"};
+                                    ": give the light the MediumInterface of its surroundings"};
   const std::optional<SourceLocation> location = scene.locate(conflict.ray);
   if (!location) return {};
-  return description::Warning{*location,
-                              "rays get here through " + around + " where the shape says that " + claimed +
-                                  " is: is it inside out, or does what is around it, or the camera, lack a medium?"};
+  return description::Warning{
+      *location, "rays get here through " + around + ", but the shape declares " + claimed +
+                     " here: is the shape inside out, or does a surrounding shape, or the camera, lack a medium?"};
 }
 
 }  // namespace

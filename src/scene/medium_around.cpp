@@ -11,7 +11,7 @@ namespace lanthorn {
 
 namespace {
 
-// Shapes that rays go to from each point, and rays in all; at least one to each.
+// Most shapes that the rays from a point aim at, and the number of its rays; at least one for each shape.
 constexpr std::size_t most_targets = 256, rays_of_point = 64;
 
 // The medium at the ray's origin; empty if no interface or clear surface bounds it.
@@ -26,7 +26,7 @@ std::optional<MediumId> medium_before(const Scene& scene, Ray ray) {
   return {};
 }
 
-// Of the rays' origins; empty as for a point.
+// The medium around the origins of the camera's rays; nullopt as for a point.
 std::optional<MediumId> medium_around_camera(const Scene& scene, const Camera& camera) {
   const Vec2 film(static_cast<float>(camera.width()), static_cast<float>(camera.height()));
   const float time = camera.time(0.5f);
@@ -92,8 +92,8 @@ void settle_light_media(const std::shared_ptr<SceneData>& data, std::span<const 
     const MediumId around = data->light_media[first + i].outside, claimed = medium_id(described[i].medium);
     if (around != claimed && is_point(data->lights[first + i]))
       warn_once(data->description, described[i].location,
-                "light from here is said to start in " + name_of_medium(scene, claimed) + ", but shapes say that " +
-                    name_of_medium(scene, around) + " is around it: it starts there");
+                "the light is declared to be in " + name_of_medium(scene, claimed) +
+                    ", but the shapes around it put it in " + name_of_medium(scene, around) + ", which is used");
   }
 }
 

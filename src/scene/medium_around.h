@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The medium that the shapes of a scene say is around a point. Lights and cameras have that one, whatever their own
-// MediumInterface says: light paths, eye paths and connections then go through the same media.
+// The medium around a point, as the scene's shapes say. Lights and cameras use it, whatever their own MediumInterface
+// says, so that light paths, eye paths and connections pass through the same media.
 #pragma once
 
 #include <memory>
@@ -15,10 +15,10 @@
 
 namespace lanthorn {
 
-/// True for interfaces of media and for closures that transmit: beyond, rays are in the medium that is claimed there.
+/// True for interfaces of media and for closures that transmit: behind them, rays are in the medium declared there.
 bool lets_through(const SurfacePoint& at);
 
-/// As warnings call it.
+/// The name of the medium in warnings.
 std::string name_of_medium(const Scene& scene, MediumId id);
 
 /// Finds media around points.
@@ -26,8 +26,9 @@ class MediumFinder {
  public:
   explicit MediumFinder(const Scene& scene);
 
-  /// The medium that all rays from the point towards shapes that bound media find there: by the side of the first
-  /// interface or clear surface that they meet. Empty if they meet none, or if shapes contradict each other.
+  /// The medium around the point, if all rays from it towards the shapes that bound media find the same one: the medium
+  /// on the near side of the first interface or clear surface. Nullopt if rays meet none, or if shapes contradict each
+  /// other.
   std::optional<MediumId> around(const Point& p, float time) const;
 
  private:
@@ -35,11 +36,11 @@ class MediumFinder {
   std::vector<Bounds> targets_;
 };
 
-/// Sets the media of the described lights with these numbers: what is around those that are points, else what is
-/// claimed. Warns where a claim is wrong.
+/// Sets the media of the described lights with these indices: for point-like lights the medium around them, otherwise
+/// the declared one. Warns where a declaration is wrong.
 void settle_light_media(const std::shared_ptr<SceneData>& data, std::span<const description::Index> lights);
 
-/// The view in this scene: its medium is what is around the camera where this is known, else what is claimed. Throws
+/// The view in this scene. Its medium is the one around the camera if that is known, otherwise the declared one. Throws
 /// Error like `make_view`.
 View view_in(const Scene& scene, const ViewDescription& description, const ViewOptions& options = {});
 

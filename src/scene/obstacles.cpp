@@ -57,7 +57,7 @@ std::vector<Obstacle> obstacles_of(const ShapeStore& shape, const MaterialTable&
   return result;
 }
 
-// Of all shapes, in their order.
+// Obstacles of all shapes, in their order.
 template <class Shapes>
 std::vector<Obstacle> obstacles_of_all(const Shapes& shapes, const MaterialTable& materials) {
   std::vector<std::vector<Obstacle>> found(shapes.size());

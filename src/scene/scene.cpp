@@ -25,7 +25,7 @@ bool is_finite(const SurfaceGeometry& s) {
   return std::isfinite(sum.x + sum.y + sum.z) && std::isfinite(s.uv.x + s.uv.y);
 }
 
-// What of the surface a footprint of `width` metres across the ray covers at least.
+// The part of the surface that a footprint `width` metres wide across the ray covers at least.
 Footprint footprint_of(const SurfaceGeometry& s, float width) {
   const float u = std::sqrt(length_squared(s.dpdu)), v = std::sqrt(length_squared(s.dpdv));
   return u > 0 && v > 0 ? Footprint{{width / u, width / v}} : Footprint{};
@@ -110,7 +110,7 @@ std::optional<std::uint32_t> Scene::volume_light(MediumId medium) const {
   const auto found = data_->volume_lights.find(medium);
   return found != data_->volume_lights.end() ? std::optional(found->second) : std::nullopt;
 }
-bool Scene::has_unlit_glow() const { return data_->has_unlit_glow; }
+bool Scene::has_unlit_emission() const { return data_->has_unlit_emission; }
 bool Scene::lies_in(MediumId medium, const Ray& ray) const { return lanthorn::lies_in(*data_, medium, ray); }
 const Medium& Scene::medium(MediumId id) const { return (*data_->media)[static_cast<std::size_t>(id) - 1]; }
 MediumInterface Scene::light_media(std::uint32_t light) const { return data_->light_media[light]; }

@@ -62,8 +62,8 @@ class Scene {
   const RayLights& ray_lights() const;
   const Bounds& bounds() const;
   BoundingSphere bounding_sphere() const;
-  /// Largest radiance of any light, in any channel; for lights without extent, that of what they illuminate. Scales the
-  /// film's exact sums.
+  /// Largest radiance of any light, in any channel; for a light without extent, the radiance of surfaces that it
+  /// illuminates. Scales the film's exact sums.
   float largest_radiance() const;
   /// True if some material has a wavelength-dependent index of refraction or a tabulated (measured) spectrum, other
   /// than those of metals, whose reflectance in RGB is that of their spectra. The default colour mode is then spectral.
@@ -75,9 +75,9 @@ class Scene {
   bool may_be_specular() const;
   /// True if the scene describes any medium. If not, all rays are in vacuum.
   bool has_media() const;
-  /// Whether a material scatters as a hair does.
+  /// True if some material scatters as hair does.
   bool has_fibres() const;
-  /// True if some shape is no surface, only an interface between media. If not, what light passes is one medium.
+  /// True if some shape is only an interface between media. If not, a ray that passes no surface stays in one medium.
   bool has_interfaces() const;
   /// True if any medium scatters.
   bool has_scattering_media() const;
@@ -85,12 +85,12 @@ class Scene {
   float largest_medium_albedo() const;
   /// True if any medium has volumetric emission.
   bool has_emissive_media() const;
-  /// Boxes that contain all media that scatter; empty if one of them has no end.
+  /// Boxes that contain all scattering media; empty if one of them is unbounded.
   std::optional<std::vector<Bounds>> scattering_boxes() const;
-  /// The light that a medium with volumetric emission is; none if it has no end.
+  /// The light that stands for a medium with volumetric emission; nullopt if it is not a light, as if unbounded.
   std::optional<std::uint32_t> volume_light(MediumId medium) const;
-  /// True if any medium emits but is no light: only eye paths find what it emits.
-  bool has_unlit_glow() const;
+  /// True if some emissive medium is not a light: only eye paths find its emission.
+  bool has_unlit_emission() const;
   /// True if the medium is around the ray's origin; asks the surfaces along the ray.
   bool lies_in(MediumId medium, const Ray& ray) const;
   /// `id` must not be vacuum.
@@ -103,7 +103,7 @@ class Scene {
   const SceneStatistics& statistics() const;
   /// Throws Error if a texture on disk could not be read since the scene was built: then pictures are wrong.
   void require_textures() const;
-  /// What has been read of textures on disk since the scene was built.
+  /// Statistics of reading textures on disk since the scene was built.
   TileCacheCounts texture_reads() const;
   /// Location in the scene file of the nearest surface along the ray; nullopt if there is none.
   std::optional<SourceLocation> locate(const Ray& ray) const;

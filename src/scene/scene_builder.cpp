@@ -218,8 +218,7 @@ void SceneBuilder::warn_of_left_out() {
 
 void SceneBuilder::warn_of_motion(const AnimatedTransform& motion, const SourceLocation& location) {
   if (motion.is_moving())
-    warn_once(data_.description, location,
-              "a moving shape that emits is lit from where it is in the middle of the shutter interval");
+    warn_once(data_.description, location, "a moving shape emits from its place in the middle of the shutter interval");
 }
 
 // Embree tests rays in single precision: curves and instances vanish at ten times this distance, everything at 10^18.
@@ -259,7 +258,7 @@ void SceneBuilder::place(PlacedInstance placed) {
   data_.placed.push_back(std::move(placed));
 }
 
-// Before any is made: small files may ask for many.
+// Checked before any is made, because small files may ask for many triangles.
 void SceneBuilder::check_displacements() const {
   constexpr double most_triangles = 1 << 26;
   const SceneDescription& scene = data_.description;
@@ -371,7 +370,7 @@ void SceneBuilder::add_part(description::Shape& shape, const std::vector<descrip
 Light SceneBuilder::make_light(const description::Light& light) {
   if (like_ != nullptr)
     if (std::optional<Light> shared = make_from(*like_, light, data_.sphere)) {
-      // The image is that scene's, or one's before it.
+      // The image belongs to that scene, or to one from which that scene has it.
       data_.kept = like_->kept;
       if (!like_->light_store->spherical_images.empty()) data_.kept.push_back(like_->light_store);
       return *shared;
@@ -472,9 +471,9 @@ BoundingSphere bounding_sphere(const Bounds& box) {
 
 namespace {
 
-// The least distance from a light without extent to what `count` of its rays meet. The scene's radius does not tell: a
-// lamp may hang above a table in a landscape. Less than 2^-16 of it counts as that, so that a lamp which touches its
-// holder does not hide the rest, 2^32 times darker, below the film's resolution.
+// The least distance from a light without extent to what `count` of its rays meet. The scene's radius is no measure for
+// it: a lamp may hang above a table in a landscape. Distances below 2^-16 of the radius are raised to that, so that a
+// lamp that touches its holder does not push the rest, 2^32 times darker, below the film's resolution.
 float distance_lit(const SceneData& data, const Light& light, HashRng rng, std::size_t count) {
   float nearest = data.sphere.radius;
   for (std::size_t i = 0; i < count; ++i) {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// What a scene is made of, for those who make scenes.
+// The parts of a scene, for the code that builds and edits scenes.
 #pragma once
 
 #include <cstddef>
@@ -36,7 +36,7 @@ struct PlacedInstance {
 /// The parts of a scene. An edited scene shares those that take long to make with the scene it comes from, and keeps
 /// them alive.
 struct SceneData {
-  /// Compiles the materials. `loaded`: may be null; images and measured materials are its own.
+  /// Compiles the materials. `loaded`: a scene to share images and measured materials with; may be null.
   SceneData(SceneDescription&& source, const SceneData* loaded, Geometry own_geometry);
   SceneData(const SceneData&) = delete;
   SceneData& operator=(const SceneData&) = delete;
@@ -68,7 +68,7 @@ struct SceneData {
   BoundingSphere sphere;
   float largest_radiance = 0;
   bool has_measured_spectra = false, has_dispersion = false, has_interfaces = false, has_emissive = false;
-  bool has_unlit_glow = false;          ///< some medium that emits is no light
+  bool has_unlit_emission = false;      ///< some emissive medium is not a light
   std::vector<MediumId> endless_media;  ///< around the whole scene
   bool is_edited = false;
   bool has_edited_lights = false;  ///< `lights` point to `spectra`, `light_store` and `textures`
@@ -92,10 +92,10 @@ BoundingSphere bounding_sphere(const Bounds& box);
 /// Largest radiance of any light, in any channel. For lights without extent, that of a white surface where they first
 /// meet one. Depends on lights and geometry. Throws Error as `check_radiance` does.
 float find_largest_radiance(const SceneData& data);
-/// As `make_light` for an environment that differs in its place and scale alone from one of `scene`: it shares the
-/// image, which takes long to make. nullopt for all others.
+/// Like `make_light`, for an environment that differs from one of `scene` in its transformation and scale only: shares
+/// the image, which takes long to make. Nullopt for all other lights.
 std::optional<Light> make_from(const SceneData& scene, const description::Light& light, const BoundingSphere& bounds);
-/// What follows from the lights: their index, which are infinite, the largest radiance.
+/// Sets the data that depend on the lights: their sampler, the infinite ones, the largest radiance.
 void index_lights(SceneData& data);
 
 }  // namespace lanthorn

@@ -38,7 +38,7 @@ bool is_environment(const description::Light& light) {
   return std::holds_alternative<description::InfiniteLight>(light.node);
 }
 
-// Nobody else's edit has this number: states of edited scenes are never mixed up.
+// A number that no other edit has, so that states of different edited scenes are never mixed up.
 std::uint64_t unique_hash() {
   std::random_device random;
   return (std::uint64_t{random()} << 32) | random();
@@ -71,7 +71,7 @@ class SceneEditor {
     data_->media = base_->media;
     data_->has_interfaces = base_->has_interfaces;
     data_->has_emissive = base_->has_emissive;
-    data_->has_unlit_glow = base_->has_unlit_glow;
+    data_->has_unlit_emission = base_->has_unlit_emission;
     data_->endless_media = base_->endless_media;
     update_records();
     place();
@@ -100,7 +100,7 @@ class SceneEditor {
     data_->has_edited_lights = edits_.environment || !edits_.lights.empty() || !edits_.area_lights.empty();
   }
 
-  // What a material says about surfaces is stored with them.
+  // Records of surfaces hold some traits of their materials.
   void update_records() {
     data_->geometry.update_records([&](GeometryRecord& record) {
       const MaterialTraits& now = data_->materials.traits(record.material);
@@ -154,7 +154,7 @@ class SceneEditor {
       if (is_edited || (!same_size && !set_scene_bounds(light, data_->sphere))) update(light, i);
       if (is_edited || !edits_.instances.empty()) unsettled.push_back(index);
     }
-    // What has moved may bound media.
+    // Moved instances may bound media.
     const bool may_move_media = !data_->media->empty() && !edits_.instances.empty();
     if (may_move_media) make_volume_lights(*data_, shutter_middle(data_->description));
     if (data_->has_edited_lights || !same_size || may_move_media)
@@ -226,7 +226,7 @@ class SceneEditor {
 
 namespace {
 
-// What determines the magnitude of a light, or multiplies it: one of them alone is scaled.
+// The one value that scales a light: its power or illuminance if given, otherwise the scale of its emission.
 template <class L>
 float& magnitude_of(L& light) {
   if constexpr (requires { light.power; })

@@ -125,7 +125,7 @@ void require_scene_memory(SceneDescription& scene) {
   const auto available = static_cast<double>(available_memory().value_or(~std::uint64_t{0}));
   std::optional<std::uint64_t>& textures = scene.access.texture_memory;
   if (!textures) textures = static_cast<std::uint64_t>(std::max(0.0, available - geometry) / 2);
-  // Headers of images are read only where it matters what is in them.
+  // Headers of images are read only if the images may not fit.
   if (geometry + static_cast<double>(*textures) <= available) return;
   const double needed = static_cast<double>(std::min(*textures, expected_texture_memory(scene)));
   require_memory(geometry + needed, file, fmt::format("{}, and {} of textures,", what, memory_text(needed)));

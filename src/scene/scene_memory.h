@@ -8,13 +8,13 @@
 
 namespace lanthorn {
 
-/// What the shapes of a scene will take.
+/// Memory that the shapes of a scene will take.
 struct SceneMemory {
   std::uint64_t triangles = 0;  ///< patches count as two
   std::uint64_t curves = 0;     ///< segments, each of the pieces that ribbons are cut into
   double geometry = 0;          ///< bytes of shapes as rays use them
   double trees = 0;             ///< bytes of Embree's trees
-  double building = 0;          ///< bytes beside these while the largest tree is built
+  double building = 0;          ///< bytes needed in addition while the largest tree is built
 };
 
 /// Counts meshes and curves as they are described: what displacement and subdivision add is not known before they are

@@ -27,12 +27,12 @@ std::vector<description::Warning> warnings_of(const Scene& scene, const ViewDesc
   const bool is_dark = scene.lights().empty() && !scene.has_emissive_media();
   const bool is_empty = scene.bounds().empty();
   if (is_dark) all.push_back({file, "the scene has no light: the picture will be black"});
-  if (is_empty && !is_dark) all.push_back({file, "the scene has no shapes: the picture shows lights around it alone"});
+  if (is_empty && !is_dark) all.push_back({file, "the scene has no shapes: the picture shows only lights at infinity"});
   const View placed = view_in(scene, view);
   if (const MediumId claimed = medium_id(view.camera.medium); placed.medium != claimed)
-    all.push_back({view.camera.location, "the camera is said to be in " + name_of_medium(scene, claimed) +
-                                             ", but shapes say that " + name_of_medium(scene, placed.medium) +
-                                             " is around it: it is there"});
+    all.push_back({view.camera.location, "the camera is declared to be in " + name_of_medium(scene, claimed) +
+                                             ", but the shapes around it put it in " +
+                                             name_of_medium(scene, placed.medium) + ", which is used"});
   for (description::Warning& warning : media_warnings(scene, placed)) all.push_back(std::move(warning));
   return all;
 }

@@ -42,7 +42,8 @@ inline float geometric_cosine(const SurfacePoint& at, const Direction& w) {
 /// Normal of a receiver of light; zero if it receives from all directions alike (hair).
 inline Normal receiver_normal(const SurfacePoint& at) { return at.is_hair ? Normal(0) : at.shading.n; }
 
-/// The medium that the surface claims towards `direction`; `current`, that around the point, if it bounds no media.
+/// The medium that the surface declares towards `direction`; `current`, the medium around the point, if it bounds no
+/// media.
 inline MediumId medium_towards(const SurfacePoint& at, const Direction& direction, MediumId current) {
   if (!at.media.is_transition()) return current;
   return dot(direction, at.normal) > 0 ? at.media.outside : at.media.inside;
@@ -53,7 +54,7 @@ namespace detail {
 /// The neighbouring float in the direction of `offset`'s sign, because the sum may have been rounded the other way.
 inline float rounded_away(float x, float offset) {
   if (x == 0) return offset == 0 ? x : std::copysign(std::numeric_limits<float>::denorm_min(), offset);
-  // Without branches: which coordinates of normals are 0, and their signs, nobody can predict.
+  // Without branches, because zeros and signs of the coordinates of normals are unpredictable.
   const std::uint32_t away = (x > 0) == (offset > 0) ? 1u : ~0u, step = offset == 0 ? 0u : away;
   return std::bit_cast<float>(std::bit_cast<std::uint32_t>(x) + step);
 }

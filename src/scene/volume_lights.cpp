@@ -68,20 +68,20 @@ Bounds bounds_of_surfaces(const Geometry& geometry, MediumId medium) {
   return all;
 }
 
-// What is measured of a medium's emission.
-struct MeasuredGlow {
+// Measurements of a medium's emission.
+struct MeasuredEmission {
   BlockGrid blocks;     // mean emission, of all channels together
   float watts = 0;      // luminance
   float brightest = 0;  // radiance per metre, of any channel
 };
 
-MeasuredGlow measure(const SceneData& scene, MediumId id, const MediumBox& place, int resolution, float time) {
+MeasuredEmission measure(const SceneData& scene, MediumId id, const MediumBox& place, int resolution, float time) {
   const Medium& medium = (*scene.media)[static_cast<std::size_t>(id) - 1];
   const Transform to_world = place.to_medium.inverted();
   const Wavelengths white = Wavelengths::rgb(0.5f);
   constexpr int parts = 2;  // points along each axis of a block
   constexpr auto points = static_cast<float>(parts * parts * parts);
-  MeasuredGlow result{BlockGrid(place.box, resolution)};
+  MeasuredEmission result{BlockGrid(place.box, resolution)};
   const std::span<float> values = result.blocks.values();
   std::vector<float> luminances(values.size()), brightest(values.size());
   parallel_for(std::size_t{0}, values.size(), [&](std::size_t i) {
@@ -112,12 +112,12 @@ std::optional<VolumeLight> make_volume_light(const SceneData& scene, MediumId id
   const Medium& medium = (*scene.media)[static_cast<std::size_t>(id) - 1];
   const std::optional<MediumBox> place = place_of(scene, id);
   if (!place) return {};
-  // Where the emission does not vary, only the shape of the medium has to be found.
+  // If the emission is uniform, only the shape of the medium has to be found.
   const bool is_even = std::holds_alternative<HomogeneousMedium>(medium);
-  MeasuredGlow measured = measure(scene, id, *place, is_even ? 16 : 32, time);
+  MeasuredEmission measured = measure(scene, id, *place, is_even ? 16 : 32, time);
   if (!(measured.watts > 0)) return {};
   const float diagonal = static_cast<float>(std::cbrt(place->volume()) * std::numbers::sqrt3);
-  return VolumeLight{&medium, std::make_shared<const GlowTable>(std::move(measured.blocks), *place), measured.watts,
+  return VolumeLight{&medium, std::make_shared<const EmissionTable>(std::move(measured.blocks), *place), measured.watts,
                      measured.brightest * diagonal};
 }
 
@@ -144,13 +144,13 @@ void make_volume_lights(SceneData& scene, float time) {
   lights.resize(lights.size() - scene.volume_lights.size(), Light(PointLight{}));
   scene.light_media.resize(lights.size());
   scene.volume_lights.clear();
-  scene.has_unlit_glow = false;
+  scene.has_unlit_emission = false;
   if (!scene.media->empty()) scene.endless_media = find_endless_media(scene, time);
   for (std::size_t i = 0; i < scene.media->size(); ++i) {
     if (!is_emissive((*scene.media)[i])) continue;
     const auto id = static_cast<MediumId>(i + 1);
     const std::optional<VolumeLight> light = make_volume_light(scene, id, time);
-    scene.has_unlit_glow = scene.has_unlit_glow || !light;
+    scene.has_unlit_emission = scene.has_unlit_emission || !light;
     if (!light) continue;
     const auto index = static_cast<std::uint32_t>(lights.size());
     check_power(*light, scene.description.media[i].location);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Media that emit, as lights.
+// Media with volumetric emission, as lights.
 #pragma once
 
 #include "scene/scene_data.h"
@@ -22,14 +22,14 @@ void for_each_bounding_box(const Geometry& geometry, Visit&& visit) {
 
 /// True if rays from outside of the scene meet the medium.
 bool is_endless(const SceneData& scene, MediumId medium);
-/// Where the medium can be found; empty if it has no end, or no surface bounds it.
+/// Where the medium can be found; nullopt if it is unbounded, or if no surface bounds it.
 std::optional<MediumBox> place_of(const SceneData& scene, MediumId medium);
 /// True if the medium is around the ray's origin: asks the first surface along the ray that bounds media.
 bool lies_in(const SceneData& scene, MediumId medium, const Ray& ray);
 
-/// Finds the media that have no end, and makes a light of each medium that emits, and puts them behind all others, in
-/// place of those that are there already. Not of media that have no end, or that no surface bounds: eye paths alone
-/// find these (`has_unlit_glow`). `time`: at which moving surfaces bound media.
+/// Finds the unbounded media, makes a light of each emissive medium, and appends these lights to the others, in place
+/// of earlier ones. Unbounded media, and media that no surface bounds, do not become lights: only eye paths find their
+/// emission (`has_unlit_emission`). `time`: when moving surfaces bound the media.
 void make_volume_lights(SceneData& scene, float time);
 
 }  // namespace lanthorn

@@ -19,7 +19,7 @@ namespace {
 
 using Corners = std::array<Vec3, 3>;
 
-// In the space around the shape.
+// The triangles in the space around the shape.
 std::vector<Corners> triangles_of(const description::Shape& shape) {
   std::vector<Corners> result;
   const Transform& to_space = shape.object_to_world.start;

@@ -12,7 +12,7 @@ namespace lanthorn {
 /// Splits each quad into two triangles.
 description::TriangleMesh triangulated(description::BilinearMesh mesh);
 
-/// A lower bound of the number of triangles that a shape with displacement has afterwards. 0 if it is no mesh.
+/// A lower bound of the number of triangles that a shape with displacement will have. 0 if it is not a mesh.
 double least_displaced_triangles(const description::Shape& shape);
 
 /// Splits the triangles of `mesh` until no edge is longer than `edge_length` under `to_world`, then moves each vertex

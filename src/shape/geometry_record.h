@@ -20,7 +20,7 @@ struct alignas(32) Vertex {
 };
 static_assert(sizeof(Vertex) == 32);
 
-/// What a hit needs of a triangle without normals and uvs at its corners, in one cache line.
+/// The data of a triangle without normals and uvs at its corners that a hit needs, in one cache line.
 struct alignas(64) FlatTriangle {
   std::array<Point, 3> corners;
   Normal normal{0};  ///< geometric, unit, outside
@@ -39,7 +39,7 @@ struct alignas(64) GeometryRecord {
   const std::array<std::uint32_t, 3>* triangles = nullptr;
   union {
     const Vertex* vertices = nullptr;  ///< for meshes with normals or uvs
-    const FlatTriangle* flat;          ///< for the triangles of others
+    const FlatTriangle* flat;          ///< for the triangles of meshes without them
   };
   const Point* positions = nullptr;  ///< for meshes without normals and uvs, instead of `vertices`
   const Vec3* tangents = nullptr;
@@ -56,7 +56,7 @@ struct alignas(64) GeometryRecord {
   bool emits = false;
   bool wants_tangents = false;   ///< the material is anisotropic or has a relief
   bool wants_footprint = false;  ///< the material averages textures over footprints
-  bool wants_uv = false;         ///< something depends on the place; cheap texture coordinates are there anyway
+  bool wants_uv = false;         ///< some parameter depends on the place; cheap texture coordinates are computed anyway
   bool has_normals = false;
   bool has_uvs = false;
   bool has_colors = false;

@@ -43,7 +43,8 @@ bool keeps(const Quadric& q, const DVec3& p) {
   return keeps_azimuth(q, p);
 }
 
-// Factor of lengths if the map turns and scales alone, to within the rounding of double precision; otherwise 0.
+// Factor of lengths if the map only rotates and scales uniformly, to within the rounding of double precision; otherwise
+// 0.
 double scale_of_similarity(const Affine& map) {
   constexpr double rounding = 1e-14;
   const DMat3 metric = glm::transpose(map.linear) * map.linear;

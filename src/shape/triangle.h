@@ -58,7 +58,7 @@ inline FlatTriangle flat_triangle(const std::array<Point, 3>& corners, bool flip
 
 namespace detail {
 
-/// Where a mesh has no uvs: those of pbrt, or of the patch whose halves two triangles are.
+/// Uvs of a mesh that has none: pbrt's, or those of the patch of which two triangles are the halves.
 inline Vec2 default_uv(const GeometryRecord& record, std::uint32_t primitive, float u, float v) {
   return record.quads && primitive % 2 != 0 ? Vec2(u, u + v) : Vec2(u + v, v);
 }
@@ -76,7 +76,7 @@ inline SurfaceGeometry evaluate_flat(const FlatTriangle& t, float b0, float u, f
   return s;
 }
 
-/// The same with uvs, of a mesh that has nothing at its corners.
+/// The same with uvs, for a mesh without attributes at its corners.
 inline SurfaceGeometry evaluate_plain(const GeometryRecord& record, std::uint32_t primitive, float u, float v) {
   SurfaceGeometry s = evaluate_flat(record.flat[primitive], 1 - u - v, u, v);
   s.uv = default_uv(record, primitive, u, v);
@@ -85,7 +85,7 @@ inline SurfaceGeometry evaluate_plain(const GeometryRecord& record, std::uint32_
 
 }  // namespace detail
 
-/// Of meshes with something at their corners, or whose derivatives are wanted.
+/// For meshes with attributes at their corners, or whose derivatives are wanted.
 SurfaceGeometry evaluate_attributed_triangle(const GeometryRecord& record, std::uint32_t primitive, float u, float v);
 
 /// u and v are the barycentric weights of the second and third corner.

@@ -10,12 +10,12 @@
 
 namespace lanthorn {
 
-/// Bytes of Embree's tree for each triangle, and bytes beside them while it is built. Measured on height fields of one
-/// and four million triangles with Embree 3.13 (docs/lab/memory.md, "Memory of geometry").
+/// Bytes of Embree's tree per triangle, and further bytes while it is built. Measured on height fields of one and four
+/// million triangles with Embree 3.13 (docs/lab/memory.md, "Memory of geometry").
 constexpr double tree_bytes_per_triangle = 66, building_bytes_per_triangle = 44;
 
-/// The same of curves: for each segment, of ribbons for each of the pieces that a segment is cut into (200,000 curves
-/// of each kind).
+/// The same for curves, per segment; for ribbons, per piece that a segment is cut into. Measured on 200,000 curves of
+/// each kind.
 constexpr double tree_bytes_per_curve = 116, tree_bytes_per_ribbon_piece = 47, building_bytes_per_curve = 45;
 constexpr std::uint32_t ribbon_pieces = 4;
 

@@ -115,7 +115,7 @@ struct Cell {
 Cell find_cell(const std::array<float, sigmoid_nodes>& nodes, float x) {
   std::size_t node = 0;
   for (std::size_t step = (sigmoid_nodes - 1) / 2; step > 0; step /= 2)
-    node += step * static_cast<std::size_t>(nodes[node + step] <= x);  // branchless, because x is as good as random
+    node += step * static_cast<std::size_t>(nodes[node + step] <= x);  // branchless, because x is unpredictable
   return {node, (x - nodes[node]) / (nodes[node + 1] - nodes[node])};
 }
 

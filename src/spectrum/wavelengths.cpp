@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 // Each path has four wavelengths, equidistant in the cumulative distribution (Wilkie et al. 2014, "Hero wavelength
-// spectral sampling"): a rectangle rule with four nodes. How noisy the colours of paths are is how far that rule is
-// from the integrals of the film's response times smooth spectra. A density in proportion to the eye's response
-// (Radziszewski, Boryczko and Alda 2009) leaves the blue of white light a relative variance of .34, since one node of
-// four lies where blue is seen. The density here was fitted to this error instead.
+// spectral sampling"): a rectangle rule with four nodes. The colour noise of paths is the error of that rule for
+// integrals of the film's response times smooth spectra. A density in proportion to the eye's response (Radziszewski,
+// Boryczko and Alda 2009) leaves the blue of white light a relative variance of .34, since one node of four lies where
+// blue is seen. The density here was fitted to this error instead.
 #include "spectrum/wavelengths.h"
 
 #include <algorithm>
@@ -50,10 +50,10 @@ const Response& at(const ResponseTable& table, float nm) {
   return table[static_cast<unsigned>(nm - lambda_min + 0.5f)];
 }
 
-/// Density of wavelengths, not normalised: a plateau over what the eye sees. The five numbers minimise the mean squared
-/// error of the rectangle rule with 4, 8 and 16 nodes (weights 1, 8, 200) over seven smooth reflectances under D65,
-/// equal energy and black bodies of 2856 and 5000 K, in linear Rec.709. The floor is for the ends, which film with
-/// buckets may ask for.
+/// Density of wavelengths, not normalised: a plateau over the range that the eye sees. The five numbers minimise the
+/// mean squared error of the rectangle rule with 4, 8 and 16 nodes (weights 1, 8, 200) over seven smooth reflectances
+/// under D65, equal energy and black bodies of 2856 and 5000 K, in linear Rec.709. The floor keeps the density positive
+/// at the ends, which a film with spectral buckets may use.
 constexpr double density_of(double nm) {
   const auto smooth_step = [](double t) {
     t = std::clamp(t, 0.0, 1.0);

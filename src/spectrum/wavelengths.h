@@ -24,8 +24,8 @@ struct Wavelengths {
 
   /// RGB mode. `u` in [0,1) picks lambda[0], the wavelength at which dispersive interfaces are evaluated.
   static Wavelengths rgb(float u);
-  /// Spectral mode: four stratified wavelengths, with a density for which four show colours best. lambda[0] covers the
-  /// whole visible range as u covers [0,1) (hero wavelength sampling, Wilkie et al. 2014).
+  /// Spectral mode: four stratified wavelengths, with a density for which four wavelengths reproduce colours best.
+  /// lambda[0] covers the whole visible range as u covers [0,1) (hero wavelength sampling, Wilkie et al. 2014).
   static Wavelengths spectral(float u);
 
   /// Mean of the components that carry light.

@@ -1,11 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Reflection where the shading normal n_s is not the geometric normal n. By n_s alone, lobes lead under the surface,
-// into the solid: metals of few facets have black rims. There the surface's plane reflects light once more, the idea of
+// Reflection where the shading normal n_s differs from the geometric normal n. With n_s alone, lobes lead below the
+// surface, into the solid, and metals of few facets get black rims. Here the surface's plane reflects such light once
+// more, the idea of
 //   Schüssler, Heitz, Hanika, Dachsbacher 2017: Microfacet-based Normal Mapping for Robust Monte Carlo Path Tracing
-// without their facets. Let P be the mirror image in the plane. Of light from l, the eye at e sees, both above it,
-//   f(e, l) |cos l| + f(e, P l) |cos P l|,    cosines to n_s,
-// which over all l is all that f(e, .) reflects: the albedo is that of the closure by itself.
+// without their facets. Let P be the mirror image in the plane. Of light from l, the eye at e, with both above the
+// plane, sees
+//   f(e, l) |cos l| + f(e, P l) |cos P l|,    cosines to n_s.
+// Integrated over all l, this is all light that f(e, .) reflects: the albedo is that of the closure alone.
 #pragma once
 
 #include <algorithm>
@@ -20,9 +22,9 @@
 
 namespace lanthorn {
 
-/// A closure that does not transmit, with its delta lobes and those that are `mirrored` above the surface's plane
-/// alone. Others, such as the base below a smooth coat, scatter under it as above it, as matte surfaces do: mirrored,
-/// their light would show the facets.
+/// A closure that does not transmit. Its delta lobes, and all lobes of closures that are `mirrored`, scatter above the
+/// surface's plane only. Other lobes, such as the base below a smooth coat, scatter below the plane as above it, as
+/// matte surfaces do: mirrored, their light would show the facets.
 template <Closure C>
 struct Bent {
   static constexpr ClosureTraits traits{.is_fibre = false, .transmits = false};
@@ -33,7 +35,7 @@ struct Bent {
 
 namespace bent_detail {
 
-/// Whether all of its lobes are mirrored, or delta lobes alone.
+/// True if all lobes of the closure are mirrored; otherwise only its delta lobes are.
 template <class C>
 inline constexpr bool mirrored = std::is_same_v<C, Conductor>;
 
@@ -45,9 +47,9 @@ template <class C>
 bool is_above(const Bent<C>& b, const Vec3& wi, const Vec3& wo) {
   return dot(wi, b.plane) * dot(wo, b.plane) > 0;
 }
-/// Whether a light walk that arrives from `l` may take its light to come from P l, and so leave along S P l, S being
-/// the reflection by n_s. Then S l is above the plane, too. True of all light that the eye needs, but for what rough
-/// lobes send to eyes behind the shading normal, which see less than they should.
+/// True if a light walk that arrives from `l` may treat its light as coming from P l, and so leave along S P l, where S
+/// is the reflection by n_s. S l then is above the plane, too. True for all light that the eye needs, except light that
+/// rough lobes send to eyes behind the shading normal; these see too little.
 template <class C>
 bool has_image(const Bent<C>& b, const Vec3& l) {
   const Vec3 image_of_l = image(b, l);
@@ -76,7 +78,7 @@ Spectrum eval(const Bent<C>& b, const Vec3& wi, const Vec3& wo, Transport transp
   return f;
 }
 
-/// Density of the walk of this kind that chooses `wo`.
+/// Density with which a walk of this kind chooses `wo`.
 template <class C>
 float pdf_of(const Bent<C>& b, const Vec3& wi, const Vec3& wo, Transport transport) {
   constexpr bool mirrored = bent_detail::mirrored<C>;
@@ -97,7 +99,7 @@ float pdf_reverse(const Bent<C>& b, const Vec3& wi, const Vec3& wo) {
 
 namespace bent_detail {
 
-/// With the weight of all ways to this direction.
+/// The sample with the weight of all ways to its direction.
 template <class C>
 std::optional<BsdfSample> weighted(const Bent<C>& b, const Vec3& wi, BsdfSample s, Transport transport) {
   s.pdf = pdf_of(b, wi, s.wo, transport);

@@ -10,7 +10,7 @@ constexpr Transport opposite(Transport t) {
   return t == Transport::radiance ? Transport::importance : Transport::radiance;
 }
 
-// By the walk that chooses wo, where it makes a difference.
+// `pdf` for the kind of walk that chooses wo, for closures that distinguish them.
 template <class C>
 float pdf_by(const C& closure, const Vec3& wi, const Vec3& wo, Transport transport) {
   if constexpr (requires { pdf_of(closure, wi, wo, transport); }) return pdf_of(closure, wi, wo, transport);
@@ -22,7 +22,7 @@ float pdf_reverse_by(const C& closure, const Vec3& wi, const Vec3& wo, Transport
   return pdf_reverse(closure, wi, wo);
 }
 
-// Facets to which normals of their own have been given up to rounding are not bent.
+// Facets whose shading normal equals the geometric one up to rounding are not bent.
 constexpr float least_bent_cosine = 1 - 1e-6f;
 
 // Rough coats cannot tell their lobes apart, and rough plastic as a whole scatters as matte surfaces do.

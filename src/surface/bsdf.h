@@ -35,20 +35,19 @@ using Bsdf =
                    CoatedConductor, CoatedPlastic, Hair, Plastic, Cloth, Measured, Bent<Conductor>, Bent<Plastic>,
                    Bent<ClearCoated>, Bent<CoatedDiffuse>, Bent<CoatedConductor>, Bent<CoatedPlastic>>;
 
-/// The closure as it reflects where the geometric normal, in the shading frame, is `plane`. Empty if it is the same:
-/// closures other than metals and smooth coats scatter under the surface as above it.
+/// The closure for the geometric normal `plane`, given in the shading frame. Nullopt if it does not differ: closures
+/// other than metals and smooth coats scatter below the surface as above it.
 std::optional<Bsdf> bent(const Bsdf& bsdf, const Normal& plane);
 
 /// f(wi, wo), 1/sr, without the cosine (`cosine`) and without delta lobes. `transport` is the quantity that the walk
 /// carries: `radiance` from the eye (refraction scales f by the squared index ratio), `importance` from a light (no
-/// scaling). Reflection is the same for both and symmetric, except on hair and on bent closures: theirs is that of the
-/// path's light and eye, whichever walk asks.
+/// scaling). Reflection is the same for both and symmetric, except for hair and bent closures: their f depends on which
+/// end of the path is the light and which the eye, not on the walk that asks.
 Spectrum eval(const Bsdf& bsdf, const Vec3& wi, const Vec3& wo, Transport transport);
 
 /// Density with which `sample` chooses the non-delta direction `wo` from `wi`, per solid angle, including the
 /// probability of the lobe. For layered closures it may be an approximation: normalised, and positive wherever `eval`
-/// is (see `pdf_is_exact`). `transport` is that of the walk that chooses; it makes a difference for bent closures
-/// alone.
+/// is (see `pdf_is_exact`). `transport` is that of the walk that chooses; it matters for bent closures only.
 float pdf(const Bsdf& bsdf, const Vec3& wi, const Vec3& wo, Transport transport = Transport::radiance);
 
 /// `eval` and `pdf` together: closures share what both need. The pdf is not computed if f is black.
@@ -93,11 +92,11 @@ std::optional<BsdfSample> sample(const Bsdf& bsdf, const Vec3& wi, float u_lobe,
 /// Use it for the albedo layer and Russian roulette only, never in estimators.
 Spectrum albedo(const Bsdf& bsdf, const Vec3& wi);
 
-/// Shares of the closure's albedo by kind of lobe; caches decide by them.
+/// Shares of the closure's albedo by kind of lobe, for caches.
 LobeWeights lobe_weights(const Bsdf& bsdf, const Vec3& wi);
 
-/// The closure as split-sum shading knows it. What light of layered closures the surface of the coat does not reflect
-/// is diffuse or, over metal, the lobe of the metal.
+/// The closure as split-sum shading represents it. For layered closures, light that the coat's surface does not reflect
+/// counts as diffuse or, over metal, as the metal's lobe.
 SplitTerms split_terms(const Bsdf& bsdf, const Vec3& wi);
 
 /// True if some lobe is not a delta function, so that `eval` can be positive.

@@ -24,13 +24,13 @@ struct FacetNumbers {
 
 float layer_transmittance(float thickness, const Vec3& w) { return std::exp(-thickness / abs_cos_theta(w)); }
 
-/// What enters from `wi`, outside, and reaches the base.
+/// Fraction of the light from `wi`, outside, that enters the coat and reaches the base.
 float entering(const Dielectric& coat, float thickness, const Vec3& wi, const Vec2& u) {
   const auto inside = sample_transmission(coat, wi, u, Transport::importance);
   return inside ? inside->weight * layer_transmittance(thickness, inside->wo) : 0.0f;
 }
 
-/// What leaves the base towards `up` and comes back to it, reflected by the coat.
+/// Fraction of the light that leaves the base towards `up` and returns to it, reflected by the coat.
 float returning(const Dielectric& coat, float thickness, const Vec3& up, const Vec2& u) {
   const auto down = sample_reflection(coat, -up, u);
   return down ? layer_transmittance(thickness, up) * down->weight * layer_transmittance(thickness, down->wo) : 0.0f;
@@ -45,12 +45,12 @@ Spectrum power(Spectrum x, int n) {
 
 /// Reflectance of the base with all returns of light to it: reflectance (1 + K reflectance + (K reflectance)^2 + ...).
 Spectrum with_returns(const ClearCoated& c) {
-  constexpr float most = 0.9999f;  // of interfaces that nothing leaves
+  constexpr float most = 0.9999f;  // for interfaces that no light leaves
   const Spectrum again = c.reflectance * std::min(c.passage->back(), most);
   return c.reflectance * (Spectrum(1) - power(again, c.arrivals)) / (Spectrum(1) - again);
 }
 
-/// The closure with what all its functions share. Directions are seen from above the coat.
+/// The closure with the values that its functions share. Directions are seen from above the coat.
 class CoatAndBase {
  public:
   explicit CoatAndBase(const ClearCoated& c)
@@ -111,7 +111,7 @@ CoatPassage::CoatPassage(const Dielectric& coat, float thickness) : coat_(coat) 
       }
     to_base_[k] = static_cast<float>(sum / (n * n));
   }
-  // Sobol' points, because what comes back depends on three numbers; of cosine-distributed directions, cos^2 is
+  // Sobol' points, because the returning light depends on three numbers. cos^2 of a cosine-distributed direction is
   // uniform.
   constexpr std::uint32_t points = 1u << 14;
   double back = 0, out = 0;

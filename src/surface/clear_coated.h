@@ -18,7 +18,7 @@
 
 namespace lanthorn {
 
-/// How much light a clear coat lets through. Built once for each coat, which takes some milliseconds. Good to 0.1 %.
+/// Tabulated transmission of a clear coat. Built once for each coat, in some milliseconds. Accurate to 0.1 %.
 class CoatPassage {
  public:
   /// `coat`: without film, dispersion and tint, of equal widths. `thickness` > 0: optical depth of the absorbing layer
@@ -31,8 +31,8 @@ class CoatPassage {
     const TableCell cell = table_cell(std::sqrt(cos), to_base_.size());
     return lerp(cell.fraction, to_base_[cell.low], to_base_[cell.low + 1]);
   }
-  /// Of the light that leaves the base, Lambertian: the fraction that leaves the coat at its first attempt, and the
-  /// fraction that comes back to the base instead.
+  /// Of the Lambertian light that leaves the base: the fraction that leaves the coat at its first attempt, and the
+  /// fraction that returns to the base instead.
   float out() const { return out_; }
   float back() const { return back_; }
 

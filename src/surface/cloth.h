@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Fibres that stand out of a surface, as those of velvet:
+// Fibres that stand out of a surface, as in velvet:
 //   Estevez & Kulla 2017: Production Friendly Microfacet Sheen BRDF [E17]
 //   Neubelt & Pettineo 2013: Crafting a Next-Gen Material Pipeline for The Order: 1886 [N13]
 #pragma once
@@ -22,7 +22,7 @@ struct Cloth {
 
   Plastic base;
   Spectrum sheen{};     ///< colour of the fibres, in [0,1]
-  float alpha = 0.25f;  ///< their width, in [least_alpha, 1]: the wider, the less only at grazing angles
+  float alpha = 0.25f;  ///< their width, in [least_alpha, 1]: the wider, the less confined to grazing angles
 };
 
 /// Albedo of white fibres, at a cosine in [0,1]; somewhat less at grazing angles, see above.

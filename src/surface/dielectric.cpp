@@ -23,7 +23,7 @@ float transport_factor(float eta, Transport transport) {
   return transport == Transport::radiance ? 1.0f / (eta * eta) : 1.0f;
 }
 
-/// Of the interface, for a microfacet's Fresnel terms as seen from the side of `view`, and the cosine there.
+/// Reflectance of a microfacet with these Fresnel terms; `cos_i`: cosine on the side of `view`.
 Spectrum reflectance(const Dielectric& d, const View& view, float cos_i, const DielectricFresnel& fresnel) {
   if (!d.film) return Spectrum(fresnel.reflectance);
   return film_reflectance(d.film, view.side > 0 ? cos_i : fresnel.cos_t, Spectrum(d.eta));

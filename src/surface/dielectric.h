@@ -11,7 +11,7 @@
 
 namespace lanthorn {
 
-/// The interface of glass, water, …: Fresnel reflection and refraction, smooth or with Trowbridge-Reitz microfacets
+/// The interface of glass, water etc.: Fresnel reflection and refraction, smooth or with Trowbridge-Reitz microfacets
 /// (Walter et al. 2007). +z points to the outside.
 struct Dielectric {
   static constexpr ClosureTraits traits{.is_fibre = false, .transmits = true};
@@ -39,7 +39,8 @@ inline LobeWeights lobe_weights(const Dielectric& d, const Vec3& /*any*/) {
 inline bool has_non_delta(const Dielectric& d) { return !is_smooth(d); }
 inline bool is_dispersive(const Dielectric& d) { return d.dispersive; }
 SplitTerms split_terms(const Dielectric& d, const Vec3& wi);
-/// Of a coat over some base. `albedo`: of both together; what the coat's surface does not reflect counts as diffuse.
+/// Split terms of a coat over a base. `albedo`: of both together; light that the coat does not reflect counts as
+/// diffuse.
 SplitTerms split_terms_of_coat(const Dielectric& coat, const Spectrum& albedo, const Vec3& wi);
 
 /// A direction sampled from one of the two lobes; used by walks between layers, whose interfaces have no tint and no

@@ -27,7 +27,7 @@ class MeasuredBrdf {
   float pdf(const Vec3& view, const Vec3& light) const;
   /// Samples `light` according to the measured luminance; nullopt if it would lie below the surface.
   std::optional<Vec3> sample(const Vec3& view, const Vec2& u) const;
-  /// Approximate, in [0,1].
+  /// Approximate fraction of light that is reflected, in [0,1].
   Spectrum albedo(const Vec3& view, const Wavelengths& w) const;
   /// Width of the GGX distribution with the same peak as this distribution of normals; in (0,1].
   float alpha() const { return alpha_; }

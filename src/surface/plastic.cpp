@@ -16,14 +16,15 @@ namespace {
 
 float schlick(float cos) { return sqr(sqr(1 - cos)) * (1 - cos); }
 
-/// Fresnel terms as functions of the cosine: each is a sum of N of these, with coefficients of its own.
+/// Fresnel terms as functions of the cosine: each is a sum of N basis functions, with its own coefficients.
 template <std::size_t N>
 using Basis = std::array<float, N>;
 
-/// Of Schlick's term: the coefficients are f0 and f90.
+/// Basis of Schlick's term: the coefficients are f0 and f90.
 Basis<2> schlick_basis(float cos) { return {1 - schlick(cos), schlick(cos)}; }
 
-/// Of any other: the coefficients are its values at equidistant roots of cosines, between which it is linear.
+/// Basis of any other term: the coefficients are its values at equidistant square roots of the cosine, linear in
+/// between.
 constexpr std::size_t film_nodes = 12;
 Basis<film_nodes> film_basis(float cos) {
   const TableCell cell = table_cell(std::sqrt(cos), film_nodes);

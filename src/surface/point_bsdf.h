@@ -10,8 +10,8 @@
 
 namespace lanthorn {
 
-/// The closure at a point: the material's own where that is the same everywhere, which is most of them, otherwise one
-/// that was made for the point. Converts to it. The scene outlives it.
+/// The closure at a point: the material's own closure if that is the same everywhere, as in most materials, otherwise
+/// one made for the point. Converts to `Bsdf`. The scene must outlive it.
 class PointBsdf {
  public:
   PointBsdf() : own_() {}
@@ -39,7 +39,7 @@ class PointBsdf {
 
   const Bsdf* of_material_ = nullptr;
   union {
-    // Only if of_material_ is null: the rest of a point is copied often.
+    // Constructed only if of_material_ is null, because points are copied often.
     Bsdf own_;  // NOLINT(readability-identifier-naming): private, which clang-tidy does not see of a union's member
   };
 };

@@ -47,9 +47,9 @@ inline constexpr float half_spread_alpha = 0.1f;
 /// Share of the light of a GGX lobe of this width that spreads widely: alpha² / (alpha² + 0.1²).
 inline float spread_of_lobe(float alpha) { return sqr(alpha) / (sqr(alpha) + sqr(half_spread_alpha)); }
 
-/// Probability of sampling a GGX lobe of this albedo and width rather than a diffuse one. By their albedos if it is
-/// wide, and by the roots of these if it is narrow: next-event estimation finds what lights wide lobes, but the
-/// narrower a lobe is, the more of its light only samples find. 0 if both are black.
+/// Probability of sampling a GGX lobe of this albedo and width rather than a diffuse one. Proportional to the albedos
+/// if the lobe is wide, and to their square roots if it is narrow: next-event estimation finds the light of wide lobes,
+/// but the narrower a lobe is, the more of its light only its own samples find. 0 if both are black.
 inline float lobe_probability(float albedo, float alpha, float diffuse) {
   if (!(albedo > 0)) return 0;
   const float ratio = diffuse / albedo, spread = spread_of_lobe(alpha);

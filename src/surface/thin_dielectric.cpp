@@ -6,7 +6,7 @@ namespace lanthorn {
 
 namespace {
 
-// Two directions above the pane and the facet between them. What passes is what would be reflected, mirrored.
+// Two directions above the pane and the facet between them. Transmitted light is mirrored to be above, too.
 struct Facet {
   Vec3 i, o;
   Normal m;

@@ -13,15 +13,15 @@
 namespace lanthorn {
 
 /// A pane too thin to displace rays, with the reflections between its two faces summed. Smooth: a mirror and a window,
-/// both delta lobes. Rough: microfacets that are such panes each, so that light passes them as it is reflected by them,
-/// but on the other side (glTF's KHR_materials_transmission).
+/// both delta lobes. Rough: each microfacet is such a pane, so that transmitted light leaves like reflected light,
+/// mirrored to the other side (glTF's KHR_materials_transmission).
 struct ThinDielectric {
   static constexpr ClosureTraits traits{.is_fibre = false, .transmits = true};
 
   float eta = 1.5f;   ///< index ratio of the pane to its surroundings
   float alpha_x = 0;  ///< GGX width along local x; smooth if both are below `smooth_alpha_limit`
   float alpha_y = 0;  ///< GGX width along local y
-  Spectrum tint{1};   ///< factor of the light that passes, in [0,1]
+  Spectrum tint{1};   ///< factor of the transmitted light, in [0,1]
   ThinFilm film{};    ///< on both faces
 };
 

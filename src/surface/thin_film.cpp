@@ -57,12 +57,12 @@ const WhiteTransform& white_transform() {
 /// One polarisation: products of Fresnel's amplitudes at the two faces.
 struct Faces {
   Spectrum through;  ///< (1 - r12^2)(1 - r23^2)
-  Spectrum round;    ///< r12 r23: the amplitude that is left after going to and fro in the film, its phase apart
+  Spectrum round;    ///< r12 r23: the amplitude left after one round trip in the film, without its phase
 
   Faces(float r12, const Spectrum& r23) : through((1 - r12 * r12) * (Spectrum(1) - r23 * r23)), round(r12 * r23) {}
 };
 
-/// Airy's sum of all that comes through [BW eq. 1.6.58 and 59]: through / (1 + round^2 + 2 round cos(phase)), with a
+/// Airy's sum of all transmitted light [BW eq. 1.6.58 and 59]: through / (1 + round^2 + 2 round cos(phase)), with a
 /// denominator that does not cancel.
 float transmittance(float through, float round, float half_phase) {
   const float swing = round > 0 ? std::cos(half_phase) : std::sin(half_phase);

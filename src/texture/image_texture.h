@@ -22,7 +22,7 @@
 
 namespace lanthorn {
 
-/// How texture coordinates beyond the image are taken back into it. octahedral_sphere concerns both axes.
+/// How texture coordinates outside the image are wrapped. octahedral_sphere applies to both axes.
 struct WrapModes {
   description::Wrap s{}, t{};
 
@@ -33,7 +33,7 @@ struct WrapModes {
 
 inline constexpr int alpha_channel = 3;
 
-/// What of an image is wanted.
+/// How an image is to be read.
 struct ImageWish {
   TexelColours colours;
   bool levels = false;  ///< coarser ones, if the image is large
@@ -58,7 +58,7 @@ class TextureImage {
   TextureImage(const ImageSource& source, const FileAccess& access, const ImageWish& wish,
                const SourceLocation& location, std::shared_ptr<TextureCache> cache);
 
-  /// What an image takes, from the header of its file.
+  /// Space that an image takes, from the header of its file.
   struct Need {
     std::uint64_t memory = 0, disk = 0;  ///< bytes, if kept in memory, or in tiles
   };
@@ -75,7 +75,7 @@ class TextureImage {
   /// Colour of one texel; row 0 is the top.
   Rgb texel(int x, int y) const;
 
-  /// The colours of all texels, which are in memory. Nothing is left.
+  /// Moves out the colours of all texels, which must be in memory.
   LightTexels take_colours() &&;
 
   int width() const { return format_.width; }
@@ -84,9 +84,9 @@ class TextureImage {
   bool has_colour() const { return channels_ >= 3; }
   bool has_alpha() const { return channels_ == 4; }  ///< other than 1 somewhere
   bool is_cached() const { return cached_ != nullptr; }
-  /// True for colours as normal maps have them: red and green about .5 in the mean, blue above them.
+  /// True for the typical colours of normal maps: means of red and green near .5, and blue above them.
   bool has_colours_of_normals() const;
-  /// In memory.
+  /// Bytes in memory.
   std::size_t bytes() const { return bytes_.size() + floats_.size() * sizeof(float); }
 
  private:

@@ -43,8 +43,8 @@ struct TexelColours {
 /// An image that is read as texels of a format that follows from the file.
 class TexelReader {
  public:
-  /// `whole`: `read` will be called, for which the file is read into memory first; otherwise `read_rows`. Throws Error
-  /// with `location` if the file cannot be read, subject to `access`.
+  /// `whole`: true if `read` will be called, for which the file is read into memory first; false if `read_rows` will
+  /// be. Throws Error with `location` if the file cannot be read, subject to `access`.
   TexelReader(const ImageSource& source, const FileAccess& access, const TexelColours& colours, bool whole,
               const SourceLocation& location);
 

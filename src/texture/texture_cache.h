@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Images that do not fit into memory: tiles in a nameless temporary file, of which a cache of bounded size holds those
-// that are looked at.
+// Images that do not fit into memory: tiles in a nameless temporary file, with a cache of bounded size for the tiles in
+// use.
 #pragma once
 
 #include <cstdint>
@@ -42,7 +42,8 @@ class TextureCache {
   /// is a `problem`.
   void read(const Image& image, int level, std::span<const TexelPlace> places, std::byte* texels) const;
 
-  /// The first tile that could not be read. Looked up in the middle of a ray, it cannot be thrown there.
+  /// The first tile that could not be read. It is recorded instead of thrown, because tiles are looked up in the middle
+  /// of a ray.
   std::optional<Error> problem() const;
   TileCacheCounts counts() const;
   std::uint64_t bytes() const { return bytes_; }
@@ -59,7 +60,7 @@ class TextureCache {
   std::uint64_t bytes_;
   ScratchFile file_;
   mutable std::mutex mutex_;
-  std::uint64_t end_ = 0;  // of what is reserved in the file
+  std::uint64_t end_ = 0;  // end of the reserved part of the file
   std::vector<std::unique_ptr<Image>> images_;
   mutable std::optional<Error> problem_;
   std::shared_ptr<void> tiles_;  // destroyed first: it asks for tiles of images

@@ -87,7 +87,7 @@ void LevelMaker::halve(std::size_t i, const std::byte* upper, const std::byte* l
   Level& level = levels_[i];
   const auto stride = static_cast<std::size_t>(format_.channels);
   const auto width = static_cast<std::size_t>(level.width), half = (width + 1) / 2;
-  // Of the row that is made: each level and row has numbers of its own.
+  // Each level and row has its own random numbers.
   const std::uint32_t seed =
       mixed_bits((static_cast<std::uint32_t>(i) << 27) ^ static_cast<std::uint32_t>(levels_[i + 1].rows));
   for (std::size_t x = 0; x < half; ++x) {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// How the texels of an image are stored, in memory as in tiles on disk, and the coarser levels made of them.
+// How the texels of an image are stored, in memory or in tiles on disk, and the coarser levels made of them.
 #pragma once
 
 #include <array>
@@ -28,7 +28,8 @@ struct TextureFormat {
   }
 };
 
-/// The levels until one texel is left. 1 if the table of 8-bit samples does not ascend: then no mean can be stored.
+/// Number of levels down to a single texel. 1 if the table of 8-bit samples does not ascend: means then cannot be
+/// stored.
 int all_levels_of(const TextureFormat& format);
 /// Texels of the first `levels` levels together.
 std::size_t texels_of_levels(int width, int height, int levels);

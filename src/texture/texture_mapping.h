@@ -7,8 +7,8 @@
 
 namespace lanthorn {
 
-/// The part of a surface over which the value of a texture may be averaged: a parallelogram of sides along u and v. 0:
-/// no part.
+/// The part of a surface over which the value of a texture may be averaged: a parallelogram with sides along u and v,
+/// of these lengths in u and v. 0: none.
 struct Footprint {
   Vec2 uv{0};
 };
@@ -39,7 +39,7 @@ struct TextureDetail {
   }
 };
 /// Largest n such that a rectangle of n · `st` in texture coordinates lies within the footprint; 0 unless the mapping
-/// is one of texture coordinates, u and v.
+/// is a `UvMapping`.
 float multiples_within(const Footprint& footprint, const description::TextureMapping& mapping, const Vec2& st);
 /// Detail of a texture whose features have size `st` in texture coordinates. An estimate if the mapping is not linear.
 TextureDetail detail_of(const description::TextureMapping& mapping, const Vec2& st);

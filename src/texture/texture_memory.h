@@ -20,10 +20,11 @@ class TextureMemory {
   /// `bound`: bytes of all images together; by default half of the memory that is free when it is first asked for.
   explicit TextureMemory(std::optional<std::uint64_t> bound) : bound_(bound) {}
 
-  /// For each of the images that are about to be read, true if it goes through the cache: none if all fit; else those
-  /// that are left when the smallest have half of the memory. Throws Error if their tiles do not fit on the disk.
+  /// For each image that is about to be read, true if it goes through the cache. None do if all fit; otherwise the
+  /// smallest ones take half of the memory and the rest go through the cache. Throws Error if their tiles do not fit on
+  /// the disk.
   std::vector<bool> plan(const std::vector<TextureImage::Need>& needs);
-  /// Null as long as no image goes through it.
+  /// Null as long as no image goes through the cache.
   const std::shared_ptr<TextureCache>& cache() const { return cache_; }
 
  private:
@@ -32,7 +33,7 @@ class TextureMemory {
   std::shared_ptr<TextureCache> cache_;
 };
 
-/// Half of the free memory; the largest number if that is not known.
+/// Half of the free memory; the largest number if the free memory is unknown.
 std::uint64_t default_texture_memory();
 
 }  // namespace lanthorn

@@ -79,7 +79,7 @@ Spectrum spectrum_of(const Rgb& colour, SpectrumRole role, const Wavelengths& w)
 float noise_detail(int octaves) { return 0x1p-4f / std::pow(1.99f, static_cast<float>(octaves - 1)); }
 
 Error too_deep(const SourceLocation& location) {
-  return {location, "textures name each other more than " + std::to_string(TextureGraph::most.depth) + " deep"};
+  return {location, "textures are nested more than " + std::to_string(TextureGraph::most.depth) + " deep"};
 }
 
 // Lookups of a node itself, without its inputs.
@@ -213,7 +213,7 @@ struct TextureGraph::Compiler {
     if (cost.depth > most.depth) throw too_deep(location);
     if (cost.lookups > most.lookups)
       throw Error(location, "a value of this texture takes more than " + std::to_string(most.lookups) +
-                                " lookups: each texture counts as often as others name it");
+                                " lookups: a texture counts once for each reference to it");
     Input result;
     result.node = static_cast<std::uint32_t>(nodes.size());
     nodes.push_back(std::move(node));
@@ -477,7 +477,7 @@ void TextureGraph::want_levels(const SpectrumInput& input) {
     for (ImageFile& file : images_) {
       if (file.texels.get() != input_image.image) continue;
       file.wants_levels = true;
-      // Another graph's image may have been read without them. It stays for those who look it up already.
+      // A shared image of another graph may have been read without levels. It stays for the lookups of that graph.
       const bool lacks_levels =
           file.is_loaded && file.texels->levels() == 1 &&
           static_cast<std::size_t>(file.texels->width()) * static_cast<std::size_t>(file.texels->height()) >=

@@ -89,12 +89,13 @@ class TextureGraph {
   Spectrum evaluate(const SpectrumInput& input, const TexturePoint& at, const Wavelengths& w) const {
     return input.node ? evaluate_spectrum(*input.node, at, w) : input.curve.evaluate(w);
   }
-  /// The same, averaged over a part of the footprint where the input is an image, or a multiple or constant mix of
-  /// images: of other inputs a mean may differ from the value of the images' means. For uses in which light is linear.
+  /// The same, averaged over a part of the footprint if the input is an image, or a multiple or constant mix of images;
+  /// the mean of other inputs may differ from their value at the images' means. For uses in which light is linear in
+  /// the input.
   Spectrum evaluate_filtered(const SpectrumInput& input, const TexturePoint& at, const Wavelengths& w) const;
-  /// Before `load_images`: the images that `evaluate_filtered` averages are to have coarser levels.
+  /// To be called before `load_images`: requests coarser levels of the images that `evaluate_filtered` averages.
   void want_levels(const SpectrumInput& input);
-  /// After it: true if some of them have.
+  /// After `load_images`: true if some of these images have coarser levels.
   bool has_levels(const SpectrumInput& input) const;
   /// The mapped normal in the frame of dp/du, dp/dv and the smooth normal; unit.
   static Normal evaluate(const NormalMapInput& map, const TexturePoint& at);
@@ -103,7 +104,7 @@ class TextureGraph {
   /// The finest detail of all textures behind an input.
   TextureDetail detail(const FloatInput& input) const;
 
-  /// What one evaluation of an input takes.
+  /// Cost of one evaluation of an input.
   struct Cost {
     std::size_t depth = 0;    ///< of the chain of nodes
     std::size_t lookups = 0;  ///< nodes, each as often as it is evaluated; noise counts once for each octave
@@ -115,9 +116,9 @@ class TextureGraph {
 
   /// Memory of texture images, bytes: those in memory, and the tiles that the cache may hold.
   std::size_t bytes() const;
-  /// Of the tiles of images that do not fit into memory.
+  /// Bytes on disk: tiles of images that do not fit into memory.
   std::uint64_t disk_bytes() const { return cache() != nullptr ? cache()->bytes_on_disk() : 0; }
-  /// Throws Error if a tile could not be read since then.
+  /// Throws Error if a tile could not be read so far.
   void require_readable() const;
   TileCacheCounts reads() const { return cache() != nullptr ? cache()->counts() : TileCacheCounts{}; }
   std::size_t image_count() const { return images_.size(); }
@@ -180,7 +181,7 @@ class TextureGraph {
   const TextureCache* cache() const { return memory_->cache().get(); }
   bool is_left_out(const ImageFile& file) const;
   std::vector<bool> plan_memory(std::size_t first) const;
-  // The images of this graph, and those of others that it shares.
+  // The images of this graph, and the shared images of other graphs.
   Images all_images() const;
   float evaluate_float(std::uint32_t node, const TexturePoint& at) const;
   Spectrum evaluate_spectrum(std::uint32_t node, const TexturePoint& at, const Wavelengths& w) const;
@@ -191,7 +192,7 @@ class TextureGraph {
   std::vector<FloatNode> float_nodes_;
   std::vector<SpectrumNode> spectrum_nodes_;
   std::vector<Cost> float_costs_, spectrum_costs_;  // of the nodes
-  std::size_t descent_ = 0;                         // textures that are being compiled, each for the one before
+  std::size_t descent_ = 0;                         // depth of the textures being compiled
   std::map<description::Index, FloatInput> compiled_floats_;
   std::map<std::pair<description::Index, description::SpectrumRole>, SpectrumInput> compiled_spectra_;
   std::map<ImageKey, ImageFile*> known_images_;

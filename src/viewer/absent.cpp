@@ -7,7 +7,7 @@ namespace lanthorn {
 namespace {
 
 [[noreturn]] void fail() {
-  throw ViewerUnavailable("this lanthorn was built without what draws by OpenGL (LANTHORN_BUILD_VIEWER=OFF)");
+  throw ViewerUnavailable("this lanthorn was built without OpenGL (LANTHORN_BUILD_VIEWER=OFF)");
 }
 
 }  // namespace

@@ -23,8 +23,8 @@ float degrees_between(const Direction& a, const Direction& b) {
   return std::atan2(glm::length(cross(a, b)), dot(a, b)) * 180 / pi;
 }
 
-// Turns the camera around `centre`. `moves`: a direction from there, and where it shall go with a hand that goes to
-// the right (`to_right`) or down (`to_lower`): signs of rotations depend on whether the camera mirrors.
+// Turns the camera around `centre`. `arm`: a direction from there. `to_right`, `to_lower`: where it goes when the
+// pointer moves right or down; they fix the signs of rotations, which depend on whether the camera mirrors.
 struct Turn {
   Point centre;
   Direction arm;
@@ -36,7 +36,7 @@ CameraPose turned(const CameraPose& pose, const Vec2& degrees, const Turn& t) {
   CameraPose result = pose;
   const Direction right = right_of(pose), forward = forward_of(pose);
   const float tilt_sign = dot(cross(right, t.arm), t.to_lower) > 0 ? 1.0f : -1.0f;
-  // The angle from up to the view grows or shrinks by what it is turned about `right`.
+  // The rotation about `right` increases or decreases the angle between up and the view.
   const float growth = dot(cross(right, forward), pose.up) > 0 ? -1.0f : 1.0f;
   const float now = degrees_between(forward, pose.up);
   const float low = std::min(now, least_angle), high = std::max(now, 180 - least_angle);
@@ -80,7 +80,7 @@ Direction camera_up_of(const CameraPose& pose) { return axis(pose, {0, 1, 0}); }
 Point pivot_of(const CameraPose& pose) { return eye_of(pose) + pose.distance * forward_of(pose); }
 
 CameraPose orbit(const CameraPose& pose, const Vec2& degrees) {
-  // What is before the pivot follows the hand if the eye goes the other way.
+  // What lies before the pivot follows the pointer if the eye moves the other way.
   return turned(pose, degrees, {pivot_of(pose), -forward_of(pose), -right_of(pose), camera_up_of(pose)});
 }
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// How a camera moves under a hand: rigid motions of its place in the world. Whether the camera mirrors stays as it is.
+// Camera motion by the user: rigid motions of the camera in the world. Mirroring cameras stay mirroring.
 #pragma once
 
 #include "lanthorn/scene_description.h"
@@ -19,7 +19,7 @@ struct CameraPose {
 /// The pose of a camera when its shutter opens. The world's up is the axis of the world nearest to the camera's, with
 /// its sign.
 CameraPose pose_of(const Transform& camera_to_world, float distance);
-/// That of a camera that frames its subject from `eye` (see `framing`): it turns around the middle of the subject.
+/// The pose of a camera that frames its subject from `eye` (see `framing`): it turns around the middle of the subject.
 CameraPose framing_pose(const description::Camera& camera, const Point& eye);
 /// A camera in this place, without motion.
 description::Camera placed(description::Camera camera, const CameraPose& pose);
@@ -30,13 +30,13 @@ Direction right_of(const CameraPose& pose);
 Direction camera_up_of(const CameraPose& pose);
 Point pivot_of(const CameraPose& pose);
 
-// `degrees` and `metres`: x to the right, y down on the screen, as the hand moves.
+// `degrees` and `metres`: x to the right, y down on the screen, as the pointer moves.
 
-/// Turns around the pivot, so that what is before it follows the hand. Stops 1° before the world's up and down.
+/// Turns around the pivot, so that what lies before it follows the pointer. Stops 1° before the world's up and down.
 CameraPose orbit(const CameraPose& pose, const Vec2& degrees);
-/// Turns the eye in its place: looks to where the hand goes. Stops 1° before the world's up and down.
+/// Turns the camera about its eye, towards where the pointer goes. Stops 1° before the world's up and down.
 CameraPose turn(const CameraPose& pose, const Vec2& degrees);
-/// Shifts the camera in its film plane, so that the pivot follows the hand.
+/// Shifts the camera in its film plane, so that the pivot follows the pointer.
 CameraPose pan(const CameraPose& pose, const Vec2& metres);
 /// Goes towards the pivot until the distance is `factor` times what it was; factor > 0.
 CameraPose zoom(const CameraPose& pose, float factor);

@@ -55,8 +55,8 @@ void set_colour(LightRow& row, const SpectrumValue& spectrum) {
   if (largest > 0) row.colour = (1 / largest) * rgb->rgb;
 }
 
-// The spectrum in another colour, as strong as before in its strongest component. That of a file stays as it is while
-// nobody chooses another colour.
+// The spectrum in another colour, with its strongest component unchanged. A file's spectrum stays as it is until the
+// user chooses another colour.
 SpectrumValue coloured(const SpectrumValue& original, const Rgb& before, const Rgb& colour) {
   if (colour == before) return original;
   const auto* rgb = std::get_if<RgbSpectrum>(&original);

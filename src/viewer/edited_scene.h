@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// A scene whose lights and objects are changed by hand.
+// A scene whose lights and objects the user edits.
 #pragma once
 
 #include <map>
@@ -21,7 +21,7 @@ struct LightRow {
   std::optional<Point> position;  ///< in the world; nothing: it is far away, or a surface
   bool has_colour = false;        ///< no image or texture decides its colour
   Rgb colour{1};                  ///< largest component 1; white if a spectrum is none of RGB
-  float strength = 1;             ///< factor of what the file says
+  float strength = 1;             ///< factor of the strength in the file
   bool on = true;
 
   friend bool operator==(const LightRow&, const LightRow&) = default;
@@ -30,7 +30,7 @@ struct LightRow {
 class EditedScene {
  public:
   explicit EditedScene(SharedScene scene);
-  /// With strengths of lights by their `id`.
+  /// Also sets the strengths of lights, by their `id`.
   EditedScene(SharedScene scene, const std::map<std::string, float>& strengths);
 
   const SharedScene& scene() const { return scene_; }
@@ -39,7 +39,8 @@ class EditedScene {
   const SceneEdits& edits() const { return edits_; }
   bool is_edited() const { return !edits_.lights.empty() || !edits_.area_lights.empty() || !edits_.instances.empty(); }
 
-  /// Takes over colour, strength and whether it is on. Throws Error if the scene refuses it, and stays as it was.
+  /// Sets a light's colour and strength, and whether it is on. Throws Error if the scene rejects this; nothing then
+  /// changes.
   void set_light(std::size_t row, const LightRow& values);
   /// Throws Error for lights without a position.
   void move_light(std::size_t row, const Vec3& metres);

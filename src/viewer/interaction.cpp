@@ -11,8 +11,8 @@ namespace lanthorn {
 namespace {
 
 constexpr float degrees_per_picture = 180;  // of a turn by a drag over the height of the picture
-constexpr float click_pixels = 4;           // a way that is no drag yet, at 720 rows
-constexpr float mark_pixels = 14;           // around a light's mark, likewise
+constexpr float click_pixels = 4;           // a shorter motion is no drag yet, at 720 rows
+constexpr float mark_pixels = 14;           // around a light's mark, at 720 rows
 
 float rows(const View& view) { return static_cast<float>(view.window.height()); }
 float at_720_rows(const View& view, float pixels) { return pixels * rows(view) / 720; }
@@ -99,7 +99,7 @@ bool Interaction::move_camera(const Input& input, const View& view) {
   const CameraPose before = pose_;
   const Vec2 degrees = degrees_per_picture / rows(view) * input.moved;
   if (drag_ == Drag::orbit) pose_ = orbit(pose_, degrees);
-  if (drag_ == Drag::turn) pose_ = turn(pose_, -0.5f * degrees);  // what is seen follows the hand
+  if (drag_ == Drag::turn) pose_ = turn(pose_, -0.5f * degrees);  // what is seen follows the pointer
   if (drag_ == Drag::pan) {
     const Vec3 way = way_between(view, forward_of(pose_), pose_.distance, input.pointer - input.moved, input.pointer);
     pose_ = pan(pose_, {dot(way, right_of(pose_)), -dot(way, camera_up_of(pose_))});

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// From hands to a camera that moves, and to lights and objects that are picked and dragged.
+// Turns the user's input into camera motion, and into picking and dragging of lights and objects.
 #pragma once
 
 #include "camera/view.h"
@@ -37,13 +37,13 @@ class Interaction {
   CameraPose pose_, home_;
   float speed_;
   Drag drag_ = Drag::none;
-  float drag_depth_ = 0;  // of what is dragged, along the view, m
+  float drag_depth_ = 0;  // of the dragged thing, along the view, m
   Vec2 way_{0};           // of the pointer since a button was pressed, pixels
 };
 
 /// The ray through a place of the picture, pixels.
 Ray ray_through(const View& view, const Vec2& pixel);
-/// From what lies under `from` to what lies under `to`, both in the plane at `depth` before the eye, m.
+/// The way from the point under `from` to the point under `to`, both in the plane at `depth` before the eye, m.
 Vec3 way_between(const View& view, const Direction& forward, float depth, const Vec2& from, const Vec2& to);
 /// Places of the lights that have one and are in view.
 std::vector<LightMark> light_marks(const View& view, const std::vector<LightRow>& lights);

@@ -16,7 +16,7 @@ LookAt look_of(const CameraPose& camera, const DVec3& origin) {
 
 using Parameters = std::map<std::string, std::string>;
 
-// A value as `render` takes it. Digits that nobody sees are left out.
+// A value in the form that `render` takes, without insignificant digits.
 std::string text_of(const TechniqueParameter& parameter, const std::string& value) {
   using Kind = NumberRange::Kind;
   const bool is_word = std::find(parameter.words.begin(), parameter.words.end(), value) != parameter.words.end();
@@ -25,7 +25,7 @@ std::string text_of(const TechniqueParameter& parameter, const std::string& valu
   return is_real ? fmt::format("{:.4g}", std::stod(value)) : value;
 }
 
-// What differs from the defaults that the technique has in `render`.
+// The parameters that differ from the technique's defaults in `render`.
 Parameters technique_parameters(const TechniqueDescription& technique, const RealtimeSettings& settings) {
   Parameters set;
   for (const TechniqueParameter& p : all_parameters(technique)) {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The render that shows offline what the window shows.
+// The render that shows the window's picture offline.
 #pragma once
 
 #include <filesystem>
@@ -17,7 +17,7 @@
 
 namespace lanthorn {
 
-/// What the window shows.
+/// The picture in the window, with its settings.
 struct ShownPicture {
   std::filesystem::path scene;
   std::string method;

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// What passes between the window and the viewer, as plain data: the window is a module of its own, which links nothing
-// of the library.
+// Plain data that the window and the viewer exchange: the window is a separate module, which links nothing of the
+// library.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@
 
 namespace lanthorn {
 
-/// What hands do in a frame. Places and ways over the picture are in pixels of the picture, y down.
+/// The user's input in a frame. Positions and motions over the picture are in pixels of the picture, y down.
 struct Input {
   bool closed = false;
   float seconds = 0;    ///< since the frame before
@@ -28,10 +28,10 @@ struct Input {
   bool left = false, middle = false, right = false;       ///< buttons that are held
   bool pressed = false, released = false, shift = false;  ///< the left or another button, now
   Vec3 fly{0};                                            ///< keys: to the right, up, forward; each -1, 0 or 1
-  bool forget = false;                                    ///< Escape: nothing is selected any more
+  bool forget = false;                                    ///< Escape: clear the selection
 };
 
-/// What the user wants to be done now.
+/// Actions that the user asks for now.
 struct Wishes {
   bool save_png = false, save_exr = false, save_scene = false, copy_command = false;
   bool reset_camera = false, reset_scene = false;
@@ -43,7 +43,7 @@ struct LightMark {
   std::size_t light = 0;
 };
 
-/// What the panel shows and changes.
+/// The data that the panel shows and changes.
 struct Panel {
   // Changed by the user.
   std::vector<std::string> methods;  ///< names; first those of the techniques
@@ -65,8 +65,8 @@ struct Panel {
   std::string error;     ///< of the picture, of an offline method; empty: not known yet
   std::string left;      ///< time until an offline method has reached its bounds; empty: not known yet, or reached
   std::string denoised;  ///< how far the picture is denoised; empty: it is not
-  std::string remark;    ///< what an offline method has found and chosen; empty: nothing
-  std::string notice;    ///< over the picture: why it is not what was asked for
+  std::string remark;    ///< findings and choices of an offline method; empty: none
+  std::string notice;    ///< over the picture: why it differs from the request
   std::vector<std::string> notes;
   std::vector<LightMark> marks;
   std::vector<FrameStage> stages;

@@ -35,7 +35,7 @@ std::optional<float> hit_triangle(const Point& origin, const Vec3& direction, co
                                   const Point& c) {
   const Vec3 ab = b - a, ac = c - a, p = cross(direction, ac);
   const float determinant = dot(ab, p);
-  // Of triangles with hardly any area, as at the poles of spheres, and of rays in their plane, only rounding is left.
+  // For triangles with hardly any area, as at the poles of spheres, and for rays in their plane, only rounding is left.
   constexpr float least = 1e-6f;
   if (determinant * determinant <= least * least * length_squared(ab) * length_squared(p)) return std::nullopt;
   const Vec3 t = origin - a, q = cross(t, ab);

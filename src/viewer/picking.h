@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// What lies under a click.
+// Finds the thing under a click.
 #pragma once
 
 #include <cstddef>
@@ -21,7 +21,7 @@ struct SurfacePick {
   std::optional<description::Index> area_light;  ///< into the description's area lights, if the surface emits
 };
 
-/// Finds surfaces by their triangles, all of them for each ray: for clicks.
+/// Finds surfaces by testing all triangles for each ray: quick enough for clicks.
 class Picker {
  public:
   explicit Picker(const Scene& scene);

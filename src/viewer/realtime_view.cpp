@@ -17,7 +17,7 @@ namespace lanthorn {
 
 namespace {
 
-// Those of the values that the technique has.
+// A choice of the technique with those of the values that it has.
 TechniqueChoice choice_of(const std::string& technique, const ParameterValues& values) {
   ParameterValues own;
   for (const TechniqueParameter& p : all_parameters(find_technique(technique)->description))
@@ -99,7 +99,7 @@ FrameSettings frame_settings(const RealtimeSettings& s, const View& view, std::u
   f.has_light_focus = true;
   f.photons = s.photons;
   f.max_depth = s.max_depth;
-  // Without dispersion at first: the coloured noise of what follows is then a small part of the mean.
+  // The first frames are without dispersion, so that the coloured noise of later ones is a small part of the mean.
   constexpr std::uint32_t frames_without_dispersion = 8;
   f.disperses = frame >= frames_without_dispersion;
   return f;
@@ -144,8 +144,8 @@ std::vector<std::string> limitations_of(const Renderer& renderer, const Scene& s
   });
   if (!scene.infinite_lights().empty() && reflects)
     list.emplace_back(
-        "what metals and coats reflect of the surroundings appears slowly, by four directions a frame; splitsum shows "
-        "it at once");
+        "reflections of the surroundings in metals and coats appear slowly, by four directions a frame; splitsum shows "
+        "them at once");
   return list;
 }
 

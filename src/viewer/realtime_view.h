@@ -29,8 +29,8 @@ struct RealtimeSettings {
 /// The technique whose frames stand for an offline method until its first pass is done.
 inline constexpr const char* stand_in_technique = "ambient";
 
-/// From the options of a viewer; values that are "auto" by the size and the lights of the scene, or of what is seen of
-/// it. Throws Error for settings that no technique has.
+/// Settings from a viewer's options. Values that are "auto" follow the size and the lights of the scene, or of its
+/// visible part. Throws Error for settings that no technique has.
 RealtimeSettings realtime_settings(const Scene& scene, const View& view, const ViewerOptions& options);
 
 /// Settings of frame `frame` (0: the first after a change) of the view.
@@ -40,15 +40,15 @@ FrameSettings frame_settings(const RealtimeSettings& settings, const View& view,
 ViewDescription drawable(ViewDescription view);
 bool is_drawable(const ViewDescription& view);
 
-/// What frames show differently than `render` does, for the user.
+/// Differences between frames and the pictures of `render`, as text for the user.
 std::vector<std::string> limitations_of(const Renderer& renderer, const Scene& scene, const RealtimeSettings& settings);
 
-/// How far apart eye paths are while the eye moves (FrameSettings::eye_path_spacing), so that they take `budget` of a
-/// frame: the processor follows some hundreds of them in a millisecond.
+/// Spacing of eye paths while the eye moves (FrameSettings::eye_path_spacing), such that they take `budget` of a frame:
+/// the processor follows some hundreds of them in a millisecond.
 class EyePathSpacing {
  public:
   int pixels() const { return pixels_; }
-  /// From what a frame took that had this spacing.
+  /// Adapts to the time of a frame that had this spacing.
   void learn(const FrameReport& report, int spacing);
 
  private:
@@ -60,16 +60,16 @@ class EyePathSpacing {
 /// The resolution of frames while the eye or a thing moves, so that there are 10 to 17 of them a second.
 class MovingResolution {
  public:
-  /// Of width and height.
+  /// The share of width and height.
   double share() const { return share_; }
-  /// From what a frame took that had this share, until it was shown.
+  /// Adapts to the time until a frame with this share was shown, s.
   void learn(double seconds, double share);
 
  private:
   double share_ = 1;
 };
 
-/// Adds what a frame took to sums of stages by name, in the order in which stages came first.
+/// Adds the times of a frame to sums by the name of the stage, in the order in which stages first came.
 class StageSums {
  public:
   void add(const FrameReport& report);

@@ -37,8 +37,8 @@ std::size_t end_of_string(std::string_view text, std::size_t at) {
   return std::min(at + 1, text.size());
 }
 
-// The end of the number that begins here, or of the one character that is part of none (a bracket, a space). The
-// exponent of a number is no name.
+// The end of the number that begins here, or of a single character that belongs to no number (a bracket, a space). A
+// number's exponent is not taken for a name.
 std::size_t end_of_number(std::string_view text, std::size_t at) {
   constexpr std::string_view starts = "0123456789+-.";
   const bool is_number = starts.find(text[at]) != starts.npos;
@@ -73,7 +73,7 @@ std::size_t end_of_directive(std::string_view text, std::size_t at) {
   return end;
 }
 
-// As a float where it is one: with fewer digits.
+// Written as a float if it is one, which takes fewer digits.
 std::string text_of(double x) {
   const auto single = static_cast<float>(x);
   return static_cast<double>(single) == x ? fmt::format("{}", single) : fmt::format("{}", x);
@@ -86,7 +86,8 @@ std::string transform_text(const Transform& t) {
   return text + " ]";
 }
 
-// What differs from `before`. Parameters after others of the same name replace them (the reader warns of that).
+// The parameter if it differs from `before`. Parameters after others of the same name replace them (with a warning of
+// the reader).
 template <class Number>
 std::string real(const char* name, const Number& now, const Number& before) {
   if (now == before) return "";

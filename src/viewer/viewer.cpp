@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The loop of the window: hands, then a frame, then the picture and the panel.
+// The loop of the window: input, then a frame, then the picture and the panel.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -80,7 +80,7 @@ float first_distance(const Scene& scene, const View& view, const Picker& picker)
   return std::max(std::sqrt(distance_squared(ray.origin, sphere.centre)), 0.1f * sphere.radius);
 }
 
-// What the camera turns around is what it frames, or else what is in the middle of the picture.
+// The camera turns around the subject that it frames, or else around the surface in the middle of the picture.
 CameraPose first_pose(const ViewDescription& description, const Scene& scene, const View& view, const Picker& picker) {
   const description::Camera& camera = description.camera;
   if (!camera.subject) return pose_of(camera.camera_to_world.start, first_distance(scene, view, picker));
@@ -163,14 +163,14 @@ class Viewer {
   StageSums stages_;
   EyePathSpacing eye_path_spacing_;
   MovingResolution moving_resolution_;
-  // Of a frame that was drawn while something moves: when it began, and its share of the resolution.
+  // The frame that was drawn last while something moves: when it began, and its share of the resolution.
   std::optional<std::pair<ViewerClock::time_point, double>> moving_frame_;
   bool shown_is_exact_ = true;  // the last frame
   std::shared_ptr<const InteractivePicture> offline_;
   std::shared_ptr<const InteractiveDenoised> denoised_;  // of the same edit
   std::shared_ptr<const Image> loaded_;                  // of these, the one that is shown
   std::future<std::string> saving_;                      // its message
-  // A file with a camera and with the lights and objects of a moment.
+  // The last saved file, with the camera and the scene that it holds.
   fs::path saved_file_;
   Transform saved_camera_;
   SharedScene saved_scene_;
@@ -214,7 +214,7 @@ void Viewer::make_panel() {
   for (const MethodInfo& method : methods())
     if (find_technique(method.name) == nullptr) panel_.methods.push_back(method.name);
   const auto chosen = std::find(panel_.methods.begin(), panel_.methods.end(), options_.method);
-  if (chosen == panel_.methods.end()) find_method(options_.method);  // says what there is
+  if (chosen == panel_.methods.end()) find_method(options_.method);  // throws Error that lists the methods
   panel_.method = static_cast<std::size_t>(chosen - panel_.methods.begin());
   panel_.settings = realtime_settings(*original_, view_, options_);
   panel_.scene_radius = original_->bounding_sphere().radius;
@@ -247,7 +247,7 @@ void Viewer::forget_frames() {
   next_measurement_ = 1;
 }
 
-// What the user has changed in the panel.
+// Applies the user's changes in the panel.
 void Viewer::apply_panel() {
   for (std::size_t i = 0; i < panel_.lights.size(); ++i) {
     if (panel_.lights[i] == scene_.lights()[i]) continue;
@@ -342,7 +342,7 @@ void Viewer::draw_frame() {
   ++frames_;
 }
 
-// That which frames of this view are added to.
+// The accumulation to which frames of this view are added.
 Accumulation& Viewer::picture_of(const View& view) {
   const int width = view.window.width(), height = view.window.height();
   is_small_ = width != picture_.width() || height != picture_.height();
@@ -384,7 +384,7 @@ void Viewer::start_render() {
   }
 }
 
-// An offline method begins when hands rest; until its first pass is done, frames by OpenGL stand for it.
+// An offline method starts when the input rests; until its first pass is done, frames by OpenGL stand in for it.
 void Viewer::refine() {
   if (!render_ && rests()) start_render();
   if (!render_) return;
@@ -410,7 +410,7 @@ void Viewer::refine() {
   panel_.remark = offline_->remark;
 }
 
-// As it is shown. Previews have no layers: one that is chosen is shown as it is.
+// The picture as it is shown. Previews have no layers: a chosen layer is shown without denoising.
 std::shared_ptr<const Image> Viewer::offline_image() const {
   if (denoised_ && (!denoised_->is_preview || panel_.layer == 0)) return {denoised_, &denoised_->image};
   return {offline_, &offline_->image};
@@ -515,7 +515,7 @@ fs::path Viewer::save_scene() {
 
 std::string Viewer::command() const {
   const bool stands_there = interaction_.pose().camera_to_world == saved_camera_;
-  // Colours and places go with a saved scene alone.
+  // Edited colours and places are only in a saved scene.
   const bool needs_strengths = !panel_.can_save_scene && scene_.scene() != saved_scene_;
   ShownPicture shown;
   shown.scene = saved_file_;

@@ -74,8 +74,8 @@ class LightTest(unittest.TestCase):
         self.compare("area-scaled")
 
     def test_mesh(self):
-        glow = stage.node_material("glow", "ShaderNodeEmission", Color=(1, 0.8, 0.6, 1), Strength=20)
-        stage.add_ball(radius=0.2, location=(3, 0, 1.5), material=glow)
+        lamp = stage.node_material("lamp", "ShaderNodeEmission", Color=(1, 0.8, 0.6, 1), Strength=20)
+        stage.add_ball(radius=0.2, location=(3, 0, 1.5), material=lamp)
         self.compare("mesh")
 
     def test_world_color(self):

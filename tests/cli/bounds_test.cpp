@@ -123,8 +123,8 @@ TEST_F(Bounds, TexturesThatNameEachOtherTooOftenAreRefused) {
   }
   for (const std::string kind : {"mix", "checkerboard"}) {
     write("deep.pbrt.gz", test::gzip(scene(kind, {"tex1"}, 8200)));
-    refuse({"info", "deep.pbrt.gz"}, "deep.pbrt.gz:7962:1: textures name each other more than 256 deep");
-    refuse({"render", "deep.pbrt.gz", "--sandbox", "-o", "a.exr"}, "deep.pbrt.gz:7962:1: textures name each other");
+    refuse({"info", "deep.pbrt.gz"}, "deep.pbrt.gz:7962:1: textures are nested more than 256 deep");
+    refuse({"render", "deep.pbrt.gz", "--sandbox", "-o", "a.exr"}, "deep.pbrt.gz:7962:1: textures are nested");
   }
 }
 

@@ -307,7 +307,7 @@ std::string case_name(const testing::TestParamInfo<Case>& info) {
 INSTANTIATE_TEST_SUITE_P(Cases, Agreement, testing::ValuesIn(cases), case_name);
 INSTANTIATE_TEST_SUITE_P(Nightly, Agreement, testing::ValuesIn(nightly_cases), case_name);
 
-std::string room_with_glowing_fog() {
+std::string room_with_emissive_fog() {
   std::string text = test::varied_room;
   return text.insert(text.find("\"rgb sigma_a\""), "\"rgb Le\" [1 2 3] ");
 }
@@ -339,9 +339,9 @@ TEST(Bidirectional, StrategiesAddUpToTheImage) {
   for (std::size_t i = 0; i < sum.size(); ++i) EXPECT_NEAR(sum[i], static_cast<double>(all.pixels[i]), 1e-4);
 }
 
-// Light of a strategy is in its technique's layer. The fog glows, so that the walk finds light in it too.
+// Light of a strategy is in its technique's layer. The fog is emissive, so that the walk finds light in it too.
 TEST(Techniques, ShowTheirStrategies) {
-  const Scene scene = test::scene_from_text(room_with_glowing_fog());
+  const Scene scene = test::scene_from_text(room_with_emissive_fog());
   constexpr int depth = 2;
   const auto expect_only = [&](const std::string& integrator, const std::vector<std::string>& techniques) {
     RenderOptions options = test::options_for(integrator, 1, 1);

@@ -43,7 +43,7 @@ Shape "trianglemesh" "integer indices" [{}] "point3 P" [{}] "point2 uv" [{}]
                      indices, positions, uvs);
 }
 
-// A medium that glows, which every method finds by light paths and eye paths.
+// An emissive medium, which every method finds by light paths and eye paths.
 const std::string flame =
     "AttributeBegin\nTranslate 0.5 0.6 0.3\nMakeNamedMedium \"flame\" \"string type\" \"uniformgrid\" "
     "\"point3 p0\" [-0.1 -0.2 -0.1] \"point3 p1\" [0.1 0.2 0.1] \"integer nx\" 1 \"integer ny\" 3 \"integer nz\" 1 "

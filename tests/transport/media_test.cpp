@@ -320,7 +320,7 @@ TEST(Media, IntegratorsAgree) {
 }
 
 // A flame that scatters, all light that there is, over a glossy floor, beside a ball of glass, seen in a rough mirror.
-TEST(NightlyMedia, GlowLightsWhatIsAroundIt) {
+TEST(NightlyMedia, VolumeEmissionLightsItsSurroundings) {
   const Scene scene = test::scene_from_text(
       "LookAt 0 1 3  0 1 0  0 1 0\nCamera \"perspective\" \"float fov\" [40]\n" + film + "WorldBegin\n" +
       "AttributeBegin\nTranslate -0.3 0.8 0\n" +

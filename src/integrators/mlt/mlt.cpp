@@ -87,7 +87,7 @@ class MetropolisLightTransport final : public Integrator {
   void add(const PathPass& pass, const State& state, float weight, const FilmPass& film) const;
 
   MltSettings settings_;
-  // What follows from scene and settings.
+  // Derived from scene and settings.
   std::optional<LightChoice> lights_;
   PathLengths lengths_;
   std::uint64_t chains_ = 1, independent_paths_ = 1;

@@ -81,7 +81,7 @@ struct HitVisitor {
   }
   void operator()(const FlownSegment& flight) { subpath.fly(flight); }
   void operator()(const EmissionVertex& v) {
-    if (v.state.depth == scatterings) layers.add_hit(v, hit_glow(path, pass, v, subpath));
+    if (v.state.depth == scatterings) layers.add_hit(v, hit_volume_emission(path, pass, v, subpath));
   }
   void operator()(const EscapeVertex& v) {
     if (v.state.depth < scatterings) return;

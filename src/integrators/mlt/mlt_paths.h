@@ -37,8 +37,8 @@ struct FilmRegion {
   }
 };
 
-/// State shared by the paths of a pass. Wavelengths are drawn once per pass: if each path had its own, each path would
-/// have a tint of its own.
+/// State shared by the paths of a pass. Wavelengths are drawn once per pass: if each path drew its own, each would have
+/// its own tint.
 struct PathPass {
   const RenderJob& job;
   Wavelengths w;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// What users choose of Metropolis light transport, and what it takes. The method itself is in mlt.cpp.
+// User settings of Metropolis light transport, and the memory it needs. The method itself is in mlt.cpp.
 #pragma once
 
 #include <cstdint>

@@ -22,8 +22,8 @@ struct PathSamples {
   void reject();
 };
 
-/// How many scatterings, from 1 on, paths of a fixed number have that are drawn independently. Most light of most
-/// scenes is scattered a few times only; what the probabilities are decides about noise alone.
+/// Distribution of the number of scatterings, at least 1, of independently drawn paths of fixed length. In most scenes,
+/// most light scatters a few times only. The probabilities affect noise alone.
 class PathLengths {
  public:
   PathLengths() = default;

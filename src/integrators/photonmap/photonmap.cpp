@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Photon mapping in two passes (Jensen 1996; 2001, chapter 9). The first traces photons into a global map and one of
-// caustics (chapters 5 and 6); the second follows eye paths and estimates the light at what they meet as a sum of four
-// terms, from these maps (two_pass.h).
+// Photon mapping in two passes (Jensen 1996; 2001, chapter 9). The first pass traces photons into a global map and a
+// caustic map (chapters 5 and 6); the second follows eye paths and estimates the light at their vertices as a sum of
+// four terms, from these maps (two_pass.h).
 #include <algorithm>
 #include <atomic>
 #include <iterator>
@@ -52,7 +52,7 @@ class PhotonMapper final : public Integrator {
   Pool<PhotonTracer> tracers_;
 };
 
-// What is kept, without what it took to make it.
+// The report on maps that are kept, without the cost of making them.
 PassReport report_of(const TwoPassMaps& maps) {
   PassReport report;
   report.photons_stored = maps.global.size() + maps.caustic.size();
@@ -68,7 +68,7 @@ void PhotonMapper::prepare(const RenderJob& job) {
   settings_.check(job);
   emission_ = choose_emission(settings_.emission, PhotonUse::gathering, job, settings_.medium_records());
   if (settings_.caustic_photons > 0) caustic_emission_ = choose_emission(settings_.emission, PhotonUse::caustics, job);
-  // As far as twice the photons that are asked for lie apart where most of the picture is: beyond, few would be enough.
+  // Twice the radius that holds the wanted photons where photons are dense.
   const float radius =
       settings_.radius
           ? *settings_.radius
@@ -81,7 +81,7 @@ void PhotonMapper::prepare(const RenderJob& job) {
                                        settings_.estimates.global.kernel, emission_.get());
   if (!settings_.keeps_maps) return;
   kept_ = trace(job, 0, [](Phase) {});
-  kept_->report.rays = {};  // no pass's
+  kept_->report.rays = {};  // they belong to no pass
   kept_->report.light_paths = 0;
   kept_->report.cache_records = 0;
 }

@@ -20,7 +20,7 @@ NarrowContinuation TwoPassVisitor::operator()(const SurfaceVertex& vertex) {
   if (!is_gather_ray_) layers.see(vertex);
   begin(term_of_hit(state, state.depth - 1));
   if (adds_hits(state)) layers.add_hit(vertex, hit_emitter(path, vertex));
-  if (volume_ && volume_->is_gathered()) return {volume_->follow_glow(path)};
+  if (volume_ && volume_->is_gathered()) return {volume_->follow_emission(path)};
   if (!vertex.may_scatter) return {Continuation::stop()};
   if (!has_non_delta(vertex.at.bsdf)) return {Continuation::go_on()};
   if (context_.settings.show != Show::image && !is_gather_ray_) {
@@ -35,7 +35,7 @@ Continuation TwoPassVisitor::operator()(const MediumVertex& vertex) {
   layers.see(vertex);
   begin(is_first ? Term::direct : Term::specular);
   if (!volume_) return PathVisitor::operator()(vertex);
-  if (volume_->is_gathered()) return volume_->follow_glow(path);
+  if (volume_->is_gathered()) return volume_->follow_emission(path);
   if (!vertex.may_scatter) return Continuation::stop();
   const MediumLight light = volume_->scatter(path, vertex, ray_light);
   layers.add(class_of_next_event(vertex.state), light.direct.radiance, light.direct.dispersed);
@@ -84,9 +84,9 @@ NarrowContinuation TwoPassVisitor::read_map(const SurfaceVertex& vertex) {
   return answer;
 }
 
-// The map's light, less what the walk finds.
+// The map's light, without the part that the walk finds.
 void TwoPassVisitor::add_photons(const SurfaceVertex& vertex, const LobeSplit& split) {
-  add_unlit_glow(path, vertex, split, layers);
+  add_unlit_emission(path, vertex, split, layers);
   if (context_.reverse != nullptr) {
     context_.reverse->add(vertex, split, static_cast<Term>(layers.part()));
     return;

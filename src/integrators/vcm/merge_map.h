@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The photons of a pass on surfaces, with what weights need of them, and the vertices that they are merged with.
+// The photons of a pass on surfaces, with the data that MIS weights need, for merging with eye vertices.
 #pragma once
 
 #include <cstdint>
@@ -44,7 +44,7 @@ struct PlacedMergePhoton {
   }
 };
 
-/// Of light that comes by way of a photon of this depth to an eye path in that state. `caustic`: the photon has met
+/// Class of the light that a photon of this depth brings to an eye path in that state. `caustic`: the photon has met
 /// delta lobes only.
 inline PathClass class_of_merge(const WalkState& state, int depth, bool caustic) {
   if (state.non_delta > 0) return PathClass::indirect;

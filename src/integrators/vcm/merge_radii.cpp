@@ -12,7 +12,7 @@ namespace lanthorn {
 
 FirstMergeRadii::FirstMergeRadii(const RenderJob& job, const VcmSettings& settings, const LightGuide* guide) {
   constexpr double photons_of_first_merge = 16;
-  // Where connections share the light, what few photons bring is theirs: equal discs have less noise.
+  // With connections, MIS leaves the light of few photons to these, and discs of equal size have less noise.
   const bool by_flux = !settings.switches.connections;
   View reach = job.view;
   reach.window = window_ = job.view.filter_reach();

@@ -27,7 +27,7 @@ class FirstMergeRadii {
   FirstMergeRadii() = default;
   FirstMergeRadii(const RenderJob& job, const VcmSettings& settings, const LightGuide* guide);
 
-  /// Of the pixels that have radii of their own: eye paths may go through places beside the picture.
+  /// Window of the pixels that have their own radii; eye paths may pass beside it.
   const PixelWindow& window() const { return window_; }
 
  private:
@@ -36,8 +36,8 @@ class FirstMergeRadii {
   PixelWindow window_;
 };
 
-/// By how much the radii of merging on surfaces have shrunk in a pass whose light paths are `light_paths` times as many
-/// as those that the first radii are measured for: radii depend on the photons of all passes so far.
+/// Factor by which the radii of merging on surfaces have shrunk in a pass whose light paths are `light_paths` times as
+/// many as those that the first radii are measured for. Radii depend on the photons of all passes so far.
 float merge_radius_shrink(double alpha, std::uint32_t pass, double light_paths);
 
 /// The radii of a pass on surfaces over those of the first pass: one number for all pixels, or one for each.
@@ -72,7 +72,7 @@ class MergeRadii {
   const FluxClasses& classes() const { return first_->radius_.classes(); }
   /// The pixel whose radius eye paths through this place on the film have.
   std::uint32_t pixel_at(const Vec2& raster) const { return first_->window_.pixel_at(raster); }
-  /// Of all merges of eye paths through this place on the film with photons of a class.
+  /// Radius of all merges of eye paths through this place on the film with photons of a class.
   float at(const Vec2& raster, int flux_class = 0) const {
     const std::uint32_t pixel = pixel_at(raster);
     return PassRadii(first_->radius_, shrinks_.at(pixel)).at(pixel, flux_class);
@@ -90,11 +90,11 @@ struct VolumeKernels {
   std::optional<KernelIn> point, beam, photon_beam, beams;
 
   bool any() const { return point || beam || photon_beam || beams; }
-  /// Of the widest equivalent box kernel, m; 0 if there is none.
+  /// Radius of the widest equivalent box kernel, m; 0 if there is none.
   float widest_radius() const;
   bool uses_points() const { return point || beam; }
   bool uses_beams() const { return photon_beam || beams; }
-  /// What weights need to know. `beam_share`: of the light paths whose flights are kept.
+  /// The data of MIS weights. `beam_share`: of the light paths whose flights are kept.
   VolumeMerging merging(float light_paths, float beam_share) const;
 };
 

@@ -48,7 +48,7 @@ struct EffortCandidate {
   }
 };
 
-/// How often eye paths did what takes time.
+/// Counts of the costly operations of eye paths.
 struct EyeWork {
   double rays = 0, next_events = 0, connections = 0;
   double lookups = 0, merges = 0;              ///< on surfaces
@@ -72,10 +72,10 @@ struct EyeWork {
 /// have c_i / R and are s times as many. Hence E[Σ c²] is Σ s (c_i / R)². It is also Σ c_i² / R over all techniques of
 /// the pilot, which counts paths that the candidate finds too rarely to be seen here.
 ///
-/// The products of two of them, (c_i / R_i)(c_j / R_j), are counted by where both come from. The walk W does not
-/// depend on light paths. Of light paths, E[L | eye path]² is estimated by the product of the two sets, L_A L_B, and
-/// grows with s². What the products within a set, L_A² - Σ c_i², differ from that comes of samples that share a light
-/// path, and of light paths that avoid each other (stratification), and grows with s.
+/// Products of two contributions, (c_i / R_i)(c_j / R_j), are summed by the origin of both. The walk W does not depend
+/// on light paths. For light paths, E[L | eye path]² is estimated by the product of the two sets, L_A L_B, and grows
+/// with s². The products within a set, L_A² - Σ c_i², differ from that because samples share a light path and because
+/// light paths avoid each other (stratification); the difference grows with s.
 class PathMoments {
  public:
   explicit PathMoments(std::span<const EffortCandidate> candidates)
@@ -83,7 +83,7 @@ class PathMoments {
 
   TechniqueSum weighed;          ///< of the contribution that comes next
   EyeWork work, short_work;      ///< with both sets; of the part that a short eye path does (`Techniques::goes_on`)
-  int set = 0;                   ///< of light paths, which the contribution comes of: 0 or 1
+  int set = 0;                   ///< the set of light paths that the contribution comes from: 0 or 1
   float light = 0, by_walk = 0;  ///< X with the first set, and the part of it that needs no light path
 
   /// `is_short`: a short eye path does it, too.
@@ -112,10 +112,10 @@ class PathMoments {
       sum.add(static_cast<double>(c / ratio));
     }
   }
-  /// Estimates for candidate k, but for light that the lens sees.
+  /// Estimates for candidate k, without light that the lens sees.
   struct Estimate {
     double light;          ///< E[X]
-    double second_moment;  ///< E[X²], of what the candidate has found here
+    double second_moment;  ///< E[X²] of the contributions that the candidate finds here
     double of_eye_path;    ///< E[E[X | eye path]²]
     double squares;        ///< the part Σ s (c / R)² of E[X²]
     double all_squares;    ///< Σ c² / R

@@ -42,7 +42,7 @@ class UniformityTests {
   void count(std::uint32_t pixel, const Vec3& offset, float u) {
     counts_[pixel].photons[sector_of(offset, u > 0.5f)].fetch_add(1, std::memory_order_relaxed);
   }
-  /// Whether merges of pass `passes_counted()` are to look for obstacles. Once is enough, since the rays are dear.
+  /// True if merges of pass `passes_counted()` look for obstacles: only once, because the rays are expensive.
   bool seeks_obstacles() const { return passes_counted_ == 0; }
   /// The disc of a merge is not flat and clear. Threads may call it at the same time.
   void note_obstacle(std::uint32_t pixel) { counts_[pixel].is_obstructed.store(true, std::memory_order_relaxed); }

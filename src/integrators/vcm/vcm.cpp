@@ -130,7 +130,7 @@ class VertexConnectionAndMerging final : public Integrator {
     if (settings_.chooses_effort && effort.light_paths() > 0 && effort.merges())
       tests_.emplace(prepared_->radii.window());
   }
-  // The results of the tests spare a resumed render the passes that it would have to trace for them.
+  // With saved results, a resumed render need not trace the passes of the tests again.
   std::vector<std::byte> save() const override {
     return tests_ && tests_->are_done() ? tests_->save() : std::vector<std::byte>();
   }

@@ -69,7 +69,7 @@ void VcmPass::build_merges(PassReport& report) {
     report.photons_stored += merges.size();
     report.photon_map_bytes += merges.memory_bytes();
   };
-  // Connections find what photons straight from a light would.
+  // Connections find the light that photons straight from a light would bring.
   note(surface_merges.emplace(vertices, connects() ? 2 : 1, radii));
   report.radius = radii.typical();
   if (!volume_kernels.any()) return;

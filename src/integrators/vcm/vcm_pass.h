@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// What the light paths and the eye paths of a pass of vertex connection and merging share.
+// State that the light paths and the eye paths of a pass of vertex connection and merging share.
 #pragma once
 
 #include <cstddef>
@@ -22,7 +22,7 @@
 
 namespace lanthorn {
 
-/// What all passes have in common.
+/// Data that all passes share.
 struct VcmPreparation {
   Emission emission;
   EmissionDensities densities;  // points to `emission`
@@ -49,11 +49,11 @@ struct VcmPass {
   VolumeKernels volume_kernels;
   bool sees;                    ///< light paths are connected to the lens somewhere
   float beam_share;             ///< of light paths whose flights are kept
-  Bidirectional bidirectional;  ///< but η, which is each pixel's own
+  Bidirectional bidirectional;  ///< without η, which each pixel has of its own
   UniformityTests* uniformity;  ///< to be told of the photons of this pass; null: they are not counted
   MergeRadii radii;
   LightVertices& vertices;  ///< of the block
-  // Of the block's light paths, once these are traced:
+  // Merges with the block's light paths, once these are traced:
   std::optional<SurfaceMerges> surface_merges;
   std::optional<VolumeMerges> volume_merges;  ///< none if there are none in media
 
@@ -81,7 +81,7 @@ struct VcmPass {
   /// The number of the light path that an eye path is connected to. The eye path's sampler draws it: a fixed pairing
   /// would give each pixel the light paths of one light.
   std::size_t partner(Sampler& of_eye_path) const;
-  /// Number `i` of `count` light paths, the first of which is `first`: at equal distances among all.
+  /// Number `i` of `count` light paths, the first of which is `first`, equally spaced among all.
   std::size_t partner(std::size_t first, int i, int count) const;
   /// The vertices of a light path. None if it belongs to another block.
   std::span<const LightVertex> light_path(std::size_t path) const;

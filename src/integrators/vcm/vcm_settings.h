@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// What users choose of vertex connection and merging and of its two halves, bidirectional path tracing and
-// bidirectional photon mapping; what each gives and takes. The method itself is in vcm.cpp.
+// User settings of vertex connection and merging and of its two halves, bidirectional path tracing and bidirectional
+// photon mapping, with the layers and the memory of each. The method itself is in vcm.cpp.
 #pragma once
 
 #include <algorithm>
@@ -33,8 +33,8 @@ struct Strategy {
   bool operator==(const Strategy&) const = default;
 };
 
-/// What found the light: the parts of the method's decomposition. `hit`: the eye path met a light; `nee`: next-event
-/// estimation; `vc`: an eye vertex was connected to one of a light path; `vm`: it was merged with one.
+/// The technique that found the light: the parts of the method's decomposition. `hit`: the eye path met a light; `nee`:
+/// next-event estimation; `vc`: an eye vertex was connected to one of a light path; `vm`: it was merged with one.
 namespace technique {
 inline constexpr std::size_t hit = 0, nee = 1, vc = 2, vm = 3, splat = 4;
 }  // namespace technique

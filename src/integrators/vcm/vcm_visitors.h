@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// What vertex connection and merging does at the vertices of light paths and of eye paths.
+// The visitors of vertex connection and merging: for vertices of light paths and of eye paths.
 #pragma once
 
 #include <cstdint>
@@ -169,7 +169,7 @@ class EyeVisitor {
   void operator()(const EmissionVertex& v) {
     const bool is_light = path_.scene.volume_light(v.state.medium).has_value();
     if (!pass_.is_first_block() || (is_light && !hits_count(v.state)) || !pass_.shows(0, v.state.depth + 2)) return;
-    add_hit(v, hit_glow(path_, bidirectional_, v, subpath_), is_light && v.state.depth > 0);
+    add_hit(v, hit_volume_emission(path_, bidirectional_, v, subpath_), is_light && v.state.depth > 0);
   }
   void operator()(const EscapeVertex& v) {
     count_ray(v.state);
@@ -182,7 +182,7 @@ class EyeVisitor {
   bool has_merged() const { return has_merged_; }
 
  private:
-  // Merging alone leaves to the walk what no photon can bring: light seen directly or through delta scatterings.
+  // With merging alone, the walk finds the light that no photon brings: seen directly or through delta scatterings.
   bool hits_count(const WalkState& state) const { return pass_.connects() || state.non_delta == 0; }
 
   bool merges_in_media() const { return pass_.volume_merges && bidirectional_.techniques.volume_part > 0; }
@@ -276,7 +276,7 @@ class EyeVisitor {
   Subpath subpath_;
 };
 
-/// Traces the light paths of a pass. `film`: where light will be splatted, if it will; its memory is fetched before.
+/// Traces the light paths of a pass. `film`: receives splats, and is prefetched; null if there will be none.
 template <class See>
 RayCounts trace_light_paths(const VcmPass& pass, const FilmPass* film, const See& see) {
   pass.vertices.begin(pass.light_paths.chunk_count());

@@ -17,7 +17,7 @@ namespace {
 Ball item_of(const LightVertex& v, float radius) { return {v.at.position, radius}; }
 Beam item_of(const LightBeam& b, float radius) { return {b.origin, b.direction, b.length, radius}; }
 
-// For queries of a kernel; null if there is no such kernel or no item.
+// An index for the queries of a kernel; null if there is no such kernel or no item.
 template <class Set, class Item>
 std::unique_ptr<Set> index_of(const std::vector<const Item*>& items, const std::optional<KernelIn>& kernel) {
   if (!kernel || items.empty()) return {};
@@ -54,13 +54,13 @@ struct Meeting {
   }
 };
 
-// What an estimator makes of the light of a meeting, but for flux and phase function.
+// An estimator's factor of the light of a meeting, without flux and phase function.
 struct KernelFactor {
   Spectrum light;
   float bias_share;  // see Kernel
 };
 
-// Where the merges of one flight or vertex go.
+// Adds the merges of one flight or vertex.
 class MergeSum {
  public:
   MergeSum(const VolumeMergeContext& context, const WalkState& state, const Medium& medium, const Direction& wi,
@@ -75,11 +75,11 @@ class MergeSum {
   bool reaches(int photon_depth) const { return eye_depth_ + photon_depth - 1 <= context_.max_depth; }
   const PathContext& path() const { return context_.path; }
 
-  // If the eye path scattered at p, `t` (m) along its flight.
+  // Densities of the eye path if it scattered at p, `t` (m) along its flight.
   VolumeArrival eye_at(const Point& p, float t, float time, float collision) const {
     return arrive(context_.subpath.start(), context_.subpath.departure(), p, t, time, collision);
   }
-  // If the light path scattered `s` (m) along its flight.
+  // Densities of the light path if it scattered `s` (m) along its flight.
   VolumeArrival light_at(const LightBeam& b, float s, float collision) const {
     return arrive(b.start, b.departure, b.origin + s * b.direction, s, b.time, collision);
   }
@@ -137,7 +137,7 @@ struct Visitor {
 template <class Item, class Take>
 Visitor(const MergeSum&, const std::vector<const Item*>&, const KernelIn&, Take) -> Visitor<Item, Take>;
 
-// What is left of the flux of beams that reach the next surface.
+// Fraction of flux that is left of beams that reach the next surface.
 struct LongBeams {
   const PathContext& path;
   const Medium& medium;

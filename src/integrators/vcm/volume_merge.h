@@ -23,7 +23,7 @@
 
 namespace lanthorn {
 
-/// What the merges of an eye path need besides their vertex or flight.
+/// Data for the merges of an eye path besides their vertex or flight.
 struct VolumeMergeContext {
   const PathContext& path;
   const Bidirectional& bidirectional;

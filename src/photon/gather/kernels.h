@@ -29,7 +29,7 @@ enum class KernelShape : std::uint8_t {
 /// Half height / radius of the disc that is searched for photons. Photons farther from the tangent plane belong to
 /// another surface.
 inline constexpr float search_flatness = 0.2f;
-/// True if what is `height` (m) over a tangent plane is near enough to it for a disc of radius `reach` (m).
+/// True if a point at `height` (m) over a tangent plane is near enough to it for a disc of radius `reach` (m).
 inline bool is_in_disc(float height, float reach) { return std::fabs(height) <= search_flatness * reach; }
 
 /// A radial kernel on the disc of its support radius R. `profile` is dimensionless with mean 1 over the disc, so
@@ -92,10 +92,10 @@ class KernelIn {
  public:
   KernelIn(int dimensions, const Kernel& kernel, float radius);
 
-  /// Of the equivalent box kernel, m.
+  /// Radius of the equivalent box kernel, m.
   float radius() const { return radius_; }
   float support() const { return support_; }
-  /// Of the equivalent box kernel: m, m² or m³.
+  /// Size of the equivalent box kernel: m, m² or m³.
   float box_size() const { return box_size_; }
   /// Density (per m, m² or m³) at squared distance `dist2` from the centre, at most support()².
   float weight(float dist2) const { return scale_ * kernel_.profile(share_of_support(dist2)); }

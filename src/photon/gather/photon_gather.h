@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Density estimation at eye vertices, and the part of their light that it finds.
+// Density estimation at eye vertices, and the part of the light that it estimates.
 #pragma once
 
 #include <algorithm>
@@ -31,7 +31,7 @@ inline float wide_share(const SurfaceVertex& vertex) {
 
 /// Division of the indirect light at an eye vertex between photons and the walk.
 inline LobeSplit split_lobes(const SurfaceVertex& vertex) {
-  // Photon records do not count more scatterings of the eye path. Beyond, the walk alone finds the light.
+  // Photon records cannot count more scatterings of the eye path; beyond, the walk alone finds the light.
   if (vertex.state.depth > PhotonFlags::most_eye_scatterings + 1) return LobeSplit::all_narrow();
   const float share = wide_share(vertex);
   if (share == 1) return LobeSplit::all_wide();

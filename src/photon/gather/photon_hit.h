@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// A photon meets a vertex: whether it belongs to the surface there, and what the vertex scatters of its light. For all
-// photon methods; photons have the interface of `PhotonMap::Ref`, which decodes what is asked for.
+// A photon meets a vertex: whether it belongs to the surface there, and how much of its light the vertex scatters.
+// Shared by all photon methods. Photons have the interface of `PhotonMap::Ref`, which decodes each member on request.
 #pragma once
 
 #include <cmath>

@@ -70,7 +70,7 @@ class PilotPhotons {
       sum += flux_[neighbour.slot];
       greatest = std::fmax(greatest, flux_[neighbour.slot]);
     }
-    // One photon in 24 may be there by chance. Two are the rule.
+    // One strong photon among 24 may be chance, two are not: the strongest is left out of the mean.
     point.flux = (sum - greatest) / static_cast<float>(found.size() - 1);
     point.distance2 = found.front().dist2 * classes.area_factor(point.flux);
   }
@@ -166,7 +166,7 @@ class Pilot {
     const PixelWindow film = job_.view.film();
     return gather_points(film, std::min(pilot_grid, film.width()), std::min(pilot_grid, film.height()), wanted_photons);
   }
-  /// Of each pixel of the window.
+  /// The gather point of each pixel of the window.
   std::vector<GatherPoint> of_pixels(double wanted_photons) const {
     const PixelWindow& window = job_.view.window;
     return gather_points(window, window.width(), window.height(), wanted_photons);

@@ -39,14 +39,14 @@ class FirstRadius {
   explicit FirstRadius(float radius) : largest_(radius), typical_(radius) {}
   FirstRadius(float largest, float typical, const FluxClasses& classes)
       : largest_(largest), typical_(typical), classes_(classes) {}
-  /// Adds the next pixel of the window. `widest`: that fits the surface.
+  /// Adds the next pixel of the window. `widest`: the largest radius that fits the surface, m.
   void add_pixel(float radius, float widest) {
     per_pixel_.push_back(radius);
     if (classes_.count() > 1) widest_.push_back(widest);
   }
 
   float at(std::uint32_t pixel) const { return per_pixel_.empty() ? typical_ : per_pixel_[pixel]; }
-  /// Of the photons; radii are those of the first class.
+  /// Classes of the photons' flux; radii are those of the first class.
   const FluxClasses& classes() const { return classes_; }
   /// Radius of a class of photons over that of the first, which is `radius` now.
   float class_factor(int flux_class, std::uint32_t pixel, float radius) const {
@@ -85,10 +85,10 @@ class PassRadii {
 
 /// Measures the first radius by a pilot pass: photons are stored in a kd-tree, and eye paths on a grid of pixels
 /// measure the distance to their nearest photons. The distance is scaled so that a gather of the first pass finds about
-/// `wanted_photons`, but is at most a twentieth of the scene's radius and, where the surface is not flat and clear that
-/// far, ten pixels: where photons are too few, noise is better than the dark that a disc over an edge would make.
-/// Depends on scene, view, seed and photon count only. `guide` is that of the passes, or null. With
-/// `by_flux`, photons have radii by their flux where it is uneven.
+/// `wanted_photons`. It is at most a twentieth of the scene's radius and, where the surface is not flat and clear that
+/// far, at most ten pixels: where photons are few, noise is better than the darkening by a disc that reaches over an
+/// edge. Depends on scene, view, seed and photon count only. `guide` is that of the passes, or null. With `by_flux`,
+/// photons of uneven flux have radii that depend on their flux.
 FirstRadius choose_first_radius(const RenderJob& job, const RadiusChoice& choice, double wanted_photons,
                                 const LightGuide* guide = nullptr, bool by_flux = false);
 

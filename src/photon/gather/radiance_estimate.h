@@ -109,7 +109,7 @@ DensityEstimate estimate_density(const Map& map, const Point& p, const EstimateS
 }
 
 /// Factor of a photon's light where an eye path reads the global map: the part that `split` leaves to photons. Direct
-/// light is the map's where all light is, and else next-event estimation's and the walk's.
+/// light comes from the map only if all light does; otherwise next-event estimation and the walk find it.
 struct MapShare {
   LobeSplit split = LobeSplit::all_wide();
 
@@ -119,10 +119,10 @@ struct MapShare {
   }
 };
 
-/// Light of a photon that the vertex scatters to the eye, W/sr, without the eye path's beta. Empty if the photon does
+/// Light of a photon that the vertex scatters to the eye, W/sr, without the eye path's beta. Nullopt if the photon does
 /// not belong to the surface (`estimate_density`). `weigh(flags, pdf)` is a factor of the photon's light, 0 for photons
-/// whose light another technique finds; paths that would be too long count as such photons. `pdf`: with which the
-/// closure samples the photon's direction, 1/sr.
+/// whose light another technique finds; `pdf`: density with which the closure samples the photon's direction, 1/sr.
+/// Photons of paths that would be too long get factor 0, too.
 template <class Ref, class Weigh>
 std::optional<Spectrum> reflected_light(const Ref& photon, const GatherVertex& vertex, float reach,
                                         const Wavelengths& w, Weigh&& weigh) {

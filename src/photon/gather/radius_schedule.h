@@ -29,14 +29,14 @@ struct RadiusSchedule {
 
   /// r² / r²_1 of pass `pass` (the first is 0): Γ(i + α) / (Γ(1 + α) Γ(i + 1)) with i = pass + 1.
   double shrink2(std::uint64_t pass) const { return shrink2_after(static_cast<double>(pass) + 1); }
-  /// The same after the photons of i passes, i >= 1: for passes that have other numbers of photons than the first
-  /// radius is for.
+  /// The same after the photons of i passes, i >= 1. i need not be a whole number, because passes may have more or
+  /// fewer photons than the pass for which the first radius is measured.
   double shrink2_after(double i) const {
     assert(alpha > 0 && alpha <= 1);
     return i == 1 ? 1 : std::exp(log_gamma(i + alpha) - log_gamma(1 + alpha) - log_gamma(i + 1));
   }
-  /// r / r_1 of pass `pass`, so that r^dimensions, to which the variance of a density estimate in these dimensions is
-  /// inverse, shrinks as r² does in two (Knaus & Zwicker 2011, section 5).
+  /// r / r_1 of pass `pass`. The variance of a density estimate is inversely proportional to r^dimensions, which
+  /// therefore shrinks as r² does in two dimensions (Knaus & Zwicker 2011, section 5).
   float shrink(std::uint64_t pass, int dimensions) const {
     return static_cast<float>(std::pow(shrink2(pass), 1.0 / dimensions));
   }

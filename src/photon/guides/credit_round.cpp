@@ -24,7 +24,7 @@ struct PilotPhotonVisitor {
     if (has_non_delta(vertex.at.bsdf)) add(vertex.state, vertex.at.position, vertex.at.normal);
     return Continuation::go_on();
   }
-  // What has scattered often says little of where it started.
+  // Photons that have scattered often say little about where they started.
   Continuation operator()(const MediumVertex& vertex) const {
     constexpr int deepest = 16;
     if (in_media && vertex.state.depth <= deepest) add(vertex.state, vertex.position, Normal(0));

@@ -46,7 +46,7 @@ struct CreditRound {
   }
 };
 
-/// Traces the light paths of round `number`, which start and go by the guide.
+/// Traces the light paths of round `number`; the guide determines their starts and directions.
 CreditRound trace_round(const RenderJob& job, std::uint32_t number, const LightGuide& guide, bool in_media,
                         const PassDraw& draw);
 

@@ -83,8 +83,8 @@ class CreditSubdivision {
   std::vector<std::size_t> axes_;
 };
 
-// The numbers by which rays of the light differ. By others credit differs by chance alone; and those that weights
-// cannot tell from a ray would have to be integrated over for each.
+// The axes that can be recovered from a ray of the light. Along other axes credit differs by chance alone, so that a
+// subdivision would fit noise, and MIS weights would have to integrate over them.
 std::vector<std::size_t> telling_axes(const Light& light) {
   std::vector<std::size_t> axes;
   const auto ray = sample_emission(light, Vec2(0.5f), Vec2(0.5f), Wavelengths::rgb(0.5f));

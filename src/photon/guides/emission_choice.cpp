@@ -84,8 +84,8 @@ std::vector<double> shares_of_direct_light(const RenderJob& job) {
   return shares;
 }
 
-// Whether lights that matter to the picture would get next to no photons by power, and the picture needs photons: there
-// are mirrors or clear glass.
+// True if lights that matter to the picture would get next to no photons by power, and the picture needs photons
+// because there are mirrors or clear glass.
 bool strong_lights_hide_others(const RenderJob& job) {
   if (!has_specular_surfaces(job.scene)) return false;
   constexpr double next_to_none = 1e-3;  // of the photons that a share of the picture's light deserves
@@ -103,12 +103,12 @@ std::string remark_on(double in_view, bool hides_lights, PhotonUse use) {
   if (hides_lights)
     return fmt::format(
         "strong lights would leave hardly any photons to weak ones that light a part of the picture: photons start "
-        "where light paths into view have been found (--set emission=power: by power){}",
+        "where light paths into view have been found (--set emission=power starts them by power){}",
         fewer);
   const std::string share = in_view > 1e-6 ? fmt::format("one photon in {:.0f}", 1 / in_view) : "almost no photon";
   return fmt::format(
-      "{} lands in view: photons start where light paths that do have been found "
-      "(--set emission=power: everywhere){}",
+      "{} lands in view: photons start where light paths into view have been found "
+      "(--set emission=power starts them everywhere){}",
       share, fewer);
 }
 

@@ -34,7 +34,7 @@ EmissionChoice emission_choice(const Parameters& parameters);
 /// The use that a method makes of its photons.
 enum class PhotonUse : std::uint8_t {
   indirect,  ///< indirect light at visible surfaces; direct light is found by other techniques
-  merging,   ///< as `indirect`; weights need the densities of light paths, whose directions are not guided, therefore
+  merging,   ///< as `indirect`, but without guided directions, because MIS weights need the densities of light paths
   caustics,  ///< caustics alone at visible surfaces
   gathering  ///< as `indirect`, and all light at the ends of gather rays
 };
@@ -48,7 +48,7 @@ struct Emission {
   const EmissionGuide* starts() const { return guide ? &guide->emission : nullptr; }
 };
 
-/// The emission of these photons, which leave `media` in media that scatter. Depends on scene, seed, photon count and
+/// Chooses where photons start. `media`: their records in scattering media. Depends on scene, seed, photon count and
 /// view only.
 Emission choose_emission(EmissionChoice choice, PhotonUse use, const RenderJob& job,
                          MediumRecords media = MediumRecords::none);

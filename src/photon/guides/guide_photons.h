@@ -14,7 +14,7 @@
 
 namespace lanthorn {
 
-/// Importance that an eye path has left on a surface: like a photon of the eye's, which light walks have to meet.
+/// Importance that an eye path has left on a surface: the eye's counterpart of a photon, which light walks should meet.
 struct Importance {
   Photon photon;  ///< its power is the path's throughput, `wi` points to the path's vertex before
   Point origin;   ///< that vertex
@@ -33,9 +33,10 @@ class GuidePhotons {
   /// `accepts(flags)` selects the photons whose light the guided walks have to find.
   static GuidePhotons build(std::span<const std::vector<Photon>> chunks, const Wavelengths& w,
                             const std::function<bool(const PhotonFlags&)>& accepts);
-  /// Guides light walks to where the importance came from. Where it is sparse, as far from a window that shows the
-  /// place, neighbours are far apart: a guide takes the directions from its own place to their origins, not theirs.
-  /// One in `stride_of_importance` has a record, since there is less of it than of photons.
+  /// Guides light walks to the origins of the importance. Where importance is sparse, as far from a window through
+  /// which the place is seen, neighbours are far apart; a guide therefore uses the directions from its own place to the
+  /// neighbours' origins, not the neighbours' directions. One in `stride_of_importance` has a record, because
+  /// importance is sparser than photons.
   static GuidePhotons build(std::span<const Importance> importance, const Wavelengths& w);
 
   /// The guidance at a vertex, on the side of `wi`; none if no record of its surface is near. The guide draws half of

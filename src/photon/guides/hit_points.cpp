@@ -37,7 +37,7 @@ struct HitPointVisitor {
   }
   Continuation operator()(const MediumVertex& vertex) const {
     if (!in_media || gather_probability(vertex.phase) < 0.5f) return Continuation::go_on();
-    // Photons and the eye's flight have both been scattered by the same coefficient.
+    // Photons and the eye's flight each contain the scattering coefficient; it counts only once.
     const Spectrum scattering = scattering_at(path.scene.medium(vertex.state.medium), vertex.position, path.w);
     return add(vertex, Normal(0),
                map(scattering, [](float sigma) { return sigma > 0 ? pdf_uniform_sphere / sigma : 0.0f; }));

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Where pilot eye paths want photons: at hit points, which give credit to those that light them, and where photons must
-// land first to light the picture.
+// Where pilot eye paths need photons: hit points, which credit the photons that light them, and landings, where photons
+// must land first to light the picture.
 #pragma once
 
 #include <vector>
@@ -35,8 +35,8 @@ struct HitPoint {
 /// are photons in media.
 std::vector<HitPoint> find_hit_points(const RenderJob& job, PhotonUse use, bool in_media, const PassDraw& draw);
 
-/// What eye paths leave where photons must land first to light the picture: after their first wide lobe, and also at
-/// the surface of that lobe if direct photons count.
+/// Places where photons must land first to light the picture: the vertices of eye paths after their first wide lobe,
+/// and also the vertex of that lobe if direct photons count.
 struct Landings {
   std::vector<Point> places;
   std::vector<Importance> importance;  ///< on surfaces
@@ -47,7 +47,7 @@ struct Landings {
   }
 };
 
-/// The landings of other pilot eye paths.
+/// The landings of pilot eye paths other than those of `find_hit_points`.
 Landings find_landings(const RenderJob& job, PhotonUse use, bool in_media, const PassDraw& draw);
 
 }  // namespace lanthorn

@@ -74,11 +74,11 @@ void credit_seeds(std::vector<CreditedStart>& seeds, const std::vector<CreditedS
   for (CreditedStart& s : seeds) s.credit = share * all / static_cast<float>(seeds.size());
 }
 
-// Methods that merge weigh photons by the densities of their paths, which directions would change; paths of caustic
-// photons end at the first wide lobe.
+// Methods that merge weigh photons by the densities of their paths, which guided directions would change. Paths of
+// caustic photons end at the first wide lobe.
 bool guides_directions(PhotonUse use) { return use == PhotonUse::indirect || use == PhotonUse::gathering; }
 
-// Photons distributed among the lights by power. By a projection map's own masses, an environment with a coarse map
+// Photons distributed among the lights by power. With a projection map's own masses, an environment with a coarse map
 // would get almost all of them. Lights that would get next to none, because others are far stronger, get some all the
 // same: they may be all the light of a part of the picture.
 EmissionGuide shared_by_power(EmissionGuide guide, const Scene& scene) {
@@ -94,7 +94,7 @@ EmissionGuide shared_by_power(EmissionGuide guide, const Scene& scene) {
 bool has_power(const Light& light) { return power(light) > 0; }
 
 // Photons add light only where eye paths that go on meet something. Eye paths may miss small mirrors and glass, which
-// projection maps find, and light that media scatter.
+// projection maps find, and scattering media.
 bool may_gain(const Scene& scene, const Landings& landings) {
   return !landings.places.empty() || scene.may_be_specular() || scene.has_scattering_media();
 }

@@ -8,10 +8,10 @@
 
 namespace lanthorn {
 
-/// A learned guide, and what photons are good for here.
+/// A learned guide, and how much photons contribute to the picture.
 struct LearnedEmission {
   std::optional<LightGuide> guide{};  ///< empty where there is nothing to learn
-  double share = 0;  ///< of the light at the visible surfaces that photons contribute, mean over the full film
+  double share = 0;  ///< fraction of the light at the visible surfaces that photons contribute, mean over the full film
 };
 
 /// Learns where photons start that contribute to the picture (after Hachisuka & Jensen 2011, "Robust Adaptive Photon
@@ -23,7 +23,7 @@ struct LearnedEmission {
 ///    of the pixel's light that photons contribute, so that dark and bright pixels count alike.
 /// 3. The domain of the numbers that sample emission is subdivided where paths with much credit have started, and where
 ///    projection maps find mirrors or glass.
-/// With `in_media`, what photons do where they scatter in media counts as well.
+/// `in_media`: photons that scatter in media count as well.
 /// There is no guide where photons cannot add light: no light has power, or the visible surfaces are convex.
 /// A fixed share of the photons ignores the guide, so that light which the pilot has missed is sampled too, if rarely.
 LearnedEmission learn_emission(const RenderJob& job, PhotonUse use, bool in_media = false);

@@ -10,7 +10,7 @@ namespace lanthorn {
 /// Where light paths start, and in which directions surfaces scatter them.
 struct LightGuide {
   EmissionGuide emission;
-  GuidePhotons directions{};  ///< of importance; empty: the closures alone decide
+  GuidePhotons directions{};  ///< guides by importance; empty: the closures alone decide
 };
 
 /// A visitor of light walks whose next directions are guided.

@@ -49,7 +49,7 @@ bool may_meet(const EmittedBeam& beam, const Ball& ball) {
   return dot(beam.axis, to_ball) >= distance * cos_both;
 }
 
-/// What photons shall hit.
+/// The targets of the photons.
 struct Targets {
   std::vector<Ball> balls;
   std::vector<float> weights;  ///< of each ball; if empty, the photons that can hit a ball are distributed evenly

@@ -13,7 +13,7 @@
 
 namespace lanthorn {
 
-/// What photons should hit first.
+/// The targets that photons should hit first.
 enum class PhotonTarget : std::uint8_t {
   surfaces,
   surfaces_and_media,  ///< media that scatter, too; if one has no end, photons are not aimed
@@ -32,7 +32,7 @@ struct PhotonBox {
   Bounds box;
   float weight = 0;  ///< share of the photons that it should get, up to a factor common to all boxes
 };
-/// The same for boxes of unequal weight: of a small box that few photons can hit, all of these few start.
+/// The same for boxes of unequal weight. If few photons can hit a small box, all of these few are started.
 EmissionGuide make_projection_map(const Scene& scene, std::span<const PhotonBox> boxes,
                                   const std::optional<AimedDisks>& disks = {});
 

@@ -18,9 +18,9 @@ namespace {
 
 constexpr std::uint64_t traced_paths = 50'000;
 constexpr int eye_grid = 64;
-// Of diffuse directions that meet the light: less is rare.
+// Light is rare if a smaller fraction of diffuse directions meets its source.
 constexpr float least_chance = 1e-3f;
-// Relative variance of a pass that is too much: five thousand passes leave .01.
+// Relative variance of a pass that is too large: five thousand passes would leave 0.01.
 constexpr float most_noise = 50;
 
 struct Landing {
@@ -29,9 +29,9 @@ struct Landing {
   std::uint32_t path = 0;
 };
 
-/// What has become of a light path.
+/// The history of a light path.
 struct Fate {
-  bool hidden = false;  ///< it scattered first at other than delta lobes after delta scatterings
+  bool hidden = false;  ///< its first non-delta scattering came after delta scatterings
   float chance = 0;     ///< of a diffuse direction to meet the light there
   float radiance = 0;   ///< emitted; infinite for lights without extent
 };
@@ -61,7 +61,7 @@ struct LandingVisitor {
     if (is_hidden(state)) add_first(landing);
     return Continuation::go_on();
   }
-  // Directions out of a medium are about as many as those of a diffuse surface in place of its interface.
+  // Directions out of a medium count like those of a diffuse surface in place of its interface.
   Continuation operator()(const MediumVertex& vertex) const {
     pilot.media.push_back(
         {vertex.position, sum_of(vertex.state.beta), static_cast<std::uint32_t>(pilot.paths.size() - 1)});

@@ -6,14 +6,14 @@
 
 namespace lanthorn {
 
-/// Whether there are mirrors or clear glass.
+/// True if the scene has mirrors or clear glass.
 bool has_specular_surfaces(const Scene& scene);
 
-/// Share of the light on visible surfaces and in visible media that path tracing finds by rare chance or never: light
-/// that comes through clear glass or by mirrors, where next-event estimation does not see it, from lights that have no
-/// extent or are so small there that fewer than one in 1000 diffuse directions meets them, or so few that the relative
-/// variance of a pass is more than 50. What such light illuminates in turn counts, too. Measured by a pilot pass of
-/// photons. 0 in scenes without mirrors and clear glass.
+/// Share of the light on visible surfaces and in visible media that path tracing finds rarely or never. Only light that
+/// arrives through clear glass or by mirrors is considered, because next-event estimation does not find it there. It is
+/// rare if its source has no extent, or if fewer than one in 1000 diffuse directions meets the source there; all of it
+/// is rare if the relative variance of a pass would exceed 50. Light that such light illuminates in turn counts, too.
+/// Measured by a pilot pass of photons. 0 in scenes without mirrors and clear glass.
 double rare_light_share(const RenderJob& job);
 
 }  // namespace lanthorn

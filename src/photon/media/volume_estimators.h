@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The estimators of the light that media scatter, by points and beams (Jarosz, Nowrouzezahrai, Sadeghi & Jensen 2011),
-// for whatever is kept of photons. A visitor has
+// Estimators of the light that media scatter, by points and beams (Jarosz, Nowrouzezahrai, Sadeghi & Jensen 2011), for
+// any kind of photon record. A visitor has
 //   bool wants(slot);                     // false: leave the photon out
 //   void meet(slot, const VolumeMeeting&);
 #pragma once
@@ -22,7 +22,7 @@ namespace lanthorn {
 
 /// Where a photon and an eye path meet in a medium.
 struct VolumeMeeting {
-  Spectrum factor;  ///< of the radiance, besides flux, phase function and kernel
+  Spectrum factor;  ///< factor of the radiance, without flux, phase function and kernel
   float dist2 = 0;  ///< m², between photon or beam and the eye's point or ray
   float t = 0;      ///< m, on the eye's ray, if the whole ray takes part
   float s = 0;      ///< m, on the photon's beam
@@ -37,13 +37,13 @@ inline std::uint64_t key_of_ray(const PathContext& path, int depth, const Point&
   return hash_vec(direction, hash_vec(origin, bits));
 }
 
-/// The whole way of an eye path's flight to the next surface.
+/// An eye path's ray, all the way to the next surface.
 struct EyeRay {
   const Medium& medium;
   RaySegment ray;
   std::uint64_t key;
   TransmittanceCurve transmitted;
-  /// Of the surfaces at both ends, in the ray's hemisphere; 0 if there is none.
+  /// Normals of the surfaces at both ends, in the ray's hemisphere; 0 if there is none.
   Normal begin_normal, end_normal;
 
   EyeRay(const PathContext& path, const FlownSegment& flight)
@@ -54,11 +54,11 @@ struct EyeRay {
         begin_normal(along(flight.begin_normal)),
         end_normal(along(flight.end_normal)) {}
 
-  /// The part of the line at which there may be points between the surfaces' planes up to `aside` (m) from the line.
+  /// The part of the line beside which points up to `aside` (m) from it may lie between the planes of the end surfaces.
   RaySegment between_planes(float aside) const {
     return {ray.origin, ray.direction, ray.begin - beyond(begin_normal, aside), ray.end + beyond(end_normal, aside)};
   }
-  /// The part of the ray around which all points up to `aside` (m) from it are between the planes. May be empty.
+  /// The part of the ray beside which all points up to `aside` (m) from it lie between the planes. May be empty.
   RaySegment clear_of_planes(float aside) const {
     return {ray.origin, ray.direction, ray.begin + extent(begin_normal, aside), ray.end - extent(end_normal, aside)};
   }
@@ -76,13 +76,13 @@ struct EyeRay {
     return {eye.medium, {eye.ray.origin, eye.ray.direction, eye.ray.end}, path.w, rng};
   }
   Normal along(const Normal& n) const { return dot(n, ray.direction) < 0 ? -n : n; }
-  /// How far along the ray a plane through an end goes up to `aside` (m) from it, before and beyond the end (m).
+  /// How far the plane through an end reaches along the ray, before and beyond the end, within `aside` (m) of it, m.
   float extent(const Normal& n, float aside) const {
     if (n == Normal(0)) return 0;
     const float cosine = dot(n, ray.direction);
     return cosine > 0 ? aside * safe_sqrt(1 - sqr(cosine)) / cosine : infinity;
   }
-  /// The same, at most so far that what is there is mirrored onto the ray.
+  /// The same, but never so far that mirroring at the end would leave the ray.
   float beyond(const Normal& n, float aside) const {
     constexpr float most = 16;
     return std::min({extent(n, aside), most * aside, ray.end});
@@ -97,9 +97,9 @@ inline Spectrum along_beam(const PathContext& path, const Medium& medium, const 
 }
 
 /// Photons in a disc across the ray, each at the place where the ray passes it (Jarosz et al. 2008, eq. 14), at most
-/// `aside` (m) from it. The cylinder ends at the planes of the surfaces at the ray's ends: ends across the ray would be
-/// partly behind a surface that the ray meets at an angle, where there are no photons or those of another room. An even
-/// density between planes is so estimated without bias.
+/// `aside` (m) from it. The cylinder ends at the planes of the surfaces at the ray's ends. With ends across the ray, it
+/// would partly lie behind a surface that the ray meets at an angle, where there are no photons or those of another
+/// room. A uniform density between the planes is thus estimated without bias.
 template <class Visitor>
 void meet_points_along(const EyeRay& eye, const BallBvh& photons, float aside, Visitor&& visitor) {
   const RaySegment clear = eye.clear_of_planes(aside);
@@ -132,7 +132,7 @@ void meet_beams_along(const PathContext& path, const EyeRay& eye, const BeamBvh&
 /// Photons in a ball around a point where the eye path scatters (Jensen & Christensen 1998). `scattering`: per metre.
 template <class Visitor>
 void meet_points_at(const BallBvh& photons, const Point& p, const Spectrum& scattering, Visitor&& visitor) {
-  // Photons and the eye's flight have both been scattered by the same coefficient.
+  // Photons and the eye's flight each contain the scattering coefficient; it counts only once.
   const Spectrum once = map(scattering, [](float sigma) { return sigma > 0 ? 1 / sigma : 0.0f; });
   photons.for_each_containing(p, [&](std::uint32_t slot, float dist2) {
     if (visitor.wants(slot)) visitor.meet(slot, {.factor = once, .dist2 = dist2});

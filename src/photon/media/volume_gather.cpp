@@ -17,7 +17,7 @@ namespace lanthorn {
 
 namespace {
 
-// Passes on the light of each photon of a map, but for the kernel and the walk's beta: `take(light, is_caustic,
+// Passes on the light of each photon of a map, without the kernel and the walk's beta: `take(light, is_caustic,
 // meeting)`.
 template <class Map, class Take>
 class PhotonLight {

@@ -25,7 +25,7 @@ enum class VolumeEstimator : std::uint8_t {
   beam,               ///< photons in a cylinder around the eye path's flight (Jarosz, Zwicker & Jensen 2008)
   photon_beam,        ///< photons' flights around a point of the eye path
   beams,              ///< photons' flights that pass the eye path's flight
-  short_photon_beam,  ///< the same two with flights that end where they scatter
+  short_photon_beam,  ///< as photon_beam, with flights that end where they scatter
   short_beams
 };
 inline constexpr std::size_t volume_estimator_count = 7;
@@ -86,11 +86,11 @@ constexpr MediumRecords records_for(VolumeEstimator estimator) {
 /// rest. 1 if the medium scatters evenly, less for narrow phase functions, as for narrow lobes of surfaces.
 inline float gather_probability(const HenyeyGreenstein& hg) { return spread_of_phase(hg); }
 
-/// Kernels that are compared by what they find.
+/// Kernels of several sizes whose estimates are compared.
 struct KernelLadder {
   std::span<const KernelIn> kernels;  ///< the widest first: that of the gather
-  /// m. Photons at the distance t from the eye count by t² / (t² + near²): one that is closer than its kernel is wide
-  /// is seen all over the picture, and few of them would decide.
+  /// m. Photons at distance t from the eye count with weight t² / (t² + near²): a photon closer than its kernel is wide
+  /// covers the whole picture, and a few of them would dominate.
   float near = 0;
 };
 
@@ -118,7 +118,7 @@ class VolumeGather {
                             const KernelLadder& ladder, std::span<float> sums) const;
   std::size_t compare_at(const PathContext& path, const MediumVertex& vertex, float flown, const KernelLadder& ladder,
                          std::span<float> sums) const;
-  /// Of the equivalent box kernel, m.
+  /// Radius of the equivalent box kernel, m.
   float radius() const { return kernel_.radius(); }
   std::size_t memory_bytes() const { return map_.memory_bytes(); }
 
@@ -127,7 +127,7 @@ class VolumeGather {
   void for_each_along(const PathContext& path, const FlownSegment& flight, Take&& take) const;
   template <class Take>
   void for_each_at(const PathContext& path, const MediumVertex& vertex, Take&& take) const;
-  // Share of a beam's flux that is left at its point s (m). `key`: of the eye's ray.
+  // Fraction of a beam's flux that is left at its point s (m). `key`: of the eye's ray.
   Spectrum left(const PathContext& path, const Medium& medium, const VolumeMap::Beams& beams, std::uint32_t slot,
                 float s, std::uint64_t key) const;
 

@@ -26,7 +26,7 @@ IndexBuild<Index> index_of(std::span<const MediumPhoton* const> photons, float r
   return Index::build(items);
 }
 
-// In the order of their paths, by medium.
+// Photons by medium, in path order.
 using Photons = std::vector<const MediumPhoton*>;
 std::vector<Photons> by_medium(std::span<const std::vector<MediumPhoton>> chunks) {
   std::vector<Photons> media;

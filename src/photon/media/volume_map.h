@@ -59,7 +59,7 @@ class VolumeMap {
     return i < maps.size() ? maps[i].get() : nullptr;
   }
 
-  // By medium; of those without photons null.
+  // By medium; null for media without photons.
   std::vector<std::unique_ptr<Points>> points_;
   std::vector<std::unique_ptr<Beams>> beams_;
 };

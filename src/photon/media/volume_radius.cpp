@@ -21,34 +21,35 @@ namespace {
 constexpr std::size_t set_count = 8;
 // Longest side of the grid of eye paths that look for the largest radius.
 constexpr int coarse_side = 16;
-// The largest radius that is tried, as a share of the scene's, and the photons that an eye path may find in it in the
-// mean: each is looked at.
+// The largest radius that is tried, as a fraction of the scene's, and the largest mean number of photons that an eye
+// path may find in it, each of which costs time.
 constexpr double widest_part = 0.1;
 constexpr double most_found = 600;
 constexpr int most_halvings = 10;
-// Radii that are tried, each the one before over √2.
+// Radii that are tried; each is the one before divided by √2.
 constexpr std::size_t rungs = 20;
-// Light that is closer to the eye than so many of the widest radii counts less.
+// Light closer to the eye than this many of the widest radii counts less.
 constexpr float near_in_radii = 4;
-// Passes whose noise stands against the blur. If radii shrink with α = 2/3, the best first radius is that of 3 passes
-// for blur that falls as their square, and of all passes for blur that does not fall.
+// Number of passes whose noise is weighed against the blur. If radii shrink with α = 2/3, the best first radius is that
+// of 3 passes for blur that falls as their square, and that of all passes for blur that does not fall.
 constexpr double noisy_passes = 8;
-// Variance of a pass besides, over squared light: where it is much, time for more passes is worth more than a wider
+// Assumed variance of a pass from other causes, over squared light: if it is large, more passes gain more than a wider
 // radius. It is .1 to .6 in bench/media.
 constexpr double noise_of_rest = 0.2;
-// Photons that are met in the time of an eye path or a light path.
+// Number of photons that can be met in the time of one eye path or light path.
 constexpr double as_long_as_a_path = 50;
-// A smaller radius must be better by so many standard errors.
+// A smaller radius must be better by this many standard errors.
 constexpr double confidence = 2;
 
-// Light paths of all sets together. A beam is found all along its way, and none is left out of so few.
+// Light paths of all sets together. Beams need fewer, because a beam is found all along its length; sets this small
+// keep every beam.
 constexpr std::uint64_t paths_for(VolumeEstimator estimator) {
   return records_for(estimator) == MediumRecords::points ? 16'000 : 2'048;
 }
-// Longest side of the grid of eye paths. Beams meet many of them, each of which tells nearly the same.
+// Longest side of the grid of eye paths. A beam meets many eye paths, which give nearly the same information.
 constexpr int side_for(VolumeEstimator estimator) { return records_for(estimator) == MediumRecords::points ? 128 : 64; }
 
-// An eye path's light by the kernel of each radius, from each set of photons.
+// Estimates of an eye path's light, by set of photons and by kernel radius.
 struct Estimates {
   std::array<std::array<float, rungs>, set_count> of_sets{};
   std::size_t found = 0;  // photons of all sets within the largest radius
@@ -64,12 +65,12 @@ struct Estimates {
     for (std::size_t i = 0; i < set_count; ++i) result += at(i, rung) * at(i, rung);
     return result;
   }
-  // Unbiased, of the widest estimate from one set.
+  // Unbiased variance of the widest estimate from one set.
   double variance() const { return (sum_of_squares(0) - std::pow(sum(0), 2) / set_count) / (set_count - 1); }
 };
 
-// Sums over the eye paths of (E L_r)², by rung: the products of two sets' estimates, which are independent, in the mean
-// over all pairs of sets.
+// Sums over the eye paths of (E L_r)², by rung: the mean over all pairs of sets of the product of their estimates,
+// which are independent.
 class SquaresOfMeans {
  public:
   void add(const Estimates& path, double weight) {
@@ -83,9 +84,10 @@ class SquaresOfMeans {
       }
     }
   }
-  // What a rung has less of squared error by blur than another one.
+  // How much less squared error by blur `rung` has than `other`.
   double gain(std::size_t rung, std::size_t other) const { return blur(all_, other) - blur(all_, rung); }
-  // Its standard error by the jackknife: eye paths share photons, and their spread does not tell.
+  // Standard error of `gain` by the jackknife over sets. The spread over eye paths would not show it, because they
+  // share photons.
   double gain_error(std::size_t rung, std::size_t other) const {
     std::array<double, set_count> gains{};
     double mean = 0, squares = 0;
@@ -99,11 +101,11 @@ class SquaresOfMeans {
 
  private:
   using ByRung = std::array<double, rungs>;
-  // But for a sum that is the same for all rungs.
+  // Squared error by blur, up to a term that is the same for all rungs.
   static double blur(const ByRung& squares, std::size_t rung) { return squares[rung] - 2 * squares[rung + 1]; }
 
   ByRung all_{};
-  std::array<ByRung, set_count> without_{};  // one set
+  std::array<ByRung, set_count> without_{};  // by the set that is left out
 };
 
 // Estimates the light that media scatter towards the eye until the eye path first scatters.
@@ -149,7 +151,7 @@ class VolumePilot {
 
   double radius() const {
     double widest = widest_part * static_cast<double>(job_.scene.bounding_sphere().radius);
-    // Where eye and light are in one place, any radius finds all beams.
+    // If eye and light are in one place, any radius finds all beams; hence the limit on halvings.
     for (int i = 0; i < most_halvings && found_by(estimates(widest, coarse_side)) > most_found; ++i) widest /= 2;
     return radius_of(widest, least_error(estimates(widest, side_for(estimator_))));
   }
@@ -202,9 +204,9 @@ class VolumePilot {
 
   // The rung whose estimate L_r of the light L has the least squared error after n passes, relative to the light,
   //   (E L_r - L)² + V(L_r) / n = (E L_r)² - 2 L E L_r + V(L_r) / n + L².
-  // L is not known; but to blur it by r is to blur it twice by r/√2, which can be done to one factor or to both, so
-  // that the sum of L E L_r over the paths is that of (E L_{r/√2})². That of V(L_r) is inverse to the kernel's size.
-  // Smaller radii than that of the least noise have to be significantly better: they find few photons.
+  // L is not known. But blurring by r equals blurring twice by r/√2, and each blur can be applied to either factor, so
+  // that the sum of L E L_r over the paths is that of (E L_{r/√2})². V(L_r) is inversely proportional to the kernel's
+  // size. Radii smaller than that of the least noise have to be significantly better, because they find few photons.
   std::size_t least_error(const std::vector<Estimates>& paths) const {
     const auto count = static_cast<double>(paths.size());
     double light = 0;

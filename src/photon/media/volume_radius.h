@@ -19,10 +19,10 @@ inline ParameterInfo volume_radius_info() {
 /// Empty: automatic.
 std::optional<float> volume_radius_parameter(const Parameters& parameters);
 
-/// The first radius of a volume estimator, m. 0 if it finds no photons in this scene. If it is not given, a pilot pass
-/// measures which radius has the least error, of blur and of noise, in what is seen: at most a tenth of the scene's
-/// radius. Depends on scene, view, seed and photon count only. `kernel`, `guide`: those of the passes, `guide` may be
-/// null; `first_depth`: as in `PhotonRule`.
+/// The first radius of a volume estimator, m. 0 if the estimator finds no photons in this scene. If `given` is empty, a
+/// pilot pass measures the radius with the least error, by blur and by noise, in the visible light: at most a tenth of
+/// the scene's radius. Depends on scene, view, seed and photon count only. `kernel`, `guide`: those of the passes,
+/// `guide` may be null; `first_depth`: as in `PhotonRule`.
 float first_volume_radius(const RenderJob& job, VolumeEstimator estimator, std::optional<float> given,
                           const Kernel& kernel, const LightGuide* guide, int first_depth = 2);
 

@@ -10,15 +10,15 @@ namespace lanthorn {
 
 /// An eye walk's light at a vertex in a medium.
 struct MediumLight {
-  DirectLight direct;      ///< single scattering, by next-event estimation; the walk's next ray has the rest of it
+  DirectLight direct;      ///< single scattering, by next-event estimation; the walk's next ray finds the rest
   GatheredLight gathered;  ///< by estimators at points
 };
 
 /// Divides the light of media between an eye walk and photons. Where the walk scatters in a medium, next-event
-/// estimation and the walk's next ray find single scattering, joined as ever. Photons give the share p of all other
+/// estimation and the walk's next ray find single scattering, combined by MIS. Photons give the share p of all other
 /// light (`gather_probability`), along each flight's whole way or at the point of scattering. With probability 1 - p
-/// the walk goes on for the rest; otherwise it is *gathered*: its next ray still finds lights, and what follows finds
-/// the emission of media that are no lights alone.
+/// the walk goes on for the rest. Otherwise it is *gathered*: its next ray still finds lights, and after that it finds
+/// only the emission of media that are not lights.
 class VolumeWalk {
  public:
   explicit VolumeWalk(const VolumeGather& volume) : volume_(&volume) {}
@@ -44,9 +44,9 @@ class VolumeWalk {
   }
 
   /// The answer of a gathered walk's visitor at a vertex.
-  Continuation follow_glow(const PathContext& path) {
+  Continuation follow_emission(const PathContext& path) {
     hits_are_known_ = true;
-    return path.scene.has_unlit_glow() ? Continuation::go_on() : Continuation::stop();
+    return path.scene.has_unlit_emission() ? Continuation::go_on() : Continuation::stop();
   }
 
  private:

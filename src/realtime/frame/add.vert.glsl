@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Light that the CPU has found, pixel by pixel, to be blended into that of the GPU (realtime/frame/specular_light.h).
+// Light that the CPU has found, pixel by pixel, to be blended into the GPU's layers (realtime/frame/specular_light.h).
 // Four texels for each pixel: emission, direct, indirect, caustic; a of the first two: the pixel.
 #include "constants.glsl"
 layout(binding = unit_eye_paths) uniform samplerBuffer pixels;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The environment where no surface is.
+// The environment in pixels that show no surface.
 #include "environment.glsl"
 layout(binding = unit_g_position) uniform sampler2D g_position;
 uniform vec3 corner, right, down;  // of the window: points at distance 1 along the axis, or the direction of all rays

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Light straight from the lights' views, shadowed by their maps or by traced rays.
+// Direct light by the lights' views, shadowed by their maps or by traced rays.
 #include "shade.glsl"
 #include "shadow_maps.glsl"
 uniform int view_count;

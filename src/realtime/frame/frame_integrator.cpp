@@ -26,7 +26,7 @@ namespace lanthorn {
 
 namespace {
 
-/// The layers of a frame and what they belong to, on the CPU.
+/// The layers of a frame and the surfaces that they show, on the CPU.
 struct FrameOnCpu {
   Image light;
   std::vector<glm::vec4> positions, colours;
@@ -82,7 +82,7 @@ void add_frame(const Renderer& renderer, const RenderJob& job, const FrameSettin
   });
 }
 
-/// Rays of the frame, by whom it was drawn, and what it took.
+/// The frame's counts of rays and photons, and its times.
 PassReport report_of(const FrameReport& frame) {
   PassReport report;
   report.rays.walk = frame.rays;

@@ -22,7 +22,7 @@ void clear(const gl::Framebuffer& target) {
   glClearNamedFramebufferfv(target.name(), GL_COLOR, 0, black.data());
 }
 
-// It moves by steps, so that maps and photons stay while the eye moves a little.
+// The focus moves in steps, so that maps and photons stay valid while the eye moves a little.
 std::optional<LightFocus> light_focus(const Scene& scene, const View& view) {
   constexpr float radius_by_distance = 1.25f, steps = 4;  // steps: of a radius
   const ViewFocus focus = focus_of(scene, view);

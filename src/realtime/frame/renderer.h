@@ -33,7 +33,7 @@ inline constexpr const char* eye_path_stage = "eye paths (CPU)";
 /// Most photons in the lights' maps of a frame.
 inline constexpr std::uint64_t most_frame_photons = std::uint64_t{1} << 24;
 
-/// What the maps of lights depend on, besides the scene.
+/// The data on which the maps of lights depend, besides the scene.
 struct LightKey {
   LightViewSettings views;
   std::uint32_t photons = 0;
@@ -54,7 +54,7 @@ class Renderer {
   void draw(const View& view, const FrameSettings& settings);
   /// Layers emission, direct, indirect, caustic of the last frame: channels emission.R ... caustic.B.
   Image read_layers() const;
-  /// Of the last frame; waits for the GPU.
+  /// Report on the last frame; waits for the GPU.
   FrameReport report();
 
   const GpuScene& gpu_scene() const { return gpu_scene_; }

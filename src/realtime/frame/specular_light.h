@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// What mirrors, glass and glossy surfaces show: paths of the CPU from the eye, which a rasteriser cannot follow. They
-// go on through delta lobes and, direction by direction, through narrow ones (LobeSplit); the frame's technique gives
-// the indirect light of wide lobes, as photons do in probppm.
+// Light of mirrors, glass and glossy surfaces: eye paths of the CPU, because a rasteriser cannot follow them. They go
+// on through delta lobes and, direction by direction, through narrow ones (LobeSplit); the frame's technique gives the
+// indirect light of wide lobes, as photons do in probppm.
 #pragma once
 
 #include <cstdint>
@@ -37,7 +37,7 @@ struct SpecularPaths {
   EyePaths eye_paths = all_eye_paths;
   bool disperses = true;               ///< as FrameSettings
   bool finds_indirect = true;          ///< false: direct light alone
-  std::function<VertexLight()> light;  ///< of the technique; is called if there are paths
+  std::function<VertexLight()> light;  ///< of the technique; called only if there are paths
 };
 
 /// The light of these paths, in layers by PathClass.

@@ -8,8 +8,8 @@ struct LightView {
   vec4 cone;    // 1 - cos of the angles where a spot's light begins to fall and ends; 1: square falloff; 1: all around
   uvec4 maps;   // first layer, number of layers, first photon, number of photons
   mat4 clip[most_windows];
-  // Of the layers' windows: directions, or points of parallel light. If that has two, the first covers some texels of the
-  // second.
+  // Directions of the layers' windows, or points of parallel light. If parallel light has two windows, the first covers
+  // some texels of the second.
   vec4 corner[most_windows];
   vec4 right[most_windows];
   vec4 down[most_windows];

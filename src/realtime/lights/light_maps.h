@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// What the lights see: the bounce maps of image-space photon mapping (McGuire & Luebke 2009), which are shadow maps,
-// too.
+// The lights' views of the scene: the bounce maps of image-space photon mapping (McGuire & Luebke 2009), which are
+// shadow maps, too.
 #pragma once
 
 #include <vector>
@@ -19,7 +19,7 @@ namespace lanthorn {
 class LightMaps {
  public:
   /// Draws the scene from all views into maps of `size` x `size` texels. `program`: scene.vert.glsl with
-  /// gbuffer.frag.glsl. `photons`: number of photons of each view, and of none if empty.
+  /// gbuffer.frag.glsl. `photons`: number of photons of each view; empty: no photons.
   void draw(const GpuScene& scene, const std::vector<LightView>& views, const std::vector<std::uint32_t>& photons,
             const gl::Program& program, int size);
   /// Binds views and maps for shaders that include light_views.glsl.

@@ -281,8 +281,9 @@ std::string unsupported_lights(const Scene& scene) {
   const auto count = static_cast<std::size_t>(
       std::count_if(scene.lights().begin(), scene.lights().end(), [](const Light& l) { return !has_view(l); }));
   if (count == 0) return {};
-  return fmt::format("{} light{} ignored: projected images, goniometric lights, portals and media light nothing here",
-                     count, count == 1 ? " is" : "s are");
+  return fmt::format(
+      "{} light{} ignored: projected images, goniometric lights, portals and emissive media are not supported", count,
+      count == 1 ? " is" : "s are");
 }
 
 }  // namespace lanthorn

@@ -30,10 +30,10 @@ struct LightView {
   float cone_start = 4, cone_end = 4;  ///< 1 - cos of a spot's angles; 4: no cone
   bool square_falloff = false;
   bool is_all_around = false;  ///< one direction of light all around
-  /// 6 of a cube around a point, 5 of those of a surface, 1 of others. Of parallel light in a large scene 2: the first
-  /// covers some texels of the second, exactly, around the focus.
+  /// The 6 faces of a cube around a point, 5 of them for a surface, otherwise 1. For parallel light in a large scene 2:
+  /// the first covers some whole texels of the second, around the focus.
   std::vector<WindowRays> windows;
-  float power = 0;  ///< W, luminance, at most this much leaves it; photons are shared by it
+  float power = 0;  ///< W, luminance: bound of the power that leaves it, by which photons are shared out
 };
 
 /// Where parallel light needs finer maps than those of the whole scene.
@@ -57,14 +57,15 @@ struct LightViewSettings {
   friend bool operator==(const LightViewSettings&, const LightViewSettings&) = default;
 };
 
-/// Views of the frame. Lights have one each, lights all around `sky_views`; if there are too many, some by chance in
-/// proportion to their power. Lights that stay dark are named in `ignored` (`unsupported_lights`).
+/// Views of the frame. Lights have one each, lights all around `sky_views`; if there are too many, some are chosen at
+/// random in proportion to their power. `unsupported_lights` names the lights that have no views.
 std::vector<LightView> light_views(const Scene& scene, const LightViewSettings& settings);
 
 /// Numbers of photons of the views, in proportion to their powers; their sum is `photons`, if any view has power.
 std::vector<std::uint32_t> share_photons(const std::vector<LightView>& views, std::uint32_t photons);
 
-/// Kinds of light of the scene that have no views: portals, projected images, media.
+/// A message on the lights that have no views (projected images, goniometric lights, portals, media); empty if there
+/// are none.
 std::string unsupported_lights(const Scene& scene);
 
 }  // namespace lanthorn

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// How much of the light of views arrives at a point, by their maps.
+// The fraction of the light of views that arrives at a point, by their maps.
 #include "bsdf.glsl"
 #include "light_views.glsl"
 layout(binding = unit_map_position) uniform sampler2DArray l_position;  // world; a: opacity, 0: nothing
@@ -19,9 +19,9 @@ vec3 place_in_map(int view, vec3 point) {
 
 const uint no_triangle = ~0u;
 
-// A surface in the map shadows the point if its tangent plane lies before the point on the way to the light, by more
-// than `slack` metres; unless both may be points of one convex surface, however large the texels: then each lies behind
-// the tangent plane of the other, about as far. The point's own triangle does not count. What the surface lets pass
+// A surface in the map shadows the point if its tangent plane lies between the point and the light, by more than
+// `slack` metres; unless both may be points of one convex surface, however large the texels: each then lies behind the
+// tangent plane of the other, about as far. The point's own triangle does not count. Light that the surface lets pass
 // arrives.
 float share_past(ivec3 texel, vec3 point, vec3 facing, uint triangle, vec3 towards, float slack) {
   vec4 seen = texelFetch(l_position, texel, 0);
@@ -53,8 +53,8 @@ float share_lit(int view, vec3 point, vec3 facing, uint triangle, vec3 towards, 
   float slack = max(least_slack, 0.001 * width);
   float at_middle = share_past(ivec3(place), point, facing, triangle, towards, slack);
   if (soft_edges == 0) return at_middle;
-  // Edges that run across the texels at a slant are then straight: the mean of four texels would still be wavy. Where
-  // the middle and the corners agree there is no edge.
+  // Edges that run obliquely across the texels then become straight: the mean of four texels would still be wavy. Where
+  // the middle and the corners agree, there is no edge.
   vec2 middle = floor(place.xy), f = place.xy - middle - 0.5;
   vec3 across = spline_weights(f.x), down = spline_weights(f.y);
   ivec2 last = textureSize(l_position, 0).xy - 1;

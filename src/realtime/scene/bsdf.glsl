@@ -11,7 +11,7 @@ layout(std430, binding = storage_materials) readonly buffer Materials { Material
 layout(binding = unit_surfaces) uniform sampler2DArray textures;
 layout(binding = unit_plastic_albedo) uniform sampler2D plastic_albedo;
 
-// Bits of the flags of materials that eye paths of the CPU draw, and what these bits are then (realtime/scene/gpu_scene.h).
+// Eye paths of the CPU draw materials whose flags, masked by the first, equal the second (realtime/scene/gpu_scene.h).
 uniform uint eye_paths_looked_at, eye_paths_wanted;
 bool is_drawn_by_paths(Material m) { return (m.flags & eye_paths_looked_at) == eye_paths_wanted; }
 
@@ -112,8 +112,8 @@ vec3 eval_bsdf(Surface at, vec3 wi, vec3 wo) {
   return vec3(0);
 }
 
-// Share of the light along the normal that is scattered: how important a photon is there. Of what the CPU draws, such
-// as hair, nothing is known here.
+// Share of the light along the normal that is scattered: the importance of a photon there. Unknown for materials that
+// the CPU draws, such as hair.
 vec3 rough_albedo(Surface at, float cos_i) {
   Material m = at.material;
   if (m.kind == kind_none || (m.flags & flag_traced) != 0u) return vec3(1);

@@ -19,7 +19,7 @@ const int unit_layer_direct = 12;
 const int unit_layer_indirect = 13;
 const int unit_layer_caustic = 14;
 const int unit_eye_paths = 15;    // SpecularLight
-const int unit_of_technique = 16;  // the first of those that each technique uses as it likes
+const int unit_of_technique = 16;  // the first of those that each technique assigns itself
 
 // Image units: that of a texture that a compute shader writes.
 const int image_of_technique = 0;
@@ -30,7 +30,7 @@ const int storage_indices = 1;
 const int storage_draws = 2;
 const int storage_materials = 3;
 const int storage_light_views = 4;    // LightMaps
-const int storage_of_technique = 5;  // the first of those that each technique uses as it likes
+const int storage_of_technique = 5;  // the first of those that each technique assigns itself
 
 // GpuMaterial::kind.
 const uint kind_diffuse = 0u;
@@ -46,7 +46,7 @@ const uint flag_traced = 8u;     // eye paths of the CPU find all of its light (
 const uint flag_lobes = 16u;     // `through` and f90 come from the next layer
 const uint flag_normals = 32u;   // normals come from the last of its layers
 const uint flag_stand_in = 64u;  // traced, but the shader's closure may stand for it while the eye moves
-const uint flag_glass = 128u;    // nothing but delta lobes, or lobes that shaders do not know
+const uint flag_glass = 128u;  // only delta lobes, or lobes that shaders do not support
 
 const uint no_layer = 0xffffffffu;  // of the surface textures: the surface does not vary
 

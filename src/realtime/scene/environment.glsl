@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The environment as it is seen, and blurred.
+// The environment as seen directly, and blurred.
 #include "constants.glsl"
 #include "pi.glsl"
 layout(binding = unit_environment) uniform sampler2D environment;  // equirectangular around +y
 
 vec2 place_in_environment(vec3 d) { return vec2(atan(d.z, d.x) / (2 * pi) + 0.5, acos(clamp(d.y, -1, 1)) / pi); }
 
-// About the mean over a cone.
+// The approximate mean over a cone.
 vec3 environment_in_cone(vec3 d, float tan_half_angle) {
   float texels = 2 * tan_half_angle * textureSize(environment, 0).x / (2 * pi);
   return textureLod(environment, place_in_environment(d), log2(max(texels, 1))).rgb;

@@ -24,7 +24,7 @@ class FrameHeroes {
         shift_(unit_float(second_sobol_coordinate(frame)) +
                unit_float(hash_words({seed, static_cast<std::uint64_t>(stream_of("wavelengths of a frame"))}))) {}
 
-  /// Of the path through a pixel.
+  /// Wavelengths of the path through a pixel.
   Wavelengths of_pixel(int x, int y) const {
     // Roberts' plane-filling sequence: the fractional parts of these multiples are even in any small block.
     return at(0.7548777 * x + 0.5698403 * y);

@@ -54,7 +54,7 @@ vec4 pattern_of(Draw d) {
   return vec4(1);
 }
 
-// In [0,1), of this triangle in this pixel of this frame.
+// Random number in [0,1) of this triangle in this pixel of this frame.
 float uniform_number() {
   uvec4 bits = pcg4d(uvec4(uvec2(gl_FragCoord.xy), draw ^ uint(gl_PrimitiveID) << 12u, frame));
   return float(bits.x >> 8u) / 16777216.0;
@@ -66,7 +66,7 @@ void main() {
   vec4 pattern = pattern_of(d);
 #ifdef HAS_PATTERNS
 #ifdef EYE
-  // Eye paths draw also what is seen through their surfaces.
+  // Eye paths also draw what shows through their surfaces.
   if (pattern.a <= (is_drawn_by_paths(m) ? 0 : uniform_number())) discard;
 #else
   if (pattern.a <= 0) discard;

@@ -7,7 +7,7 @@
 
 namespace lanthorn {
 
-/// What the eye sees in each pixel. The first row is the upper one of the picture. See gbuffer.glsl.
+/// The surfaces that the eye sees, by pixel. The first row is the upper one of the picture. See gbuffer.glsl.
 class GBuffer {
  public:
   GBuffer() = default;

@@ -193,9 +193,9 @@ void GpuScene::make_patterns(const Scene& scene, const std::vector<const ShapeSt
   for (GpuDraw& draw : draw_data_) {
     const ShapeStore* shape = shapes[draw.mesh];
     const std::uint32_t light = draw.first_light;
-    const bool has_glow = shape->record.emits && has_picture(scene, light);
+    const bool has_emission = shape->record.emits && has_picture(scene, light);
     if (shape->record.emits) draw.emission = largest_emission(scene, light);
-    if (!has_glow && !is_cut_out(*shape)) continue;
+    if (!has_emission && !is_cut_out(*shape)) continue;
     const auto found = layer_of_mesh.find(draw.mesh);
     if (found == layer_of_mesh.end() && layers.size() == most_layers) {
       has_more = true;
@@ -204,9 +204,9 @@ void GpuScene::make_patterns(const Scene& scene, const std::vector<const ShapeSt
     draw.layer = found != layer_of_mesh.end() ? found->second : static_cast<std::uint32_t>(layers.size());
     if (found != layer_of_mesh.end()) continue;
     layer_of_mesh[draw.mesh] = draw.layer;
-    layers.emplace_back([&scene, shape, has_glow, light, largest = Vec3(draw.emission)](const Vec2& uv) {
-      const Vec3 glow = has_glow ? Vec3(emission_of(scene, light, uv)) / max(largest, Vec3(1e-20f)) : Vec3(1);
-      return glm::vec4(glow, opacity_at(*shape, uv));
+    layers.emplace_back([&scene, shape, has_emission, light, largest = Vec3(draw.emission)](const Vec2& uv) {
+      const Vec3 emitted = has_emission ? Vec3(emission_of(scene, light, uv)) / max(largest, Vec3(1e-20f)) : Vec3(1);
+      return glm::vec4(emitted, opacity_at(*shape, uv));
     });
   }
   if (has_more)

@@ -20,10 +20,10 @@
 
 namespace lanthorn {
 
-/// Which materials eye paths draw: those of whose flags the bits `looked_at` are `wanted`.
+/// The materials that eye paths draw: those whose flags, masked by `looked_at`, equal `wanted`.
 struct EyePaths {
   std::uint32_t looked_at = 0, wanted = 0;
-  bool has_mirrors = false;  ///< and the delta lobes of others
+  bool has_mirrors = false;  ///< also the delta lobes of other materials
 
   friend bool operator==(const EyePaths&, const EyePaths&) = default;
 };
@@ -49,7 +49,7 @@ struct DrawCommand {
   std::uint32_t count = 0, instances = 1, first_index = 0, base_vertex = 0, draw = 0;
 };
 
-/// Immutable but for the places of instances and the colours of lights.
+/// Immutable except for the places of instances and the colours of lights.
 class GpuScene {
  public:
   /// A context must be current. Reads no files.
@@ -67,7 +67,7 @@ class GpuScene {
   const BoundingSphere& sphere() const { return sphere_; }
   /// Largest distance of a triangle from the surface that it stands for, m.
   float largest_slack() const;
-  /// What of the scene the GPU shows differently, for the user; empty if nothing.
+  /// What the GPU shows differently from the scene, as text for the user; empty if nothing.
   const std::vector<std::string>& limitations() const { return limitations_; }
   /// Another number whenever places or materials may have changed; from 1 on.
   std::uint64_t surface_version() const { return surface_version_; }

@@ -22,7 +22,7 @@ struct Material {
   uint unused;
 };
 
-// A mesh in a place.
+// A placed mesh.
 struct Draw {
   mat4 to_world;
   mat4 normal_to_world;  // inverse transpose

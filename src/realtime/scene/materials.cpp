@@ -64,8 +64,8 @@ GpuMaterial reduced(const Plastic& p) {
   return plastic_of(p.reflectance, p.f0, p.f90, p.alpha, p.film || smooth ? 0u : gpu::flag_exact);
 }
 
-/// Of glass nothing is left but what the split sum takes: what it reflects and refracts is delta, or takes paths. Split
-/// terms know nothing of hair.
+/// Glass keeps only what the split sum uses: its reflection and refraction are delta or need paths. Hair has no split
+/// terms.
 template <class Closure>
 GpuMaterial reduced(const Closure& closure) {
   constexpr bool is_glass = std::is_same_v<Closure, Dielectric> || std::is_same_v<Closure, ThinDielectric>;
@@ -131,15 +131,15 @@ bool differs(const std::vector<GpuMaterial>& probes, const auto& property) {
                      [&](const GpuMaterial& m) { return property(m) != property(probes.front()); });
 }
 
-/// What lobes that vary are stored as: plastics, or what diffuse surfaces reflect and transmit.
+/// How varying lobes are stored: as plastics, or as reflectance and transmittance of diffuse surfaces.
 GpuMaterial with_lobes(const GpuMaterial& m, bool are_diffuse) { return are_diffuse ? m : as_plastic(m); }
 
 float least_alpha_of(bool has_infinite_lights) {
   return has_infinite_lights ? least_alpha_under_sky : half_spread_alpha;
 }
 
-/// True if the GPU nearly draws what the material shows, though `needs_eye_paths`: no glass or hair, and at most a
-/// quarter of it bright and narrow lobes, as those of polished metal, which would be black.
+/// True if the GPU can approximate a material for which `needs_eye_paths` is true: no glass or hair, and at most a
+/// quarter of it bright and narrow lobes, such as those of polished metal, which would be black.
 bool has_stand_in(const std::vector<GpuMaterial>& probes, bool has_infinite_lights) {
   constexpr float bright = 0.3f;
   const auto is_known = [](const GpuMaterial& m) {

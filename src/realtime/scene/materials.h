@@ -11,16 +11,16 @@
 
 namespace lanthorn {
 
-/// The closure as bsdf.glsl knows it. Exact: Lambertian reflection and transmission, metals of one width,
-/// plastics without film. Other closures become plastics by their split-sum terms; glass and mirrors have no lobe that
-/// shaders evaluate.
+/// The closure as bsdf.glsl represents it. Exact: Lambertian reflection and transmission, metals of one width, plastics
+/// without film. Other closures become plastics by their split-sum terms; glass and mirrors have no lobe that shaders
+/// evaluate.
 GpuMaterial reduce(const Bsdf& bsdf);
 
 /// The closure as a plastic with the same reflectance at normal incidence.
 GpuMaterial as_plastic(const GpuMaterial& m);
 
-/// Material `material` at texture coordinates (u, v); position and normal are none in particular. A mix becomes one
-/// plastic: shares of its parts' reflectances, and the mean of their widths.
+/// Material `material` at texture coordinates (u, v), at an arbitrary position and normal. A mix becomes one plastic:
+/// shares of its parts' reflectances, and the mean of their widths.
 GpuMaterial material_at(const Scene& scene, std::uint32_t material, const Vec2& uv);
 
 /// `#define` lines for shaders that include bsdf.glsl: they remove what no material has, of closures and textures.
@@ -33,12 +33,12 @@ struct SurfaceMaterial {
 };
 SurfaceMaterial surface_material(const Scene& scene, std::uint32_t material);
 
-/// Of narrower lobes the few directions of a frame from which infinite lights shine show too little.
+/// Below this GGX width, a frame's few directions of infinite lights under-sample the lobe.
 inline constexpr float least_alpha_under_sky = 0.3f;
 
-/// True if the GPU cannot draw what the material shows. It is glass or hair; or some of its lobes are narrow: few
-/// photons meet them, and of infinite lights the few directions of a frame miss lobes that are wider still; or textures
-/// vary the Fresnel term of its lobes, as metalness does: what the GPU knows then is an approximation.
+/// True if the GPU cannot draw the material accurately. It is glass or hair; or it has narrow lobes, which few photons
+/// meet (under infinite lights also somewhat wider lobes, which the few directions of a frame miss); or textures vary
+/// the Fresnel term of its lobes, as metalness does, which the GPU approximates.
 bool needs_eye_paths(const std::vector<GpuMaterial>& probes, bool has_infinite_lights);
 
 /// Albedo of GGX reflection with Schlick's Fresnel term, for plastics: scale of f0 and of f90 by cosine and width, and

@@ -68,7 +68,8 @@ WindowRays window_rays(const View& view, const Vec2& offset, const Vec2& u_lens,
   if (a.origin != b.origin || a.origin != c.origin || a.origin != d.origin)
     throw Error("a rasteriser draws for perspective and orthographic cameras only");
   set_perspective(rays, a.direction, b.direction, c.direction, d.direction);
-  // Of a spherical camera, too, all rays start at one point; but its middle is not that of the corners.
+  // All rays of a spherical camera start at one point, too, but its central ray is not the one in the middle of the
+  // corners.
   const Vec2 middle =
       0.5f * Vec2(static_cast<float>(w.x0 + w.x0 + w.width()), static_cast<float>(w.y0 + w.y0 + w.height()));
   const Direction centre = view.camera.sample_ray(middle + offset, u_lens, time).ray.direction;

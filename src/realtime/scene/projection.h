@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// What a rasteriser needs of a camera, or of the view from a light.
+// The view of a camera, or from a light, in the form that a rasteriser needs.
 #pragma once
 
 #include "camera/view.h"

@@ -12,7 +12,7 @@ flat out uint draw;
 
 void main() {
   Draw d = draws[draw_number];
-  // Triangles that stand for a round shape are moved out, so that no point of theirs lies inside it.
+  // Triangles that approximate a round shape are moved outwards, so that none of their points lies inside it.
   vec3 local = position_u.xyz;
   position = (d.to_world * vec4(local, 1)).xyz;
   normal = (d.normal_to_world * vec4(normal_v.xyz, 0)).xyz;

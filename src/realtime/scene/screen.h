@@ -7,7 +7,7 @@
 
 namespace lanthorn {
 
-/// The triangle of screen.vert.glsl, which covers all pixels of what is drawn into.
+/// The triangle of screen.vert.glsl, which covers all pixels of the render target.
 class Screen {
  public:
   Screen() : no_vertices_(gl::make_vertex_array()) {}

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// What varies over surfaces, for the GPU: layers of one texture over the unit square of (u, v), which repeats.
+// Properties that vary over surfaces, for the GPU: layers of one texture over the unit square of (u, v), which repeats.
 #pragma once
 
 #include <cstdint>

@@ -20,7 +20,7 @@ float median(std::vector<float> values) {
   return *middle;
 }
 
-// What 64 rays in the middles of as many parts of the window meet first.
+// The first hits of 64 rays through the middles of as many parts of the window.
 std::vector<Point> seen_points(const Scene& scene, const WindowRays& rays, float time) {
   constexpr int rows = 8;
   std::vector<Point> seen;

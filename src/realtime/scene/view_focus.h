@@ -9,16 +9,16 @@
 
 namespace lanthorn {
 
-/// Where a view shows detail: around its eye, or, of parallel rays, around the median of what they see.
+/// Where a view shows detail: around its eye; for parallel rays, around the median of the points that they see.
 struct ViewFocus {
   Point centre{0};
-  float distance = infinity;  ///< median distance of what is seen from the centre, m; infinity: nothing is seen
+  float distance = infinity;  ///< median distance of visible points from the centre, m; infinity: nothing is visible
 };
 
-/// By 64 rays through a view at rest, so that it is the same for all of its frames.
+/// Found by 64 rays through a view at rest, so that it is the same for all frames of the view.
 ViewFocus focus_of(const Scene& scene, const View& view);
 
-/// Radius of what is seen, m: that of the scene, or, of a small thing in a large place, four times the distance.
+/// Radius of the visible region, m: the scene's, or four times the distance of a small thing in a large place.
 float seen_radius(const Scene& scene, const View& view);
 
 }  // namespace lanthorn

@@ -45,7 +45,7 @@ struct FrameSettings {
   Vec2 lens{0.5f};                ///< point of the lens, in [0,1)²
   float time = 0;                 ///< of the camera, s
   int eye_path_spacing = 1;       ///< SpecularPaths::spacing
-  /// For an eye that moves: the GPU draws materials that it knows nearly, instead of eye paths, whose light has noise.
+  /// For a moving eye: the GPU approximates some materials instead of drawing them by eye paths, whose light has noise.
   bool has_stand_ins = false;
   /// Paths through dispersive glass have wavelengths of their own, and their colours. A single frame shows these as
   /// coloured noise. False: glass without dispersion.
@@ -58,7 +58,7 @@ struct FrameSettings {
   LightViewSettings views;
 };
 
-/// What happened in a frame.
+/// Statistics of a frame.
 struct FrameReport {
   std::vector<gl::StageTime> stages;  ///< on the GPU; then those of the CPU, which run beside it
   std::vector<std::uint64_t> photons_per_bounce;
@@ -76,7 +76,7 @@ struct LightTargets {
   gl::Framebuffer direct, indirect, caustic;
 };
 
-/// What a technique sees of a frame.
+/// Data of a frame for a technique.
 struct FrameContext {
   const FrameSettings& settings;
   const Scene& scene;

@@ -31,27 +31,27 @@ class TechniqueChoice;
 using VertexLight =
     std::function<void(const SurfaceVertex& vertex, const LobeSplit& split, int max_depth, LightLayers& layers)>;
 
-/// What a technique makes of scene and GPU outlives a frame. All that a frame shows is a function of its context.
+/// A technique keeps data made of scene and GPU between frames. What a frame shows is a function of its context alone.
 class Technique {
  public:
   virtual ~Technique() = default;
 
-  /// Called when the lights' maps are drawn and before the G-buffer is, which the GPU may draw while the CPU waits for
-  /// what this has begun.
+  /// Called after the lights' maps are drawn and before the G-buffer, which the GPU may draw while the CPU waits for
+  /// the work begun here.
   virtual void prepare(const FrameContext& /*frame*/) {}
   /// Adds the technique's light to the layers of the frame. G-buffer and direct light are drawn.
   virtual void draw(const FrameContext& frame) = 0;
-  /// What eye paths find at their vertices; empty: nothing. Called after `draw`, if there are eye paths.
+  /// The technique's light at vertices of eye paths; empty: none. Called after `draw`, if there are eye paths.
   virtual VertexLight light_at_vertices(const FrameContext& /*frame*/) { return {}; }
 };
 
-/// What a technique makes its programs of.
+/// The sources of a technique's shader programs.
 struct TechniqueShaders {
   const gl::ShaderFiles& files;
   const std::string& surfaces;  ///< lines for shaders that include bsdf.glsl (`closure_defines`)
 };
 
-/// What a technique wants of the rest of the frame.
+/// A technique's requirements on the rest of the frame.
 struct FramePlan {
   EyePaths eye_paths = all_eye_paths;
   EyePaths eye_paths_in_motion = needed_eye_paths;  ///< with FrameSettings::has_stand_ins
@@ -68,14 +68,13 @@ struct TechniqueInfo {
   TechniqueDescription description;
   std::unique_ptr<Technique> (*make)(const TechniqueShaders& shaders) = nullptr;
   FramePlan (*plan)(const FrameSettings& settings) = [](const FrameSettings&) { return FramePlan{}; };
-  /// Values for parameters that are "auto", by what a view shows; null: it has none.
+  /// Values for parameters that are "auto", chosen for a view; null: the technique has no such parameters.
   ParameterValues (*fit_view)(const Scene& scene, const View& view) = nullptr;
   /// The same for a render, which may measure them.
   ParameterValues (*fit_render)(const RenderJob& job) = nullptr;
   /// Throws Error for values that do not go together.
   void (*check)(const TechniqueChoice& choice) = nullptr;
-  /// For the user: what of this scene it shows differently than the offline methods do. `gpu_scene`: null before there
-  /// is one.
+  /// Differences from the offline methods in this scene, as text for the user. `gpu_scene`: null before there is one.
   std::vector<std::string> (*limitations)(const Scene& scene, const GpuScene* gpu_scene) = nullptr;
 };
 
@@ -89,8 +88,8 @@ const TechniqueInfo* find_technique(const std::string& name);
 /// A technique with values of its parameters.
 class TechniqueChoice {
  public:
-  /// Those that are not set have the defaults of `render`. Throws Error for unknown names of technique or parameters,
-  /// and for values that a parameter does not take.
+  /// Parameters that are not set have the defaults of `render`. Throws Error for unknown names of technique or
+  /// parameters, and for values that a parameter does not take.
   explicit TechniqueChoice(const std::string& name = "direct", const ParameterValues& set = {});
 
   const TechniqueInfo& info() const { return *info_; }

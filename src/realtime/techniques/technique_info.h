@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// A technique as users see it. Plain data: the window, which links nothing of the library, shows it, too.
+// A technique as users see it. Plain data, because the window, which links nothing of the library, shows it, too.
 #pragma once
 
 #include <cstdint>
@@ -30,11 +30,11 @@ struct PanelControl {
   bool is_length = false;  ///< low and high are shares of the scene's radius
 };
 
-/// A parameter of a technique: `--set`, the panel and the documents say of it what stands here.
+/// A parameter of a technique, as `--set`, the panel and the documents describe it.
 struct TechniqueParameter {
   ParameterInfo info;                ///< default: of `render`
-  std::string viewer_default{};      ///< empty: that of `render`
-  std::vector<std::string> words{};  ///< that it takes. "auto": a value that fits scene and view
+  std::string viewer_default{};      ///< empty: the default of `render`
+  std::vector<std::string> words{};  ///< accepted words. "auto": a value that fits scene and view
   std::optional<NumberRange> numbers{};
   std::optional<PanelControl> control{};  ///< none: the panel does not show it
 

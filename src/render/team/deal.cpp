@@ -39,7 +39,7 @@ bool Deal::is_done(std::uint64_t pass) const {
 
 bool Deal::must_stop(double seconds) const {
   if (stop_.drop && stop_.drop->load()) return true;
-  // At least one pass is rendered, however early the stop: there must be a picture.
+  // At least one pass is rendered, however early the stop, because there must be a picture.
   return dealt_ > 0 &&
          ((stop_.interrupted && stop_.interrupted->load()) || (stop_.seconds && seconds >= *stop_.seconds));
 }

@@ -17,7 +17,7 @@ namespace lanthorn {
 /// The sums of a round. A process that has rendered no pass of the round has none.
 using RoundSums = std::optional<RenderState>;
 
-/// The same as bytes of a state; empty if there are none. `name` is that of the process in messages.
+/// The same sums as the bytes of a state; empty if there are none. `name`: of the process, in messages.
 struct PackedSums {
   std::vector<std::byte> bytes;
   std::string name;
@@ -74,8 +74,8 @@ class TreeCheck {
  public:
   TreeCheck(int size, int awaited_at_first);
 
-  /// What process `rank` says: the rank that it passes its sums on to, and the number of children it waits for. Throws
-  /// Error once all have joined if they do not agree.
+  /// Takes the statement of process `rank`: the rank that it passes its sums on to, and the number of children it waits
+  /// for. Throws Error once all have joined if they do not agree.
   void join(int rank, std::uint64_t parent, std::uint64_t awaited);
 
  private:

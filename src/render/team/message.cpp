@@ -34,7 +34,7 @@ std::vector<std::byte> encode(const Message& message) {
 
 Message decode_message(std::span<const std::byte> bytes) {
   if (bytes.size() < head_bytes || bytes[0] > static_cast<std::byte>(MessageKind::sums))
-    throw Error("a process of the team sent what is no message; do all run the same program?");
+    throw Error("a process of the team sent an invalid message; do all processes run the same program?");
   Message message;
   message.kind = static_cast<MessageKind>(bytes[0]);
   std::memcpy(&message.a, &bytes[1], sizeof message.a);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// What the processes of a team tell each other.
+// Messages between the processes of a team.
 #pragma once
 
 #include <cstddef>

@@ -38,7 +38,7 @@ void tip(const char* text) {
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", text);
 }
 
-// Of a method as the list shows it.
+// The title of a method in the list.
 std::string title_of(const Panel& panel, std::size_t method) {
   return method < panel.techniques.size() ? panel.techniques[method].title
                                           : panel.methods[method] + "  (offline, refines)";

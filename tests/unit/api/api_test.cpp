@@ -277,7 +277,7 @@ TEST(Api, PhotonsAreArrays) {
   for (const lanthorn::Direction& d : photons.directions) ASSERT_NEAR(glm::dot(d, d), 1, 1e-2f);
 }
 
-// A ball of one colour that glows inside: what rays meet, how it scatters, and L = E / (1 - rho).
+// A sphere that emits inwards and has one reflectance: what rays meet, how it scatters, and L = E / (1 - rho).
 TEST(Api, RaysInAFurnace) {
   const lanthorn::test::TemporaryDir dir;
   const SharedScene scene =

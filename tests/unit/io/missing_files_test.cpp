@@ -170,7 +170,7 @@ TEST_F(MissingFiles, TexturesOfGltfHaveTheNeutralValueOfTheirRole) {
   ReadOptions skip;
   skip.skip_missing = true;
   const SceneDescription dark = read_scene(models + "emissive-missing.gltf", skip);
-  EXPECT_TRUE(dark.area_lights.empty()) << "does not glow";
+  EXPECT_TRUE(dark.area_lights.empty()) << "does not emit";
   EXPECT_EQ(std::get<description::RgbSpectrum>(
                 std::get<description::PlasticMaterial>(dark.materials.at(0).node).reflectance.value)
                 .rgb,

@@ -380,7 +380,7 @@ TEST(StandIns, ClosedBoxesWithALampInsideAreSeenFromInside) {
   add_lamp(lit, {0, 1.99f, 0});
   EXPECT_TRUE(is_inside(seen_in_own_light(lit), half)) << "empty, and as high as wide";
   lit.area_lights[0].radiance.value = RgbSpectrum{{1, 1, 1}};
-  EXPECT_FALSE(is_inside(seen_in_own_light(lit), half)) << "a glow";
+  EXPECT_FALSE(is_inside(seen_in_own_light(lit), half)) << "too dim";
   // A bulb, and one in a ball that is not clear.
   for (const bool is_clear : {true, false}) {
     SceneDescription bulb = cube({sphere({0, 1, 0}, 0.4f)});
@@ -551,7 +551,7 @@ TEST(StandIns, ASceneIsLitByLampsThatSendEnoughLight) {
   };
   EXPECT_TRUE(is_lit(2, 0.3f, true));   // 18 % of the light of a sky
   EXPECT_FALSE(is_lit(2, 0.1f, true));  // 2 %
-  EXPECT_FALSE(is_lit(1, 0.9f, true));  // a glow
+  EXPECT_FALSE(is_lit(1, 0.9f, true));  // too dim
   EXPECT_TRUE(is_lit(100, 0.03f, true));
   EXPECT_FALSE(is_lit(100, 1, false));  // nothing to be lit
 }

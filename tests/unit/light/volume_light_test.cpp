@@ -37,7 +37,7 @@ const Medium& flame() {
 VolumeLight light_of_flame() {
   const MediumBox place = *box_of(flame());
   BlockGrid emission(place.box, 4, [](const Bounds& block) { return block.min.y < 0 ? 1.0f : 0.0f; });
-  return {&flame(), std::make_shared<const GlowTable>(std::move(emission), place), 1, 1};
+  return {&flame(), std::make_shared<const EmissionTable>(std::move(emission), place), 1, 1};
 }
 
 constexpr int samples = 200'000;

@@ -455,8 +455,8 @@ TEST(SceneMaterials, RefusesDeepAndDoublingMixes) {
     text += fmt::format("NamedMaterial \"m{}\"\n", last);
     return test::error_text([&] { EXPECT_TRUE(at_uv(world(text + unit_quad), 0.5f, 0.5f)); });
   };
-  const std::string deep = "mixes of materials name each other more than 256 deep",
-                    costly = "this mix takes more than 1000 lookups: each part counts as often as others name it";
+  const std::string deep = "mix materials are nested more than 256 deep",
+                    costly = "this mix takes more than 1000 lookups: a material counts once for each reference to it";
   const std::string half = "\"float amount\" 0.5";
   EXPECT_EQ(error_of(256, false, half), "no error");
   EXPECT_EQ(error_of(10'000, false, half), "test scene:261:1: " + deep);

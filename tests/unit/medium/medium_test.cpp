@@ -121,13 +121,13 @@ TEST(Homogeneous, InfiniteSegmentsEnd) {
   EXPECT_TRUE(chromatic().fly(infinity, Spectrum(1, 0, 0, 0), rgb, rng).distance);
 }
 
-// An infinitely deep glowing medium without scattering has its emission as radiance; a thin one sigma_a L_e length.
-TEST(Homogeneous, GlowIsTheEmissionIntegral) {
+// An infinitely deep emissive medium without scattering has its emission as radiance; a thin one sigma_a L_e length.
+TEST(Homogeneous, EmissionIsIntegratedAlongTheRay) {
   HomogeneousMedium m = chromatic();
   m.emission = SpectrumCurve::constant(3);
   m.sigma_s = SpectrumCurve::constant(0);
-  EXPECT_NEAR(m.glow(infinity, rgb).emitted[1], 3, 1e-5);
-  EXPECT_NEAR(m.glow(0.01f, rgb).emitted[1], 3 * (1 - std::exp(-0.005)), 1e-5);
+  EXPECT_NEAR(m.emission_along(infinity, rgb).emitted[1], 3, 1e-5);
+  EXPECT_NEAR(m.emission_along(0.01f, rgb).emitted[1], 3 * (1 - std::exp(-0.005)), 1e-5);
 }
 
 // A density that varies by a factor of 40 along the way, in a box that the segment enters and leaves.
@@ -219,8 +219,8 @@ TEST(Varying, CloudsStayBelowTheirBound) {
   EXPECT_EQ(cloud.at(Point(0.5f, 0.2f, -0.01f)), 0);
 }
 
-// A black body of a temperature given everywhere glows with that colour, absorbed on the way out.
-TEST(Varying, BlackBodiesGlow) {
+// A medium at a temperature emits as a black body, and absorbs part of its emission on the way out.
+TEST(Varying, BlackBodiesEmit) {
   DensityMedium m = varied();
   m.density = GridDensity{{{1, 1, 1}, {1}, {Point(-100), Point(100)}}};
   m.majorants = BlockGrid({Point(-100), Point(100)}, 16, [](const Bounds&) { return 1.0f; });
@@ -230,17 +230,17 @@ TEST(Varying, BlackBodiesGlow) {
   m.emission = BlackbodyEmission{GridDensity{{{1, 1, 1}, {3000}, {Point(-100), Point(100)}}}, 0, 1, 2};
   const Wavelengths w = Wavelengths::spectral(0.3f);
   HashRng rng(9);
-  std::array<Mean, 4> glow;
+  std::array<Mean, 4> mean;
   const Medium medium = m;
   for (int i = 0; i < 20'000; ++i) {
-    const Spectrum emitted = glow_along(medium, {Point(0), Vec3(0, 0, 1), 1}, w, rng).emitted;
-    for (unsigned c = 0; c < 4; ++c) glow[c].add(static_cast<double>(emitted[static_cast<int>(c)]));
+    const Spectrum emitted = emission_along(medium, {Point(0), Vec3(0, 0, 1), 1}, w, rng).emitted;
+    for (unsigned c = 0; c < 4; ++c) mean[c].add(static_cast<double>(emitted[static_cast<int>(c)]));
   }
   for (unsigned c = 0; c < 4; ++c) {
     const auto planck = [](double nm) { return 1 / (std::pow(nm, 5) * std::expm1(1.438776877e7 / (nm * 3000))); };
     const double expected =
         2 * planck(static_cast<double>(w.lambda[c])) / planck(2.897771955e6 / 3000) * (1 - std::exp(-1.0));
-    EXPECT_NEAR(glow[c].mean(), expected, 5 * glow[c].error() + 0.01 * expected) << c;
+    EXPECT_NEAR(mean[c].mean(), expected, 5 * mean[c].error() + 0.01 * expected) << c;
   }
 }
 

@@ -72,8 +72,8 @@ Material "mix" "string materials" ["plaster" "metal"] "texture amount" "halves"
       "Material \"diffuse\" \"rgb reflectance\" [.7 .7 .7] \"string normalmap\" \"" + normal_map(folder) + "\"\n" +
       square(1.2f, 1.2f) + R"(
 AttributeBegin
-Texture "glow" "spectrum" "bilerp" "rgb v00" [.1 .2 .3] "rgb v10" [5 1 2] "rgb v01" [2 7 1] "rgb v11" [9 3 8]
-AreaLightSource "diffuse" "texture L" "glow" "bool twosided" true
+Texture "window" "spectrum" "bilerp" "rgb v00" [.1 .2 .3] "rgb v10" [5 1 2] "rgb v01" [2 7 1] "rgb v11" [9 3 8]
+AreaLightSource "diffuse" "texture L" "window" "bool twosided" true
 Material "diffuse" "rgb reflectance" [.1 .1 .1]
 )" + square(-1.2f, -1.2f) +
       "AttributeEnd\nMaterial \"diffuse\" \"rgb reflectance\" [.1 .2 .9] \"string normalmap\" \"" + normal_map(folder) +

@@ -46,8 +46,8 @@ TEST(MediaCheck, FindsNothingWhereMediaFit) {
 }
 
 std::string misfit(const std::string& place, const std::string& around, const std::string& claimed) {
-  return "test scene:" + place + ": rays get here through " + around + " where the shape says that " + claimed +
-         " is: is it inside out, or does what is around it, or the camera, lack a medium?";
+  return "test scene:" + place + ": rays get here through " + around + ", but the shape declares " + claimed +
+         " here: is the shape inside out, or does a surrounding shape, or the camera, lack a medium?";
 }
 
 TEST(MediaCheck, FindsShapesThatAreInsideOut) {
@@ -74,15 +74,15 @@ std::string all_warnings_of(const std::string& directives, const std::string& he
 
 TEST(MediaCheck, SaysWhereLightsAndCamerasAreTakenToBe) {
   const std::string lamp = floor_of_fog + "LightSource \"point\" \"point3 from\" [0 1 0]\n";
-  EXPECT_EQ(
-      all_warnings_of(ball(lamp)),
-      "test scene:10:1: light from here is said to start in vacuum, but shapes say that medium \"fog\" is around it: "
-      "it starts there\n");
+  EXPECT_EQ(all_warnings_of(ball(lamp)),
+            "test scene:10:1: the light is declared to be in vacuum, but the shapes around it put it in medium "
+            "\"fog\", which "
+            "is used\n");
   EXPECT_EQ(all_warnings_of(ball(in_fog + lamp)), "");
-  EXPECT_EQ(
-      all_warnings_of(ball(in_fog + lamp), "LookAt 0 0 1  0 0 0  0 1 0\nCamera \"perspective\""),
-      "test scene:3:1: the camera is said to be in vacuum, but shapes say that medium \"fog\" is around it: it is "
-      "there\n");
+  EXPECT_EQ(all_warnings_of(ball(in_fog + lamp), "LookAt 0 0 1  0 0 0  0 1 0\nCamera \"perspective\""),
+            "test scene:3:1: the camera is declared to be in vacuum, but the shapes around it put it in medium "
+            "\"fog\", which "
+            "is used\n");
   // A shape that contradicts the others: what is claimed counts.
   const std::string inside_out =
       "MediumInterface \"fog\" \"\" Material \"dielectric\" Shape \"sphere\" \"float radius\" 0.5\n";
@@ -96,7 +96,7 @@ TEST(MediaCheck, SaysWhereLightsAndCamerasAreTakenToBe) {
 TEST(MediaCheck, FindsLightsWithoutTheirMedium) {
   const std::string message =
       ": light from here starts in vacuum, but rays get here through medium \"fog\": give the light the "
-      "MediumInterface of what is around it";
+      "MediumInterface of its surroundings";
   EXPECT_EQ(warning_of(ball(floor_of_fog + "AreaLightSource \"diffuse\"\nShape \"sphere\" \"float radius\" 0.3\n")),
             "test scene:11:1" + message);
 }

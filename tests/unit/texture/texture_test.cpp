@@ -336,7 +336,7 @@ TEST(TextureGraph, RefusesDeepChains) {
       } else {
         EXPECT_TRUE(std::isfinite(deepest.colour(at_point(Point(0)), 255).r));
       }
-      const std::string message = ": textures name each other more than 256 deep";
+      const std::string message = ": textures are nested more than 256 deep";
       EXPECT_EQ(test::error_text([&] { Textures deep(chain(c.kind, c.once, 10'000, type)); }),
                 "t.pbrt:258:1" + message);
       EXPECT_EQ(error_of_last(chain(c.kind, c.once, 10'000, type)), "t.pbrt:9746:1" + message);
@@ -345,7 +345,7 @@ TEST(TextureGraph, RefusesDeepChains) {
 
 TEST(TextureGraph, RefusesDoublingChains) {
   const std::string message =
-      ":1: a value of this texture takes more than 1000 lookups: each texture counts as often as others name it";
+      ":1: a value of this texture takes more than 1000 lookups: a texture counts once for each reference to it";
   for (const std::string type : {"float", "spectrum"})
     for (const Chain& c : chains) {
       if (c.twice.empty()) continue;

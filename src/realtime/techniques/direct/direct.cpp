@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// No light but that of the lights.
+// Direct light alone: adds nothing to the frame.
 #include "realtime/techniques/frame_context.h"
 
 namespace lanthorn {

@@ -14,7 +14,7 @@ layout(std430, binding = storage_row_sums) buffer RowSums { float row_sums[]; };
 
 const vec3 luminance_weights = vec3(0.2126, 0.7152, 0.0722);
 
-// What of a window of a view all its texels share: loops over texels read it once.
+// Data that all texels of a view's window share, so that loops over texels read them once.
 struct Window {
   vec3 corner, right, down;
   ivec4 finer;  // texels that another window covers: x and y of the first, and of the first beyond them

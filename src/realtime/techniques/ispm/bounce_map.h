@@ -17,7 +17,7 @@ namespace lanthorn {
 
 using gpu::PhotonStart;
 
-/// Of the surface on which the photon begins.
+/// Normal of the surface on which the photon begins.
 Normal surface_normal(const PhotonStart& start);
 
 /// Draws texels of the lights' maps with probabilities in proportion to the light that they scatter, and scatters a

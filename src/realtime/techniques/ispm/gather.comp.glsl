@@ -25,8 +25,8 @@ void main() {
   int last = min(next + count, int(texelFetch(tile_begins, tile + 1).x));
   if (next >= last) return;
   vec3 sum = imageLoad(radiance, pixel).rgb;
-  // Each pixel looks for its own next photon, before all of them add theirs (Aila & Laine 2009, "while-while"): so few
-  // pixels of a processor wait for others, and the kernel is computed for few photons that are too far away.
+  // Each pixel looks for its own next photon before all of them add theirs (Aila & Laine 2009, "while-while"). Few
+  // pixels of a processor then wait for others, and the kernel is computed for few photons that are too far away.
   while (next < last) {
     uvec4 entry;
     for (bool is_near = false; next < last && !is_near; ++next) {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Importances of the texels of a row, added up: the light that the surface there scatters.
+// Running sums of the importances of a row's texels: the light that the surface there scatters.
 #include "bounce.glsl"
 layout(local_size_x = work_group) in;
 uniform int view_count;

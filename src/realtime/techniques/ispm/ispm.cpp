@@ -27,19 +27,19 @@ float fitting_radius(const Scene& scene, const View& view) {
   return radius_share * seen_radius(scene, view);
 }
 
-/// Of the frame; the radius depends on its number alone (Knaus & Zwicker 2011).
+/// The photon volume of the frame; its radius depends on the frame's number alone (Knaus & Zwicker 2011).
 PhotonVolume photon_volume(const FrameContext& frame) {
   const TechniqueChoice& choice = frame.settings.technique;
   const float first =
       choice.is_auto("radius") ? fitting_radius(frame.scene, frame.view) : static_cast<float>(choice.number("radius"));
   const float radius = first * RadiusSchedule{1, choice.number("alpha")}.radius(frame.settings.views.frame);
-  // Photons lie on round shapes, and what is seen of these on triangles around them.
+  // Photons lie on round shapes, but the visible points of these lie on triangles around them.
   const float slack = std::min(1.1f * frame.gpu_scene.largest_slack(), 0.5f * radius);
   return {radius, search_flatness * radius + slack};
 }
 
 PhotonGather gather_of(const FrameContext& frame) {
-  // Triangles take software long.
+  // Software OpenGL is slow at triangles.
   const std::string& gather = frame.settings.technique.text("gather");
   return gather == "tiles" || (gather == "auto" && frame.is_software) ? PhotonGather::tiles : PhotonGather::splat;
 }
@@ -54,7 +54,7 @@ class ImageSpacePhotons final : public Technique {
   VertexLight light_at_vertices(const FrameContext& frame) override;
 
  private:
-  /// What photons depend on. While only the eye moves, they lie where they lay.
+  /// What photons depend on. They are kept while only the eye moves.
   struct Source {
     std::uint64_t light_maps = 0;
     int max_depth = 0;
@@ -83,7 +83,7 @@ void ImageSpacePhotons::prepare(const FrameContext& frame) {
 
 void ImageSpacePhotons::follow(const FrameContext& frame) {
   const FrameSettings& s = frame.settings;
-  // What was asked of the GPU so far is done meanwhile.
+  // Meanwhile the GPU does the work that it was given so far.
   frame.timer.end();
   glFlush();
   const auto begin = std::chrono::steady_clock::now();

@@ -20,7 +20,7 @@ class NearPhotons {
   bool holds(const SharedPhotons& photons, const PhotonVolume& volume) const {
     return photons_ == photons && volume_ == volume;
   }
-  /// Adds the light that they scatter at the vertex, as far as the split leaves it to them.
+  /// Adds the photons' light that the vertex scatters to the eye, as far as the split leaves it to photons.
   void gather(const SurfaceVertex& vertex, const LobeSplit& split, int max_depth, LightLayers& layers) const;
 
  private:

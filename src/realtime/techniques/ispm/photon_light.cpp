@@ -56,7 +56,7 @@ void PhotonLight::splat(const GBuffer& seen, const WindowRays& rays, const Mat4&
   splat_.set("to_clip", to_clip);
   splat_.set("first_photon", photons.first);
   glBindVertexArray(no_vertices_.name());
-  // The far sides of the boxes are drawn where they lie behind what is seen: so the eye may be inside.
+  // The far sides of the boxes are drawn where they lie behind what is seen, so that the eye may be inside.
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_LESS);
   glDepthMask(GL_FALSE);
@@ -79,8 +79,8 @@ void PhotonLight::gather(const GBuffer& seen, const gl::Texture& layer, const Ti
   tile_begins_.bind(gpu::unit_tile_begins, lists.begins.current());
   tile_photons_.bind(gpu::unit_tile_photons, lists.entries.current());
   layer.bind_image(gpu::image_of_technique, GL_READ_WRITE, GL_RGBA32F);
-  // llvmpipe ends the loops of a shader after 65,535 turns in all, without a word. Of n entries, w pixels at once may
-  // take n (w + 1) turns.
+  // llvmpipe silently ends the loops of a shader after 65,535 iterations in all. Of n entries, w pixels at once may
+  // take n (w + 1) iterations.
   constexpr std::uint32_t most = 2048;
   tiles_.set("count", static_cast<int>(most));
   for (std::uint32_t first = 0; first < lists.longest; first += most) {

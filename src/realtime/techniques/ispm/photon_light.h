@@ -21,7 +21,7 @@ enum class PhotonGather : std::uint8_t {
   tiles   ///< tiles of pixels find the photons near them (Mara et al. 2013)
 };
 
-/// Light of photons at what the eye sees.
+/// Light of photons on visible surfaces.
 class PhotonLight {
  public:
   PhotonLight() = default;
@@ -30,7 +30,7 @@ class PhotonLight {
 
   /// Takes over the photons for the next frames.
   void upload(FramePhotons photons);
-  /// Those that were uploaded last; null: none yet.
+  /// The photons uploaded last; null: none yet.
   const SharedPhotons& photons() const { return frame_; }
   /// Adds the light of all photons to the two layers, RGBA32F, where eye paths do not draw (`is_drawn_by_paths`). The
   /// scene must be bound.

@@ -34,7 +34,7 @@ struct TileGrid {
 /// photons whose volumes do not reach the tile, but lacks none.
 struct TilePhotons {
   struct Entry {
-    Point position;  ///< so that those who look for near photons read memory in order
+    Point position;  ///< stored here, so that searches for near photons read memory in order
     std::uint32_t photon;
   };
   std::vector<std::uint32_t> begins;  ///< [t]: of the list of tile t in `entries`; then the end of the last

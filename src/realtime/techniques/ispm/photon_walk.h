@@ -25,7 +25,7 @@ struct GpuPhoton {
   Direction incident() const { return decode_octahedral<16>(wi); }
 };
 
-/// The photons of a frame, those that have met delta lobes alone last.
+/// The photons of a frame; those that have met only delta lobes come last.
 struct FramePhotons {
   std::vector<GpuPhoton> photons;
   std::vector<std::uint32_t> depths;      ///< of the photons: scattering events of their paths, the one there included

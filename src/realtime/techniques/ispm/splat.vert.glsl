@@ -5,7 +5,7 @@
 #include "photon.glsl"
 uniform mat4 to_clip;
 uniform uint first_photon;
-// The photon, which all corners share: software drivers read buffers for each pixel by itself.
+// The photon, which all corners share: software drivers read buffers separately for each pixel.
 flat out vec3 photon_position, photon_normal, photon_power, photon_wi;
 
 // Corners of a strip of twelve triangles, counter-clockwise as seen from outside.

@@ -111,7 +111,7 @@ PhotonStart start_of(uint photon, int i, uint first, uint count) {
   vec3 flight = direction_of(v, window, at_texel.xy, size);
   Surface at = surface_in(at_texel);
   uint normal = encode_octahedral(at.facing) | 1u;  // never 0
-  // Rays may pass through where opacity is below 1: the CPU draws who does.
+  // Rays may pass where opacity is below 1: the CPU decides which.
   bool is_opaque = texelFetch(l_position, at_texel, 0).a == 1;
   if (!is_opaque || !scatters_here(at))
     return PhotonStart(at.position, start_incident, flight, float(i), power, normal);

@@ -28,7 +28,7 @@ vec3 cube_direction(int face, vec2 at) {
   return normalize(vec3(-at, -1));
 }
 
-// Bilinear by texels, so that all devices find what the CPU finds: their own filters are less exact.
+// Bilinear by single texels, so that all devices find the CPU's result: their own filters are less exact.
 vec3 cube_lookup(sampler2D maps, int first_size, int level, vec3 d) {
   int size = first_size >> level;
   CubePlace p = cube_place(d);

@@ -11,13 +11,13 @@
 
 namespace lanthorn {
 
-/// Split-sum shading of what the eye sees, by the maps of the scene's environment.
+/// Split-sum shading of visible surfaces, by the maps of the scene's environment.
 class EnvironmentLight {
  public:
   explicit EnvironmentLight(const gl::ShaderFiles& files);
 
-  /// Bakes the maps, if the environment is another than before; true if so. A GPU bakes them itself; where the CPU
-  /// draws, it bakes them, too.
+  /// Bakes the maps if the environment has changed; returns whether it has. A GPU bakes them itself; with software
+  /// OpenGL the CPU does.
   bool prepare(const Scene& scene);
   /// Uses the program split_sum.frag.glsl with its maps. G-buffer and scene must be bound.
   void use(const WindowRays& rays) const;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// What split-sum shading looks up (ibl/split_sum.h), with the same arithmetic.
+// Look-ups of split-sum shading (ibl/split_sum.h), with the same arithmetic.
 #include "constants.glsl"
 #include "layouts.glsl"
 #include "splitsum_constants.glsl"

@@ -37,7 +37,7 @@ class CubeAtlas {
   gl::Texture texture_;
 };
 
-/// What `SplitSum` holds.
+/// The data of `SplitSum` on the GPU.
 struct EnvironmentMaps {
   CubeAtlas reflections, irradiance;
   gl::Texture brdf;  ///< RG32F

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Light from points (PointFlux of ibl/environment.h), for sums of kernels over them.
+// Light from points (PointFlux of ibl/environment.h), over which kernels are summed.
 #include "constants.glsl"
 #include "layouts.glsl"
 #include "splitsum_constants.glsl"

@@ -10,7 +10,7 @@ uniform int first_size;
 uniform int level;
 
 vec4 texel(CubeTexel t) { return imageLoad(map, place_of_texel(t, first_size, level)); }
-// Beside an edge of the face.
+// The texel beside an edge of the face, on the neighbouring face.
 vec4 neighbour(int face, ivec2 at, int size) {
   // Just beyond the edge, so that the place along it is the same on both faces.
   const float beyond = 2e-5;

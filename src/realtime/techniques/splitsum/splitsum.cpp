@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The light of the environment by its prefiltered maps (Karis 2013), without shadows, instead of all other light.
+// The light of the environment alone, by its prefiltered maps (Karis 2013), without shadows.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Light of the voxels at what the eye sees: diffuse cones, and one along the reflection.
+// Indirect light from the voxels on visible surfaces: diffuse cones, and one along the reflection.
 #include "shade.glsl"
 #include "split_terms.glsl"
 #include "environment.glsl"

@@ -1,12 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Finest level of the voxels: what their surfaces send along the axes, by the areas that they show there.
+// Finest level of the voxels: the light that their surfaces send along the axes, weighted by the areas that they show
+// there.
 #include "voxel_sides.glsl"
 layout(local_size_x = work_group) in;
 layout(binding = image_of_technique, rgba16f) uniform writeonly image3D voxels;
 uniform int leaf_count;
 uniform float coarsest_side;  // edge of a voxel of grid 0, m
-const float largest = 60000;  // of what a half float holds
+const float largest = 60000;  // near the largest half float
 
 void main() {
   int i = int(gl_GlobalInvocationID.x);

@@ -19,7 +19,7 @@ namespace lanthorn {
 
 inline constexpr int most_voxel_bounces = 16;
 
-/// Of a frame.
+/// Settings of a frame.
 struct VoxelSettings {
   int size = 64;    ///< voxels along an edge of each grid, a power of two
   int bounces = 4;  ///< on surfaces before the one that the eye sees; at least 1
@@ -31,13 +31,13 @@ struct VoxelSettings {
 /// Turns that cover the circle evenly over any number of frames: the golden ratio's.
 float turn_of_frame(std::uint32_t frame);
 
-/// Voxel cone tracing (Crassin et al. 2011): light of the voxels at what the eye sees.
+/// Voxel cone tracing (Crassin et al. 2011): light of the voxels on visible surfaces.
 class VoxelLight {
  public:
   explicit VoxelLight(const gl::ShaderFiles& files);
 
-  /// Voxelises the surfaces in the grids that the view needs, as far as surfaces or grids are others than before; true
-  /// if any are.
+  /// Voxelises the surfaces in the grids that the view needs, if surfaces or grids have changed; returns whether they
+  /// have.
   bool prepare(const Scene& scene, const GpuScene& gpu_scene, const View& view, const VoxelSettings& settings);
   /// Lights the voxels anew. The scene must be bound; the maps are those of the views.
   void light(const LightMaps& maps, int view_count, const VoxelSettings& settings) const;

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// A coarser level of the voxels: of each two voxels one behind the other along the axis, the nearer one before the
-// farther one, and the mean of four such pairs (Crassin et al. 2011, section 4.2).
+// A coarser level of the voxels: for each two voxels one behind the other along the axis, the nearer one in front of
+// the farther one; then the mean of four such pairs (Crassin et al. 2011, section 4.2).
 #include "constants.glsl"
 #include "layouts.glsl"
 #include "voxelcones_constants.glsl"

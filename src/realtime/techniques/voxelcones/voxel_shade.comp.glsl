@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Light that the surfaces in the voxels scatter: that of the lights' views, and, after the first bounce, that of the other
-// voxels by cones.
+// Light that the surfaces in the voxels scatter: from the lights' views, and, after the first bounce, from other voxels
+// by cones.
 #include "shadow_maps.glsl"
 #include "voxel_sides.glsl"
 #include "voxels.glsl"
@@ -23,7 +23,7 @@ vec3 irradiance_of_views(vec3 position, vec3 n, float voxel_side) {
     float cosine = dot(wo, n);
     if (cosine <= 0) continue;
     vec3 light = v.colour.rgb * cosine;
-    // Nearer than half a voxel, the mean position says nothing about the distance.
+    // Nearer than half a voxel, the mean position does not give the distance.
     float d = max(distance_to_light, 0.5 * voxel_side);
     if (v.origin.a != view_parallel) light *= falloff(v, -wo) / (d * d);
     if (light == vec3(0)) continue;

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Voxel cone tracing (Crassin et al. 2011): indirect light of voxels that the lights' views light. It has a bias that
-// no number of frames removes.
+// Voxel cone tracing (Crassin et al. 2011): indirect light of voxels, which the lights' views illuminate. It has a bias
+// that no number of frames removes.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace lanthorn {
 
 namespace {
 
-/// Of paths with one scattering event direct light is all.
+/// With a single scattering event, all light is direct.
 bool has_indirect(const FrameSettings& settings) { return settings.max_depth > 1; }
 
 VoxelSettings voxel_settings(const FrameSettings& s) {

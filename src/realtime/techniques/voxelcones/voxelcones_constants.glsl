@@ -9,7 +9,7 @@ const int storage_leaves = storage_of_technique + 2;
 const int most_voxel_grids = 8;
 const int voxel_block = 4;  // threads of a group of voxel_mips.comp.glsl along each axis
 
-// The surfaces in a voxel of which a side faces along one of the axes more than along the others. Each surface has two
+// The surfaces in a voxel that have a side facing along this axis more than along the others. Each surface has two
 // sides.
 struct VoxelSide {
   vec3 position;  // mean over the surfaces

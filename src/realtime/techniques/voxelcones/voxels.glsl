@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Radiance in voxels and cones through it (Crassin et al. 2011, "Interactive Indirect Illumination Using Voxel Cone
-// Tracing", sections 4 to 7). The texture has six blocks one above the other in z, one for each direction +x -x +y -y +z
-// -z: what the surfaces in a voxel send to where that axis points, times the share of the voxel that they cover; a: that
-// share. Each level is half as fine as the one before. Grids lie side by side in x: grid 0 holds the whole scene, and the
-// voxels of each of the others are half as wide as those of the one before.
+// Radiance in voxels, and cones through it (Crassin et al. 2011, "Interactive Indirect Illumination Using Voxel Cone
+// Tracing", sections 4 to 7). The texture has six blocks one above the other in z, one for each direction +x -x +y -y
+// +z -z: the radiance that the surfaces in a voxel send along that direction, times the share of the voxel that they
+// cover; a: that share. Each level is half as fine as the one before. Grids lie side by side in x: grid 0 holds the
+// whole scene, and the voxels of each further grid are half as wide as those of the grid before.
 #include "frame.glsl"
 #include "pi.glsl"
 #include "constants.glsl"
@@ -22,8 +22,8 @@ float side_of(int grid) { return ldexp(coarsest_side, -grid); }
 // A point in a grid, which reaches from 0 to 1.
 vec3 place_in(int grid, vec3 point) { return (point - grid_corners[grid]) / (side_of(grid) * grid_size); }
 
-// The finest grid, up to `finest`, that holds what is around a point: this far, and as many of its voxels. Grid 0 holds
-// all.
+// The finest grid, up to `finest`, that holds the surroundings of a point: this far, and this many of its voxels. Grid
+// 0 holds everything.
 int grid_around(vec3 point, float distance, float voxels, int finest) {
   for (int grid = finest; grid > 0; --grid) {
     vec3 place = place_in(grid, point);
@@ -33,11 +33,11 @@ int grid_around(vec3 point, float distance, float voxels, int finest) {
   return 0;
 }
 
-// What a voxel around the point sends against the direction d: from the blocks of the axes that d looks against. Through
-// a way of its length, surfaces that cover the share c along an axis lie in the way with the probability |d| c, since
-// oblique rays stay in their layer for longer. A layer that covers all must let nothing pass, wherever the samples of
-// the way fall in it: they see it in parts. So what is seen counts twice, up to all. Crassin's weights d² leak: a wall
-// seen obliquely lets most light pass.
+// Radiance that a voxel around the point sends against the direction d: from the blocks of directions against d. Along
+// a way of one voxel, surfaces that cover the share c along an axis are met with probability |d| c, since oblique rays
+// stay in their layer for longer. A layer that covers everything must let nothing pass, wherever the samples fall in
+// it, although each sees only a part of it. So the result counts twice, up to full coverage. Crassin's weights d² leak:
+// a wall seen obliquely lets most light pass.
 vec4 voxel_towards(int grid, vec3 place, vec3 d, float level) {
   // No filter reaches into the next block or grid.
   float margin = 0.5 * exp2(ceil(level)) / grid_size;
@@ -50,15 +50,15 @@ vec4 voxel_towards(int grid, vec3 place, vec3 d, float level) {
   return voxel / max(1, voxel.a);
 }
 
-// The grid for cones from a point: one of which some voxels lie around it. How many depends on the turn of the frame, so
-// that the mean over frames has no seams where grids end.
+// The grid for cones from a point: the finest one with a number of its voxels around the point. The number depends on
+// the turn of the frame, so that the mean over frames has no seams where grids end.
 int grid_of_cones(vec3 from, float turn, int finest) {
   return grid_around(from, 0, 2 + turn * grid_size / 8, finest);
 }
 
-// Radiance of a cone, and in a the share of it that ends at surfaces. `n`: the surface that it starts from, in `grid`.
-// Samples are narrower than they are high above it: the filter reaches as far as a voxel is wide, and the back of the
-// surface, which may be dark, must stay out of it. Each sample takes the finest grid that holds it.
+// Radiance of a cone; a: the share of it that ends at surfaces. `n`: normal of the surface where it starts, in `grid`.
+// Samples are narrower than their height above that surface: the filter is as wide as a voxel, and must not reach the
+// back of the surface, which may be dark. Each sample takes the finest grid that holds it.
 vec4 trace_cone(vec3 from, vec3 n, vec3 d, float tan_half_angle, int grid) {
   const float width_by_height = 0.25;
   float start_height = 1.25 * side_of(grid);

@@ -31,11 +31,11 @@ struct GpuTriangles {
   std::vector<std::uint32_t> indices;
 };
 
-/// Of the surfaces in world space.
+/// Bounds of the surfaces in world space.
 Bounds bounds_of(const GpuScene& gpu_scene, const GpuTriangles& triangles);
 
-/// What of the triangles lies in the grid, cut by its voxels. Clear glass is left out. All materials count as diffuse
-/// with their albedo at normal incidence; textures by the middle of each piece.
+/// The parts of the triangles that lie in the grid, cut by its voxels. Clear glass is left out. All materials count as
+/// diffuse with their albedo at normal incidence; textures by the middle of each piece.
 Voxels voxelise(const Scene& scene, const GpuScene& gpu_scene, const GpuTriangles& triangles, const VoxelGrid& grid);
 
 }  // namespace lanthorn

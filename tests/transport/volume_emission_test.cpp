@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Light of media that glow: against a closed form, and methods against each other.
+// Volumetric emission: against a closed form, and methods against each other.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -11,7 +11,7 @@
 #include "support/runs.h"
 #include "support/shapes.h"
 
-namespace lanthorn::glow_test {
+namespace lanthorn::volume_emission_test {
 namespace {
 
 const std::string film =
@@ -31,13 +31,13 @@ RenderOptions options(const std::string& integrator, std::uint64_t passes, std::
 // A ball that emits evenly and lets all light through lights what is outside of it as a point in its middle would:
 // irradiance is the field of gravity of an even ball (Newton's shell theorem). The camera looks down on a square metre
 // of the floor, from under the ball.
-TEST(Glow, ThinBallLightsThePlane) {
+TEST(VolumeEmission, ThinBallLightsThePlane) {
   const double height = 2, radius = 0.2, emission = 100, reflectance = 0.6, pi_d = 3.14159265358979;
   const Scene scene = test::scene_from_text(
       "LookAt 0 1 0  0 0 0  0 0 1\nCamera \"orthographic\" \"float screenwindow\" [-0.5 0.5 -0.5 0.5]\n" + film +
-      "WorldBegin\nMakeNamedMedium \"glow\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [1e-4 1e-4 1e-4] "
+      "WorldBegin\nMakeNamedMedium \"flame\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [1e-4 1e-4 1e-4] "
       "\"rgb sigma_s\" [0 0 0] \"rgb Le\" [1e6 1e6 1e6]\n"
-      "AttributeBegin\nMediumInterface \"glow\" \"\"\nMaterial \"interface\"\nTranslate 0 2 0\n"
+      "AttributeBegin\nMediumInterface \"flame\" \"\"\nMaterial \"interface\"\nTranslate 0 2 0\n"
       "Shape \"sphere\" \"float radius\" [0.2]\nAttributeEnd\n"
       "Material \"diffuse\" \"rgb reflectance\" [0.6 0.6 0.6]\n" +
       test::patch("-1 0 1  1 0 1  -1 0 -1  1 0 -1"));
@@ -78,26 +78,26 @@ const std::string room = "Material \"diffuse\" \"rgb reflectance\" [0.7 0.6 0.8]
                          test::patch("-1 0 -1  1 0 -1  -1 2 -1  1 2 -1");
 const std::string camera = "LookAt 0 0.4 3  0 0.4 0  0 1 0\nCamera \"perspective\" \"float fov\" [14]\n";
 
-// A coloured ball that scatters and glows, thick, above the view. Half of it is in another one that only absorbs.
-TEST(NightlyGlow, BallInARoom) {
+// A thick coloured ball that scatters and emits, above the view. Half of it lies in another ball that only absorbs.
+TEST(NightlyVolumeEmission, BallInARoom) {
   const Scene scene = test::scene_from_text(
       camera + film +
-      "WorldBegin\nMakeNamedMedium \"glow\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [0.5 1 2] "
+      "WorldBegin\nMakeNamedMedium \"flame\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [0.5 1 2] "
       "\"rgb sigma_s\" [1 2 0.5] \"float g\" [0.4] \"rgb Le\" [6 4 3]\n"
       "MakeNamedMedium \"smoke\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [0.3 0.2 0.1] \"rgb sigma_s\" [0 0 "
       "0]\n"
       "AttributeBegin\nTranslate 0.1 1.3 0\nMaterial \"interface\"\n"
-      "MediumInterface \"glow\" \"smoke\"\nShape \"sphere\" \"float radius\" [0.3]\n"
+      "MediumInterface \"flame\" \"smoke\"\nShape \"sphere\" \"float radius\" [0.3]\n"
       "MediumInterface \"smoke\" \"\"\nShape \"sphere\" \"float radius\" [0.4]\nAttributeEnd\n" +
       room);
   EXPECT_EQ(scene.lights().size(), 1u);
-  EXPECT_FALSE(scene.has_unlit_glow());
+  EXPECT_FALSE(scene.has_unlit_emission());
   expect_agreement(
       scene, {"light", "bdpt", "vcm", "bpm", "probppm", "sppm", "ppm", "photonmap", "reversephotonmap", "mlt"}, 1);
 }
 
 // A flame above a ball of glass, both above the view: its caustic on the floor, which every method can find.
-TEST(Glow, CausticOfAFlame) {
+TEST(VolumeEmission, CausticOfAFlame) {
   const Scene scene = test::scene_from_text(
       camera + film +
       "WorldBegin\nAttributeBegin\nTranslate 0.2 1.62 0\nMakeNamedMedium \"flame\" \"string type\" \"uniformgrid\" "
@@ -110,9 +110,9 @@ TEST(Glow, CausticOfAFlame) {
   expect_agreement(scene, {"light", "bdpt", "vcm", "probppm", "sppm", "photonmap"}, 2, {"color", "caustic"});
 }
 
-// Fog without end that glows is no light: eye paths find what it emits, in photon methods besides the photons of
+// Unbounded emissive fog is not a light: eye paths find its emission, in photon methods besides the photons of
 // others.
-TEST(Glow, FogWithoutEndIsFoundByEyePaths) {
+TEST(VolumeEmission, FogWithoutEndIsFoundByEyePaths) {
   const Scene scene = test::scene_from_text(
       "MediumInterface \"\" \"fog\"\n" + camera + film +
       "WorldBegin\nMakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [0.1 0.1 0.2] "
@@ -120,9 +120,9 @@ TEST(Glow, FogWithoutEndIsFoundByEyePaths) {
       "LightSource \"point\" \"rgb I\" [2 2 2] \"point3 from\" [0 1.5 0]\n" +
       room);
   EXPECT_EQ(scene.lights().size(), 1u);
-  EXPECT_TRUE(scene.has_unlit_glow());
+  EXPECT_TRUE(scene.has_unlit_emission());
   expect_agreement(scene, {"light", "bdpt", "vcm", "auto", "probppm", "photonmap"}, 1, {"color", "media"});
 }
 
 }  // namespace
-}  // namespace lanthorn::glow_test
+}  // namespace lanthorn::volume_emission_test
