@@ -10,8 +10,6 @@
 #include <sstream>
 #include <string_view>
 
-#include "manual.h"
-
 namespace lanthorn::program {
 
 namespace {
@@ -175,6 +173,12 @@ void add_help(CLI::App& command, const OptionTable& table) {
 void group_options(CLI::App& command, const OptionTable& table) {
   for (const Option& option : table)
     if (!option.is_argument()) command.get_option(option.long_name())->group(title_of(option.long_name()));
+}
+
+std::vector<const CLI::Option*> visible_options(const CLI::App& command, bool positional) {
+  return command.get_options([positional](const CLI::Option* option) {
+    return !option->get_group().empty() && option->get_positional() == positional;
+  });
 }
 
 std::vector<HelpGroup> grouped_options(const CLI::App& command) {

@@ -27,6 +27,10 @@ void add_help(CLI::App& command, const OptionTable& table);
 /// Assigns the registered options of `table` to their groups of the help.
 void group_options(CLI::App& command, const OptionTable& table);
 
+/// The options that --help names, in the order of their registration; with `positional`, the arguments without a name
+/// instead.
+std::vector<const CLI::Option*> visible_options(const CLI::App& command, bool positional);
+
 /// The visible options of a command by group, in the order of the help.
 std::vector<HelpGroup> grouped_options(const CLI::App& command);
 
