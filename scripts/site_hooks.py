@@ -74,7 +74,7 @@ def on_page_markdown(markdown, page, config, files):
             return f"[{text}]({posixpath.relpath(here, posixpath.dirname(source) or '.')}{'#' + anchor if anchor else ''})"
         if not (ROOT / path).exists():
             logger.warning("%s: dead link: %s", source, target)
-        return text if posixpath.basename(path) in text else f"{text} (`{path}`)"
+        return text if posixpath.splitext(posixpath.basename(path))[0] in text else f"{text} (`{path}`)"
 
     lines = markdown.split("\n")
     return "\n".join(line if code else LINK.sub(followed, line) for line, code in zip(lines, check_markdown.code_lines(lines)))
