@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <set>
 
+#include "help.h"
 #include "lanthorn/methods.h"
 #include "lanthorn/version.h"
 #include "manual.h"

@@ -200,18 +200,18 @@ OptionTable converge_options(ConvergeCommand& a) {
                    .otherwise = std::to_string(*a.options.passes)},
                   {.names = "--runs",
                    .value = into(a.settings.runs, count_type({2, 1'000'000})),
-                   .brief = "Renders, whose seeds count up from --seed",
+                   .brief = "Number of renders; their seeds count up from --seed",
                    .otherwise = std::to_string(a.settings.runs)},
                   {.names = "--reference",
                    .value = into(a.reference, text_type("FILE")),
                    .brief = "Converged picture of the same size, for bias and error"},
                   {.names = "--fit-from",
                    .value = into(a.settings.fit_from, count_type({1, most_passes})),
-                   .brief = "Passes from which exponents are fitted",
+                   .brief = "First number of passes that counts for the fitted exponents",
                    .otherwise = std::to_string(a.settings.fit_from)},
                   {.names = "--plot", .value = into(a.plot, text_type("FILE")), .brief = "Write the curves as .svg"},
                   {.names = "--json", .value = into(a.json, text_type("FILE")), .brief = "Write the numbers as JSON"},
-                  {.names = "-q,--quiet", .value = flag(a.quiet), .brief = "No progress"}};
+                  {.names = "-q,--quiet", .value = flag(a.quiet), .brief = "Print no progress"}};
   return joined(render_options(a), std::move(own));
 }
 
@@ -223,7 +223,7 @@ void add_converge(CLI::App& app) {
   constexpr const char* footer =
       "Deviation is a pixel's standard deviation over the renders; bias the difference of their mean from the "
       "reference;\nboth are root mean squares over pixels and channels.\n"
-      "Ctrl-C and other signals end it with the renders that are complete, if there are two.\n\nExample:\n"
+      "On Ctrl-C and other signals it ends with the complete renders, if there are at least two.\n\nExample:\n"
       "  lanthorn render scene.pbrt -i path -r 16x16 --passes 100000 -o reference.exr\n"
       "  lanthorn converge scene.pbrt -i probppm -r 16x16 --set alpha=0.7 --set radius=0.2 --passes 512 "
       "--reference reference.exr --plot slopes.svg";

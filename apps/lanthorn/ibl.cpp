@@ -290,7 +290,7 @@ OptionTable size_options(IblCommand& a) {
            .otherwise = std::to_string(a.settings.samples)},
           {.names = "--check",
            .value = into(a.settings.checks, count_type({0, most_checks})),
-           .brief = "Places of each map that are compared with brute force",
+           .brief = "Texels of each map to compare with brute force",
            .otherwise = std::to_string(a.settings.checks)}};
 }
 
@@ -303,15 +303,15 @@ OptionTable map_options(IblCommand& a) {
                   "six files, +X -X +Y -Y +Z -Z."},
       {.names = "-o,--output",
        .value = into(a.output, text_type("DIR")),
-       .brief = "Folder for the files; it is made if it is not there",
+       .brief = "Folder for the files; created if it does not exist",
        .required = true},
       {.names = "--maps",
        .value = into(a.maps, word_list_type({"irradiance", "specular", "brdf", "sh"})),
-       .brief = "Maps, of irradiance,specular,brdf,sh",
+       .brief = "Maps to write, from irradiance,specular,brdf,sh",
        .otherwise = "all"},
       {.names = "--formats",
        .value = into(a.formats, word_list_type({"exr", "ktx2", "dds"})),
-       .brief = "Formats of maps, of exr,ktx2,dds",
+       .brief = "Formats to write, from exr,ktx2,dds",
        .otherwise = "all"},
       {.names = "--texels",
        .value =
@@ -342,7 +342,7 @@ OptionTable ibl_options(IblCommand& a) {
       threads_option(a.threads, "The files do not depend"),
       max_pixels_option(a.max_pixels),
       {.names = "--json", .value = flag(a.print_report), .brief = "Print report.json, too"},
-      {.names = "-q,--quiet", .value = flag(a.quiet), .brief = "No progress"}};
+      {.names = "-q,--quiet", .value = flag(a.quiet), .brief = "Print no progress"}};
   return joined(joined(map_options(a), size_options(a)), last);
 }
 

@@ -121,7 +121,7 @@ void run(const InfoCommand& a) {
 void add_info(CLI::App& app) {
   const auto a = std::make_shared<InfoCommand>();
   constexpr const char* footer =
-      "Of a scene: counts, bounds, memory, lights, materials, warnings. Of a state or a picture: the method, its\n"
+      "For a scene: counts, bounds, memory, lights, materials, warnings. For a state or a picture: the method, its\n"
       "settings, seed, passes, size, layers and version, as far as the file holds them. A damaged file is an error.";
   add_command(app, {"info", "Show what is in a scene, a saved state or a picture, or what this machine has",
                     info_options(*a), footer, [a] { run(*a); }});

@@ -236,26 +236,28 @@ ValueType<LensChanges::Aperture> aperture_type() { return number_or_word_type({l
 ValueType<LensChanges::Focus> focus_type() { return number_or_word_type({1e-9, farthest}, "auto"); }
 
 OptionTable lens_options(LensChanges& lens) {
-  return {{.names = "--orbit",
-           .value = into(lens.orbit, orbit_type()),
-           .brief = "Turn the camera around what it looks at: degrees to the right, and upwards",
-           .details = "A model without a camera is framed from there.",
-           .excludes = "--look-at"},
-          {.names = "--fov",
-           .value = into(lens.fov, fov_type()),
-           .brief = "Angle of view over the shorter side of the picture, degrees",
-           .details = "The camera stays where it is. Of a model without a camera it comes nearer or goes farther away, "
-                      "so that the model fills the picture as before.",
-           .otherwise = "the scene file's"},
-          {.names = "--aperture",
-           .value = into(lens.aperture, aperture_type()),
-           .brief = "f-number of the lens, such as 2.8: smaller numbers blur more; off: all is sharp",
-           .details = "The scene counts in metres, and the film is 24 mm along its shorter side.",
-           .otherwise = "the scene file's, else off"},
-          {.names = "--focus",
-           .value = into(lens.focus, focus_type()),
-           .brief = "Focus distance in metres, or auto: the surface in the middle of the picture",
-           .otherwise = "with --aperture auto, else the scene file's"}};
+  return {
+      {.names = "--orbit",
+       .value = into(lens.orbit, orbit_type()),
+       .brief = "Turn the camera around its target, in degrees",
+       .details = "YAW turns to the right, PITCH upwards. A model without a camera is framed from the new direction.",
+       .excludes = "--look-at"},
+      {.names = "--fov",
+       .value = into(lens.fov, fov_type()),
+       .brief = "Angle of view over the shorter side, in degrees",
+       .details = "The camera stays in its place. For a model without a camera, the distance changes so that the model "
+                  "fills the "
+                  "picture as before.",
+       .otherwise = "the scene file's"},
+      {.names = "--aperture",
+       .value = into(lens.aperture, aperture_type()),
+       .brief = "f-number such as 2.8; off: everything is sharp",
+       .details = "Smaller numbers blur more. The scene's unit is the metre; the film is 24 mm along its shorter side.",
+       .otherwise = "the scene file's, else off"},
+      {.names = "--focus",
+       .value = into(lens.focus, focus_type()),
+       .brief = "Focus distance in metres, or auto: the surface at the picture's centre",
+       .otherwise = "with --aperture auto, else the scene file's"}};
 }
 
 }  // namespace lanthorn::program

@@ -28,7 +28,7 @@ void add_list(CLI::App& app) {
   const auto name = std::make_shared<std::string>();
   const OptionTable options{{.names = "integrator",
                              .value = into(*name, text_type("INTEGRATOR")),
-                             .brief = "Show the parameters of this one, for --set name=value"}};
+                             .brief = "Show the parameters of this method, for --set NAME=VALUE"}};
   add_command(app, {"list", "List the integrators, or the parameters of one", options, "", [name] { run(*name); }});
 }
 

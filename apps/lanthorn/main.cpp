@@ -22,13 +22,15 @@
 namespace lanthorn::program {
 namespace {
 
-// A scene alone is rendered; "help" is another word for --help.
+// A scene alone is rendered; "help render --all" is "render --help --all".
 std::vector<std::string> completed(std::vector<std::string> words) {
   if (words.empty() || words.front().starts_with('-')) return words;
   if (words.front() == "help") {
     words.erase(words.begin());
+    const bool shows_all = !words.empty() && words.back() == "--all";
     words.resize(std::min<std::size_t>(words.size(), 1));
     words.emplace_back("--help");
+    if (shows_all) words.emplace_back("--all");
   } else if (is_scene_file(words.front())) {
     words.insert(words.begin(), "render");
   }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <sstream>
 
+#include "help.h"
 #include "lanthorn/version.h"
 #include "manual.h"
 #include "options.h"
@@ -109,14 +110,19 @@ std::string arguments(const CLI::App& command) {
   return out;
 }
 
+std::string option_text(const CLI::Option& option) {
+  std::string tag;
+  for (const std::string& name : option_names(option)) tag += (tag.empty() ? "" : ", ") + bold(name);
+  if (const std::string type = value_type(option); !type.empty()) tag += " " + italic(type);
+  if (option.get_expected_max() > 1 && option.get_allow_extra_args()) tag += " ...";
+  return describe(tag, sentence(option.get_description()) + conditions(option));
+}
+
 std::string options(const CLI::App& command) {
   std::string out;
-  for (const CLI::Option* option : visible_options(command, /*positional=*/false)) {
-    std::string tag;
-    for (const std::string& name : option_names(*option)) tag += (tag.empty() ? "" : ", ") + bold(name);
-    if (const std::string type = value_type(*option); !type.empty()) tag += " " + italic(type);
-    if (option->get_expected_max() > 1 && option->get_allow_extra_args()) tag += " ...";
-    out += describe(tag, sentence(option->get_description()) + conditions(*option));
+  for (const HelpGroup& group : grouped_options(command)) {
+    out += ".SS " + troff(group.title) + "\n";
+    for (const CLI::Option* option : group.options) out += option_text(*option);
   }
   return out;
 }

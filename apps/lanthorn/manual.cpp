@@ -38,12 +38,6 @@ std::vector<const CLI::App*> visible_commands(const CLI::App& program) {
   return program.get_subcommands([](const CLI::App* command) { return !command->get_group().empty(); });
 }
 
-std::vector<const CLI::Option*> visible_options(const CLI::App& command, bool positional) {
-  return command.get_options([positional](const CLI::Option* option) {
-    return !option->get_group().empty() && option->get_positional() == positional;
-  });
-}
-
 std::vector<std::string> option_names(const CLI::Option& option) {
   std::vector<std::string> names;
   for (const std::string& name : option.get_snames()) names.push_back("-" + name);

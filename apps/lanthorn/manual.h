@@ -16,9 +16,6 @@ namespace lanthorn::program {
 /// The subcommands that --help names, in its order.
 std::vector<const CLI::App*> visible_commands(const CLI::App& program);
 
-/// The options that --help names, in its order; with `positional`, the arguments without a name instead.
-std::vector<const CLI::Option*> visible_options(const CLI::App& command, bool positional);
-
 /// The names of an option as they are typed: {"-i", "--integrator"}.
 std::vector<std::string> option_names(const CLI::Option& option);
 

@@ -105,13 +105,14 @@ void run(const MergeCommand& o) {
 OptionTable merge_options(MergeCommand& a) {
   const OptionTable own{{.names = "STATES",
                          .value = each_into(a.inputs, text_type("FILE"), Arity::several),
-                         .brief = "Saved states with disjoint passes of the same render; any order",
+                         .brief = "Saved states with disjoint passes of one render, in any order",
                          .required = true},
                         {.names = "--expect",
                          .value = into(a.expected, pass_range_type()),
-                         .brief = "Passes FIRST:END (END not included) that the states must have, all of them",
-                         .details = "Else nothing is written, and messages name states that are missing, damaged or "
-                                    "double, and the passes to render again.",
+                         .brief = "Require passes FIRST to END - 1 to be complete",
+                         .details = "Otherwise nothing is written, and messages name missing, damaged and duplicate "
+                                    "states, and the passes to render "
+                                    "again.",
                          .otherwise = "any passes"},
                         {.names = "-o,--output",
                          .value = into(a.output, text_type("FILE")),
@@ -125,8 +126,7 @@ OptionTable merge_options(MergeCommand& a) {
 void add_merge(CLI::App& app) {
   const auto a = std::make_shared<MergeCommand>();
   constexpr const char* footer =
-      "The result has the same pixels as one render of all the passes. States must be of one scene, integrator, seed "
-      "and\n"
+      "The result has the same pixels as one render of all passes. The states must have one scene, method, seed and\n"
       "settings; methods whose passes depend on earlier ones (ppm, sppm) can be resumed but not merged.\n\n"
       "Example:\n"
       "  lanthorn render a.pbrt --pass-range 0:32  -o one.state\n"

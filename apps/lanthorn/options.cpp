@@ -5,8 +5,8 @@
 #include <CLI/CLI.hpp>
 #include <cctype>
 #include <iterator>
-#include <memory>
 
+#include "help.h"
 #include "lanthorn/shell.h"
 #include "lanthorn/text.h"
 
@@ -78,17 +78,9 @@ OptionTable without(OptionTable table, const std::string& name) {
 
 CLI::App& add_command(CLI::App& program, Command command) {
   CLI::App& app = *program.add_subcommand(command.name, command.summary);
-  app.set_help_flag("--help", "Print this help with all details");
-  const auto table = std::make_shared<const OptionTable>(std::move(command.options));
-  app.add_flag_callback(
-      "-h",
-      [&app, table] {
-        for (const Option& option : *table)
-          app.get_option(option.long_name())->description(option.description(/*in_short=*/true));
-        throw CLI::CallForHelp();
-      },
-      "Print a short help");
-  register_options(app, *table);
+  add_help(app, command.options);
+  register_options(app, command.options);
+  group_options(app, command.options);
   app.footer(command.footer);
   app.callback(std::move(command.run));
   return app;

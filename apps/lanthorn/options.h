@@ -43,8 +43,8 @@ struct OptionValue {
 struct Option {
   std::string names;  ///< "-n,--photons"; of an argument without a name, what help calls it
   OptionValue value;
-  std::string brief;        ///< what it is or does, in one line, for -h
-  std::string details{};    ///< more sentences, for --help and the man page
+  std::string brief;        ///< what it is or does, in one line, for --help
+  std::string details{};    ///< more sentences, for --help --all and the man page
   std::string otherwise{};  ///< the default, where there is one to tell
   bool required = false;
   std::string excludes{};  ///< a name of another option, which cannot be given as well

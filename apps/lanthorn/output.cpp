@@ -116,15 +116,16 @@ OptionTable display_options(OutputSettings& settings, const std::string& default
   constexpr double most = DisplaySettings::largest_exposure;
   return {{.names = "--exposure",
            .value = through<Stops>(number_or_word_type({-most, most}, "auto"), set, get),
-           .brief = "Of all pictures but .exr: stops of exposure, or auto",
-           .details = "auto makes a white surface in the light of the picture white, and says the number.",
+           .brief = "Exposure in stops, or auto; .exr files do not change",
+           .details = "auto makes a white surface in the picture's light white and prints the number.",
            .otherwise = default_exposure},
           view_transform_option(settings.display),
           {.names = "--ocio",
            .value = into(settings.display.ocio, ocio_type()),
-           .brief = "In place of these: a view of an OpenColorIO configuration",
-           .details = "CONFIG is its file; without DISPLAY/VIEW it is the configuration's default. The exposure counts "
-                      "before it."}};
+           .brief = "Use a view of an OpenColorIO configuration instead",
+           .details = "It replaces --view-transform. CONFIG is a file; without DISPLAY/VIEW, the configuration's "
+                      "defaults apply. The "
+                      "exposure is applied before."}};
 }
 
 ValueType<ToneCurve> view_transform_type() {
@@ -134,8 +135,8 @@ ValueType<ToneCurve> view_transform_type() {
 Option view_transform_option(DisplaySettings& display) {
   return {.names = "--view-transform",
           .value = into(display.curve, view_transform_type()),
-          .brief = "How bright colours fit on a display",
-          .details = "none clips them; filmic has a shoulder; agx takes their saturation, too, as film does.",
+          .brief = "Tone curve for bright colours",
+          .details = "none clips them; filmic rolls them off; agx also desaturates them, as film does.",
           .otherwise = "none"};
 }
 
@@ -152,12 +153,13 @@ Option force_option(bool& force, const std::string& files) {
 }
 
 Option denoise_option(bool& denoise, const std::string& brief) {
-  return {.names = "--denoise",
-          .value = flag(denoise),
-          .brief = brief,
-          .details =
-              ".exr files have the layers denoised, denoised.direct and so on beside those with noise; .png, .jpg "
-              "and .tif show the denoised picture."};
+  return {
+      .names = "--denoise",
+      .value = flag(denoise),
+      .brief = brief,
+      .details =
+          ".exr files get the layers denoised, denoised.direct and so on beside the noisy ones; .png, .jpg and .tif "
+          "show the denoised picture."};
 }
 
 OptionTable output_options(OutputSettings& settings) {
@@ -165,17 +167,18 @@ OptionTable output_options(OutputSettings& settings) {
       display_options(settings, exposure_of_scene),
       {{.names = "--reproducible",
         .value = flag(settings.reproducible),
-        .brief = "Omit times from the files, so that equal images are equal files"},
-       denoise_option(settings.denoise, "Remove the noise that is left, layer by layer"),
+        .brief = "Omit times from the files, so that equal pictures are equal files"},
+       denoise_option(settings.denoise, "Remove the remaining noise, layer by layer"),
        force_option(settings.force, "a .state that holds another render or more passes, and write-protected files")});
 }
 
 Option outputs_option(std::vector<std::string>& outputs, const std::string& what, const std::string& otherwise) {
-  return {.names = "-o,--output",
-          .value = each_into(outputs, text_type("FILE")),
-          .brief = what + ": .exr, .png, .jpg, .tif or .state; may be given several times",
-          .details = ".exr has all layers, .png, .jpg and .tif (16 bits) the color; a .state can be resumed or merged.",
-          .otherwise = otherwise};
+  return {
+      .names = "-o,--output",
+      .value = each_into(outputs, text_type("FILE")),
+      .brief = what + " (.exr, .png, .jpg, .tif, .state; repeatable)",
+      .details = ".exr holds all layers; .png, .jpg and .tif (16 bits) hold color; a .state can be resumed or merged.",
+      .otherwise = otherwise};
 }
 
 namespace {

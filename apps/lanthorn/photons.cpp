@@ -48,7 +48,7 @@ OptionTable photons_options(PhotonsCommand& a) {
        .value = into(a.pass, count_type({0, most_passes - 1})),
        .brief = "Pass whose photons are written",
        .otherwise = "0"},
-      {.names = "--direct", .value = flag(a.direct), .brief = "Include photons that come straight from a light"}};
+      {.names = "--direct", .value = flag(a.direct), .brief = "Include photons that come directly from a light"}};
   return joined(render_options(a), std::move(own));
 }
 

@@ -297,15 +297,15 @@ void add_render(CLI::App& app) {
   const auto a = std::make_shared<RenderCommand>();
   constexpr const char* footer =
       "Ctrl-C ends the render after the current pass and saves it; a second one saves it without that pass, a third "
-      "ends\nthe program. So do SIGTERM, SIGHUP and other signals.\n\n"
-      "Layers of .exr: color is the sum of emission (lights seen directly or by way of mirrors and clear glass), "
+      "ends\nthe program. SIGTERM, SIGHUP and other signals do the same.\n\n"
+      "Layers of .exr: color is the sum of emission (lights seen directly, or through mirrors and clear glass), "
       "direct\n"
-      "(light scattered once by a surface or in a medium), caustic (the same behind mirrors or clear glass) and "
-      "indirect\n(the rest). media has all light that comes out of media once more.\n\nExamples:\n"
-      "  lanthorn render scene.pbrt -o picture.png --time 30s\n"
-      "  lanthorn render scene.pbrt -o a.exr -o a.state --integrator probppm --passes 200 --checkpoint 10m\n"
-      "  lanthorn render scene.pbrt -o a.exr --passes 400 --resume a.state\n"
-      "  lanthorn render ring.glb --environment sky.hdr --aperture 8 --turntable 48 -t 10s -o ring.####.png";
+      "(light scattered once by a surface or in a medium), caustic (the same behind mirrors or clear glass) and\n"
+      "indirect (the rest). media repeats all light that comes out of media.\n\nExamples:\n"
+      "  lanthorn render scene.pbrt --noise 5% --denoise -o picture.png\n"
+      "  lanthorn render scene.pbrt --time 10m -o a.exr -o a.state\n"
+      "  lanthorn render scene.pbrt --time 10m -o a.exr --resume a.state\n"
+      "  lanthorn render ring.glb --environment sky.hdr --turntable 48 -o ring.####.png";
   add_command(app,
               {"render", "Render a scene to an image", render_command_options(*a), footer, [a] { run_render(*a); }});
 }

@@ -19,17 +19,17 @@ Option max_pixels_option(std::uint64_t& max_pixels) {
   return {.names = "--max-pixels",
           .value = into(max_pixels, count_type({.low = 1})),
           .brief = "Refuse images with more pixels, such as 64M",
-          .details = "They are refused before memory is allocated.",
+          .details = "The check comes before memory is allocated.",
           .otherwise = "2^30"};
 }
 
 Option threads_option(unsigned& threads, const std::string& what) {
   return {.names = "-T,--threads",
           .value = into(threads, count_type({0, most_threads})),
-          .brief = "Number of threads; 0: all cores",
+          .brief = "Number of threads; 0 uses all cores",
           .details = what +
-                     " on it. Of all cores, those count that CPU affinity and the quota of a control group "
-                     "(container) leave to the program; 'lanthorn info --machine' shows them.",
+                     " on it. All cores are those that CPU affinity and the quota of a control group (container) "
+                     "leave to the program; 'lanthorn info --machine' shows them.",
           .otherwise = "0"};
 }
 
@@ -38,28 +38,31 @@ OptionTable read_options(ReadOptions& o) {
       {.names = "--window-glass",
        .value = flag(o.window_glass),
        .brief = "Let light pass straight through panes of glass",
-       .details = "Panes are thindielectric and flat slabs of clear dielectric. Every method then finds what comes "
-                  "through windows. For slabs this is an approximation."},
+       .details =
+           "Panes are thindielectric surfaces and flat slabs of clear dielectric. Every method then finds the light "
+           "that comes through windows. For slabs this is an approximation."},
       {.names = "--sandbox",
        .value = flag(o.sandbox),
-       .brief = "For untrusted scenes: read only files in the scene's folder and below it",
-       .details = "This holds whatever names and links say. Messages show no content of files."},
+       .brief = "For untrusted scenes: read files only from the scene's folder and below",
+       .details = "Paths and symbolic links that lead elsewhere are refused. Messages show no content of files."},
       max_pixels_option(o.max_pixels),
       {.names = "--texture-memory",
        .value = into(o.texture_memory, bytes_type()),
        .brief = "Limit for the textures in memory, such as 4G",
-       .details = "Larger textures go to a temporary file, and a render reads the parts that it needs. The image does "
-                  "not depend on the limit.",
+       .details =
+           "Larger textures go to a temporary file, of which a render reads the parts that it needs. The picture "
+           "does not depend on the limit.",
        .otherwise = "half of the free memory"},
       {.names = "--missing",
        .value = into(o.skip_missing, choice_type<bool>({{"error", false}, {"skip", true}})),
-       .brief = "What to do about missing files that the scene names",
-       .details = "skip leaves out meshes and media; images are grey, spectra 1, lenses of 50 mm. A warning names "
-                  "each file.",
+       .brief = "Refuse a scene whose files are missing, or skip them",
+       .details =
+           "skip leaves out meshes and media, and replaces images by grey, spectra by 1 and lenses by one of 50 mm. A "
+           "warning names each file.",
        .otherwise = "error"},
       {.names = "--at",
        .value = into(o.at, animation_time_type()),
-       .brief = "Time in the first animation of a glTF file: 1.5 seconds, or frame=36@24",
+       .brief = "Time in the first animation of a glTF file: 1.5 (seconds) or frame=36@24",
        .details = "frame=36@24 is frame 36 at 24 frames a second; frame 0 is at 0 seconds.",
        .otherwise = "everything is at rest"}};
 }
@@ -76,30 +79,32 @@ ValueType<float> environment_scale_type() {
 namespace {
 
 OptionTable environment_options(EnvironmentChoice& e) {
-  return {{.names = "--environment",
-           .value = into(e.source, existing_file_or_word_type(environment_names())),
-           .brief = "Light the scene by a picture of its surroundings, or by studio, overcast or sunny",
-           .details = "It takes the place of the scene's environment and of the stand-in studio; lamps stay. Any image "
-                      "of 2:1 (equirectangular), 1:1 (octahedral) or of a cube will do. y is up."},
-          {.names = "--environment-rotate",
-           .value = into(e.rotation, environment_rotation_type()),
-           .brief = "Turn the environment, degrees counter-clockwise as seen from above",
-           .details = "At 0 the middle of an equirectangular picture lies in the direction +x, at 90 in -z.",
-           .otherwise = "0"},
-          {.names = "--environment-scale",
-           .value = into(e.scale, environment_scale_type()),
-           .brief = "Multiply its light",
-           .otherwise = "1"},
-          {.names = "--environment-up",
-           .value = into(e.up, choice_type<UpAxis>({{"y", UpAxis::y}, {"z", UpAxis::z}})),
-           .brief = "The axis of the scene that is upwards",
-           .otherwise = "y; for pbrt files the one nearer to the camera's direction upwards, as a warning says"}};
+  return {
+      {.names = "--environment",
+       .value = into(e.source, existing_file_or_word_type(environment_names())),
+       .brief = "Light by an image, or by studio, overcast or sunny",
+       .details =
+           "It replaces the scene's environment and the stand-in studio; lamps stay. The image can have the shape 2:1 "
+           "(equirectangular) or 1:1 (octahedral), or be a cube map. y is up."},
+      {.names = "--environment-rotate",
+       .value = into(e.rotation, environment_rotation_type()),
+       .brief = "Turn the environment by degrees, counter-clockwise from above",
+       .details = "At 0 the centre of an equirectangular image lies in the direction +x, at 90 in -z.",
+       .otherwise = "0"},
+      {.names = "--environment-scale",
+       .value = into(e.scale, environment_scale_type()),
+       .brief = "Multiply the environment's radiance",
+       .otherwise = "1"},
+      {.names = "--environment-up",
+       .value = into(e.up, choice_type<UpAxis>({{"y", UpAxis::y}, {"z", UpAxis::z}})),
+       .brief = "The scene's up axis",
+       .otherwise = "y; for pbrt files the axis nearer to the camera's up vector, named in a warning"}};
 }
 
 OptionTable scene_options(ReadOptions& o) {
   return joined({{.names = "--camera",
                   .value = into(o.camera, text_type("NAME")),
-                  .brief = "A camera of a glTF file: its name, or its number from 1 on",
+                  .brief = "A camera of a glTF file, by name or number (from 1)",
                   .otherwise = "the first one"}},
                 environment_options(o.environment));
 }
@@ -128,42 +133,44 @@ OptionTable render_options(RenderArguments& a) {
        .otherwise = "spectral if glass disperses light or spectra other than metals' are measured, else rgb"},
       {.names = "-r,--resolution",
        .value = into(o.resolution, resolution_type()),
-       .brief = "Size of the picture in pixels; the height is left out if it follows from the shape",
+       .brief = "Size of the picture: 1000x600, or 1000 (width alone)",
+       .details = "If only the width is given, the shape stays that of the scene file.",
        .otherwise = "the scene file's"},
       {.names = "--clamp",
        .value = into(o.clamp, number_type<float>()),
        .brief = "Clamp each path's contribution to a pixel, except for directly visible lights (biased)",
-       .details = "There are fewer fireflies, but light is lost. The EXR names the limit.",
+       .details = "Fireflies become fewer, but light is lost. The EXR file records the limit.",
        .otherwise = "no limit"},
       {.names = "--crop",
        .value = into(o.crop, pixel_window_type()),
        .brief = "Render only these pixels (x1, y1 excluded)",
-       .details =
-           "With the same --photons they equal those of the whole picture, for every method but auto and mlt, exactly "
-           "or up to rounding (docs/using.md)."},
+       .details = "With the same --photons they equal those of the whole picture, exactly or up to rounding "
+                  "(docs/using.md); not with auto and mlt."},
       {.names = "-n,--photons",
        .value = into(o.photons, count_type({.low = 1})),
        .brief = "Light paths per pass, such as 500000, 200k or 1M",
-       .details = "auto traces as many of them as pay, from none to 4 times the number.",
+       .details = "auto traces as many as reduce the error per work, from none to 4 times this number.",
        .otherwise = "the scene file's (not for auto), else one per pixel, at least 100k (auto, bdpt, vcm: 10k; auto: "
                     "at most 524k)"},
       {.names = "-d,--max-depth",
        .value = into(o.max_depth, count_type({1, largest_int})),
-       .brief = "Scattering events per path, at most",
-       .details = "In media of high albedo the default is higher: until a thousandth of the light is left. The program "
-                  "says how much the limit may have cut off.",
-       .otherwise = "the scene file's, else 64, in media up to 4096"},
+       .brief = "Largest number of scattering events per path",
+       .details =
+           "In media of high albedo the default is higher: the depth at which a thousandth of the light is left. The "
+           "program reports how much light the limit may have cut off.",
+       .otherwise = "the scene file's, else 64; in media up to 4096"},
       {.names = "--memory",
        .value = into(o.memory, bytes_type()),
-       .brief = "Limit for the picture and the photons or light vertices of a pass, such as 512M or 2G",
-       .details = "The scene is not counted. A render that needs more is refused before it starts; reversephotonmap "
-                  "works in blocks of pixels that fit. Of many light paths, most methods keep 8.4M at a time (auto, "
-                  "bdpt, bpm, vcm: 2.1M; sppm, ppm, photonmap: all). The image does not depend on it.",
+       .brief = "Memory limit for the film and a pass's photons or light vertices: 512M, 2G",
+       .details =
+           "The scene is not counted. A render that needs more is refused before it starts; reversephotonmap works in "
+           "blocks of pixels that fit. Most methods keep at most 8.4M light paths at a time (auto, bdpt, bpm, "
+           "vcm: 2.1M; sppm, ppm, photonmap: all). The picture does not depend on the limit.",
        .otherwise = "free memory"}};
   const OptionTable parameters{{.names = "--set",
                                 .value = each_into(o.set, setting_type()),
-                                .brief = "A parameter of the integrator; may be given several times",
-                                .details = "'lanthorn list INTEGRATOR' shows them."}};
+                                .brief = "Set a parameter of the method (repeatable)",
+                                .details = "'lanthorn list INTEGRATOR' shows its parameters."}};
   return joined(joined(joined(picture, read_options(a.reading)), scene_options(a.reading)), parameters);
 }
 

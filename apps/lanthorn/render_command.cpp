@@ -26,48 +26,51 @@ OptionValue interval(std::optional<double>& seconds, bool& none) {
 OptionTable render_command_options(RenderCommand& a) {
   constexpr std::uint64_t most_places = 1'000'000;
   OptionTable files{
-      outputs_option(a.outputs, "Where to write the picture", "the name in the scene file"),
+      outputs_option(a.outputs, "Write the picture", "the name in the scene file"),
       {.names = "-p,--passes",
        .value = into(a.options.passes, count_type({1, most_passes})),
-       .brief = "Passes to render (samples per pixel for path)",
+       .brief = "Number of passes (for path: samples per pixel)",
        .otherwise = "the scene file's, else 64"},
       {.names = "-t,--time",
        .value = into(a.options.seconds, duration_type()),
-       .brief = "Stop when this time is reached, after the running passes: 30s, 1.5m, 2h"},
+       .brief = "Stop after this time: 30s, 1.5m, 2h",
+       .details = "Running passes are completed."},
       {.names = "--noise",
        .value = into(a.options.noise, share_type()),
-       .brief = "Stop when the picture's error is below this, such as 2%",
-       .details = "The error is measured while rendering, noise and bias together, and is below the bound with a "
-                  "probability of 90 %. It is the root of the mean square of each value's relative error, where dark "
-                  "values count as if they had a tenth of the picture's mean. -p and -t are limits beside it."},
+       .brief = "Stop when the estimated error is below this: 5%",
+       .details =
+           "The program estimates noise and bias while rendering. When it stops, the error is below the bound with a "
+           "probability of 90 %. The error is the root mean square of the relative errors of all values; the "
+           "denominator is at least a tenth of the picture's mean. -p and -t remain limits."},
       {.names = "--pass-range",
        .value = into(a.options.pass_range, pass_range_type()),
-       .brief = "Passes FIRST:END (END not included), for a shard to be merged with others",
+       .brief = "Render passes FIRST to END - 1 alone: a shard to merge with others",
        .excludes = "--passes"},
       {.names = "--checkpoint",
        .value = interval(a.checkpoint_seconds, a.no_checkpoint),
-       .brief = "Save the state at this interval (90s, 10m) and keep it, or none",
-       .details = "The file is a .state beside the first output. none saves no states while rendering.",
-       .otherwise = "every ten minutes, in a file that is removed after the render"},
+       .brief = "Save the state at this interval (90s, 10m) and keep it; or none",
+       .details = "The file is a .state beside the first output. none saves no state while rendering.",
+       .otherwise = "every ten minutes, in a file that is removed at the end"},
       {.names = "--preview",
        .value = interval(a.preview_seconds, a.no_preview),
-       .brief = "Write the pictures while they are rendered, at least this far apart (5s), or none",
-       .details = "They are written after the first pass and then at times that double. none writes them at the end "
-                  "alone.",
-       .otherwise = "2s on a terminal; else none"},
+       .brief = "Write the picture while it is rendered, at this interval (5s) or more; or none",
+       .details =
+           "It is written after the first pass and then at intervals that double. none writes it only at the end.",
+       .otherwise = "2s on a terminal, else none"},
       {.names = "--tev",
        .value = into(a.tev, text_type("HOST:PORT")),
        .brief = "Show the picture in the viewer tev while it is rendered, such as localhost:14158",
        .details = "tev gets all layers."},
       {.names = "--turntable",
        .value = into(a.turntable, count_type({1, most_places})),
-       .brief = "Render so many pictures from all around the model, to -o NAME.####.png",
-       .details = "The camera turns to the right around what it looks at; --at chooses the moment of an animation."},
+       .brief = "Render COUNT views around the model to NAME.####.png",
+       .details = "The camera turns to the right around its target; --at chooses the time of an animation."},
       {.names = "--frames",
        .value = into(a.frames, frame_range_type()),
-       .brief = "Render the frames FIRST:END (END not included) of a glTF animation, to -o NAME.####.png",
-       .details = "The number of the frame stands in the place of ####. Frame 0 is at 0 seconds. With --turntable: "
-                  "pictures of that.",
+       .brief = "Render frames FIRST to END - 1 of a glTF animation to NAME.####.png",
+       .details = "#### becomes the number of the frame. Frame 0 is at 0 seconds. With --turntable, FIRST:END selects "
+                  "views of "
+                  "the turntable.",
        .otherwise = "24 frames a second"},
       {.names = "--resume",
        .value = into(a.resume, existing_file_type()),
@@ -77,10 +80,10 @@ OptionTable render_command_options(RenderCommand& a) {
        .brief = "Write statistics (times, rays, photons, memory) as JSON"}};
   OptionTable table = joined(joined(render_options(a), scene_change_options(a.changes)), std::move(files));
   table = joined(std::move(table), output_options(a.output));
-  table.push_back({.names = "-q,--quiet", .value = flag(a.quiet), .brief = "No progress, no closing line"});
+  table.push_back({.names = "-q,--quiet", .value = flag(a.quiet), .brief = "Print no progress and no summary"});
   table.push_back({.names = "-v,--verbose",
                    .value = flag(a.verbose),
-                   .brief = "Show what auto expects of each choice: variance and work of a pass"});
+                   .brief = "Show the variance and the work that auto expects of each choice"});
   return table;
 }
 

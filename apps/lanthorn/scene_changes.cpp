@@ -164,13 +164,13 @@ OptionTable scene_change_options(SceneChanges& changes) {
   OptionTable table{
       {.names = "--look-at",
        .value = into(changes.look, look_at_type()),
-       .brief = "Camera at ex,ey,ez, looking at tx,ty,tz, with ux,uy,uz upwards",
-       .details = "Lens and picture are those of the scene file, unless options change them."},
+       .brief = "Place the camera at ex,ey,ez, looking at tx,ty,tz, with up vector ux,uy,uz",
+       .details = "Lens and resolution stay those of the scene file, unless other options change them."},
       {.names = "--light",
        .value = each_into(changes.lights, light_factor_type()),
-       .brief = "Multiply a light, such as light1=0.5; may be given several times",
-       .details = "light1, light2 ... are the scene's lights, area1 ... its emitting surfaces, in the file's "
-                  "order."}};
+       .brief = "Scale a light, such as light1=0.5 (repeatable)",
+       .details =
+           "light1, light2 ... are the scene's lights and area1 ... its emitting surfaces, in the order of the file."}};
   return joined(std::move(table), lens_options(changes.lens));
 }
 

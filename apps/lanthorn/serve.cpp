@@ -136,27 +136,27 @@ OptionTable serve_options(ServeCommand& a) {
   OptionTable own{
       {.names = "--port",
        .value = into(a.port, count_type({0, std::numeric_limits<std::uint16_t>::max()})),
-       .brief = "Port to listen at; 0: any that is free",
+       .brief = "Port to listen on; 0: any free port",
        .otherwise = std::to_string(a.port)},
       {.names = "--bind",
        .value = into(a.address, text_type("ADDRESS")),
-       .brief = "Address to listen at, in numbers",
-       .details = "127.0.0.1 can be reached from this machine alone; 0.0.0.0 opens the server to the whole network.",
+       .brief = "IP address to listen on",
+       .details = "127.0.0.1 is reachable only from this machine; 0.0.0.0 opens the server to the whole network.",
        .otherwise = a.address},
       {.names = "-p,--passes",
        .value = into(a.options.passes, count_type({1, most_passes})),
-       .brief = "Rest after so many passes of a view",
-       .otherwise = "go on"},
+       .brief = "Pause after this many passes of a view",
+       .otherwise = "continue"},
       {.names = "-t,--time",
        .value = into(a.options.seconds, duration_type()),
-       .brief = "Rest after this time on a view: 30s, 1.5m, 2h"},
+       .brief = "Pause after this time on a view: 30s, 1.5m, 2h"},
       {.names = "--noise",
        .value = into(a.options.noise, share_type()),
-       .brief = "Rest when the picture's error is below this, such as 2%"},
-      outputs_option(a.outputs, "Where to write the picture that is seen when the server ends", "nowhere")};
+       .brief = "Pause when the estimated error is below this: 2%"},
+      outputs_option(a.outputs, "Write the picture that is shown when the server ends", "nowhere")};
   OptionTable table = joined(joined(render_options(a), scene_change_options(a.changes)), std::move(own));
   table = joined(std::move(table), output_options(a.output));
-  table.push_back({.names = "-q,--quiet", .value = flag(a.quiet), .brief = "Print the address alone"});
+  table.push_back({.names = "-q,--quiet", .value = flag(a.quiet), .brief = "Print only the address"});
   return table;
 }
 

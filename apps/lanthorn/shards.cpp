@@ -140,7 +140,7 @@ OptionTable shards_options(ShardsCommand& a) {
        .required = true},
       {.names = "--shards",
        .value = into(a.shards, count_type({1, most})),
-       .brief = "Number of jobs that share them",
+       .brief = "Number of jobs that share the passes",
        .required = true},
       {.names = "-o,--output",
        .value = into(a.output, text_type("FILE")),
@@ -150,7 +150,7 @@ OptionTable shards_options(ShardsCommand& a) {
       {.names = "--format",
        .value = into(a.format,
                      choice_type<Format>({{"shell", Format::shell}, {"slurm", Format::slurm}, {"json", Format::json}})),
-       .brief = "What is printed: a script, a script that submits jobs to Slurm, or JSON",
+       .brief = "Print a shell script, a script that submits to Slurm, or JSON",
        .otherwise = "shell"}};
   return joined(picture_options(a), own);
 }
@@ -160,7 +160,7 @@ OptionTable shards_options(ShardsCommand& a) {
 void add_shards(CLI::App& app) {
   const auto a = std::make_shared<ShardsCommand>();
   constexpr const char* footer =
-      "Nothing is rendered. All options of render that decide the picture go into the commands.\n\nExamples:\n"
+      "Prints commands and renders nothing. The commands contain all options that decide the picture.\n\nExamples:\n"
       "  lanthorn shards a.pbrt -p 1000 --shards 50 -o a.exr > a.sh\n"
       "  lanthorn shards a.pbrt -p 1000 --shards 50 -o a.exr --format slurm > a.slurm.sh; bash a.slurm.sh -c 64";
   add_command(app, {"shards", "Print the commands that render a picture in parts, and merge it", shards_options(*a),

@@ -48,7 +48,7 @@ TEST_F(Cli, HelpNamesSubcommandsAndOptions) {
       {"shards", {"--passes", "--shards", "--format", "--output", "--look-at"}},
       {"list", {"integrator"}}};
   for (const std::string& name : subcommands) {
-    const Ending help = succeed({name, "--help"});
+    const Ending help = succeed({name, "--help", "--all"});
     EXPECT_EQ(help.err, "") << name;
     for (const std::string& option : options.at(name)) EXPECT_TRUE(contains(help.out, option)) << name << option;
   }

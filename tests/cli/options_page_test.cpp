@@ -39,7 +39,7 @@ class OptionsPage : public Cli {
   Places options() const {
     Places places;
     for (const std::string& command : commands())
-      for (const std::string& line : lines_of({command, "-h"}))
+      for (const std::string& line : lines_of({command, "--help", "--all"}))
         if (line.starts_with("  -"))
           for (const std::string& name : split(line.substr(2, line.find(' ', 2) - 2), ","))
             places[name].insert(command);
