@@ -57,8 +57,8 @@ double share_above(float level, const std::vector<float>& values) {
   return static_cast<double>(above) / static_cast<double>(std::max<std::size_t>(1, values.size()));
 }
 
-// A hundredth of the pixels may be brighter than white: lamps are. If no more than that can be seen in eight bits,
-// although there is light, the picture looks black.
+// Up to 1 % of the pixels may be brighter than white, because visible lights are. If no more than that fraction of the
+// pixels differs from black in eight bits, although there is light, the picture looks black.
 void warn_of_exposure(const fs::path& path, const Image& image, const DisplaySettings& display) {
   constexpr double few = 0.01;
   constexpr float nearly_black = 1.0f / 256, most_stops_of_gloom = 6;
@@ -104,7 +104,7 @@ ValueType<OcioView> ocio_type() {
 }  // namespace
 
 OptionTable display_options(OutputSettings& settings, const std::string& default_exposure) {
-  using Stops = std::optional<float>;  // none: measured
+  using Stops = std::optional<float>;  // nullopt: measured
   const auto set = [&settings](Stops stops) {
     settings.measures_exposure = !stops;
     settings.display.exposure = stops.value_or(0);
@@ -114,17 +114,18 @@ OptionTable display_options(OutputSettings& settings, const std::string& default
     return *settings.measures_exposure ? Stops() : Stops(settings.display.exposure);
   };
   constexpr double most = DisplaySettings::largest_exposure;
-  return {{.names = "--exposure",
-           .value = through<Stops>(number_or_word_type({-most, most}, "auto"), set, get),
-           .brief = "Of all pictures but .exr: stops of exposure, or auto",
-           .details = "auto makes a white surface in the light of the picture white, and says the number.",
-           .otherwise = default_exposure},
-          view_transform_option(settings.display),
-          {.names = "--ocio",
-           .value = into(settings.display.ocio, ocio_type()),
-           .brief = "In place of these: a view of an OpenColorIO configuration",
-           .details = "CONFIG is its file; without DISPLAY/VIEW it is the configuration's default. The exposure counts "
-                      "before it."}};
+  return {
+      {.names = "--exposure",
+       .value = through<Stops>(number_or_word_type({-most, most}, "auto"), set, get),
+       .brief = "Exposure of all pictures but .exr in stops, or auto",
+       .details = "auto shows a white surface under the picture's illumination as white, and reports the number.",
+       .otherwise = default_exposure},
+      view_transform_option(settings.display),
+      {.names = "--ocio",
+       .value = into(settings.display.ocio, ocio_type()),
+       .brief = "Use a view of an OpenColorIO configuration instead",
+       .details = "CONFIG is its file; without DISPLAY/VIEW the configuration's default applies. The exposure comes "
+                  "first."}};
 }
 
 ValueType<ToneCurve> view_transform_type() {
@@ -134,8 +135,8 @@ ValueType<ToneCurve> view_transform_type() {
 Option view_transform_option(DisplaySettings& display) {
   return {.names = "--view-transform",
           .value = into(display.curve, view_transform_type()),
-          .brief = "How bright colours fit on a display",
-          .details = "none clips them; filmic has a shoulder; agx takes their saturation, too, as film does.",
+          .brief = "How bright colours are fitted to a display",
+          .details = "none clips them; filmic has a shoulder; agx also desaturates them, as film does.",
           .otherwise = "none"};
 }
 
@@ -156,7 +157,7 @@ Option denoise_option(bool& denoise, const std::string& brief) {
           .value = flag(denoise),
           .brief = brief,
           .details =
-              ".exr files have the layers denoised, denoised.direct and so on beside those with noise; .png, .jpg "
+              ".exr files get the layers denoised, denoised.direct and so on beside the noisy ones; .png, .jpg "
               "and .tif show the denoised picture."};
 }
 
@@ -166,7 +167,7 @@ OptionTable output_options(OutputSettings& settings) {
       {{.names = "--reproducible",
         .value = flag(settings.reproducible),
         .brief = "Omit times from the files, so that equal images are equal files"},
-       denoise_option(settings.denoise, "Remove the noise that is left, layer by layer"),
+       denoise_option(settings.denoise, "Remove the remaining noise, layer by layer"),
        force_option(settings.force, "a .state that holds another render or more passes, and write-protected files")});
 }
 
@@ -180,14 +181,14 @@ Option outputs_option(std::vector<std::string>& outputs, const std::string& what
 
 namespace {
 
-// Metadata of EXR files come back as text.
+// Metadata of EXR files are read back as text.
 bool displays_emission(const std::string& metadata) {
   const nlohmann::json members = metadata.empty() ? nlohmann::json::object() : nlohmann::json::parse(metadata);
   const auto found = members.find("display_emission");
   return found != members.end() && (*found == true || *found == "true");
 }
 
-// Returns how the picture is shown unless it is an .exr.
+// Returns the display settings that apply unless the file is an .exr.
 DisplaySettings write(const fs::path& path, const Image& image, const OutputSettings& settings, bool measures_exposure,
                       const std::string& metadata) {
   DisplaySettings display = settings.display;
@@ -203,7 +204,7 @@ StatePicture::StatePicture(const RenderState& state, const std::vector<fs::path>
                            const RenderStatistics& statistics, bool is_denoised)
     : state_(state), summary_(summarize(state)), is_denoised_(is_denoised && summary_.pass_count > 1) {
   if (is_denoised && !is_denoised_)
-    warn("a picture of a single pass is not denoised: the noise is the difference of passes");
+    warn("a picture of a single pass is not denoised: the noise is measured from differences between passes");
   needs_all_layers_ = is_denoised_ || std::any_of(files.begin(), files.end(), has_layers);
   if (statistics.error_passes == summary_.pass_count) error_ = statistics.error;
 }

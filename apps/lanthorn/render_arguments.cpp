@@ -28,7 +28,7 @@ Option threads_option(unsigned& threads, const std::string& what) {
           .value = into(threads, count_type({0, most_threads})),
           .brief = "Number of threads; 0: all cores",
           .details = what +
-                     " on it. Of all cores, those count that CPU affinity and the quota of a control group "
+                     " on it. All cores are those that CPU affinity and the quota of a control group "
                      "(container) leave to the program; 'lanthorn info --machine' shows them.",
           .otherwise = "0"};
 }
@@ -37,24 +37,25 @@ OptionTable read_options(ReadOptions& o) {
   return {
       {.names = "--window-glass",
        .value = flag(o.window_glass),
-       .brief = "Let light pass straight through panes of glass",
-       .details = "Panes are thindielectric and flat slabs of clear dielectric. Every method then finds what comes "
-                  "through windows. For slabs this is an approximation."},
+       .brief = "Let light pass straight through glass panes",
+       .details = "Panes are thindielectric and flat slabs of clear dielectric. Every method then finds the light that "
+                  "comes through windows. For slabs this is an approximation."},
       {.names = "--sandbox",
        .value = flag(o.sandbox),
-       .brief = "For untrusted scenes: read only files in the scene's folder and below it",
-       .details = "This holds whatever names and links say. Messages show no content of files."},
+       .brief = "For untrusted scenes: read only files below the scene's folder",
+       .details = "Names and links that lead outside are rejected. Messages reveal no content of files."},
       max_pixels_option(o.max_pixels),
       {.names = "--texture-memory",
        .value = into(o.texture_memory, bytes_type()),
        .brief = "Limit for the textures in memory, such as 4G",
-       .details = "Larger textures go to a temporary file, and a render reads the parts that it needs. The image does "
-                  "not depend on the limit.",
+       .details =
+           "Larger textures go to a temporary file; the render reads only the parts that it needs. The image does "
+           "not depend on the limit.",
        .otherwise = "half of the free memory"},
       {.names = "--missing",
        .value = into(o.skip_missing, choice_type<bool>({{"error", false}, {"skip", true}})),
        .brief = "What to do about missing files that the scene names",
-       .details = "skip leaves out meshes and media; images are grey, spectra 1, lenses of 50 mm. A warning names "
+       .details = "skip omits meshes and media; images become grey, spectra 1, lenses 50 mm. A warning names "
                   "each file.",
        .otherwise = "error"},
       {.names = "--at",
@@ -78,13 +79,13 @@ namespace {
 OptionTable environment_options(EnvironmentChoice& e) {
   return {{.names = "--environment",
            .value = into(e.source, existing_file_or_word_type(environment_names())),
-           .brief = "Light the scene by a picture of its surroundings, or by studio, overcast or sunny",
-           .details = "It takes the place of the scene's environment and of the stand-in studio; lamps stay. Any image "
-                      "of 2:1 (equirectangular), 1:1 (octahedral) or of a cube will do. y is up."},
+           .brief = "Light the scene with an environment image, or with studio, overcast or sunny",
+           .details = "Replaces the scene's environment or the default studio; other lights stay. Any image "
+                      "of 2:1 (equirectangular), 1:1 (octahedral) or a cube layout works. y is up."},
           {.names = "--environment-rotate",
            .value = into(e.rotation, environment_rotation_type()),
            .brief = "Turn the environment, degrees counter-clockwise as seen from above",
-           .details = "At 0 the middle of an equirectangular picture lies in the direction +x, at 90 in -z.",
+           .details = "At 0 the centre of an equirectangular image lies in direction +x, at 90 in -z.",
            .otherwise = "0"},
           {.names = "--environment-scale",
            .value = into(e.scale, environment_scale_type()),
@@ -92,8 +93,8 @@ OptionTable environment_options(EnvironmentChoice& e) {
            .otherwise = "1"},
           {.names = "--environment-up",
            .value = into(e.up, choice_type<UpAxis>({{"y", UpAxis::y}, {"z", UpAxis::z}})),
-           .brief = "The axis of the scene that is upwards",
-           .otherwise = "y; for pbrt files the one nearer to the camera's direction upwards, as a warning says"}};
+           .brief = "The up axis of the scene",
+           .otherwise = "y; for pbrt files the one nearer to the camera's up vector, with a warning"}};
 }
 
 OptionTable scene_options(ReadOptions& o) {
@@ -125,38 +126,38 @@ OptionTable render_options(RenderArguments& a) {
       {.names = "--color",
        .value = into(o.color, choice_type<ColorMode>({{"rgb", ColorMode::rgb}, {"spectral", ColorMode::spectral}})),
        .brief = "Colour mode",
-       .otherwise = "spectral if glass disperses light or spectra other than metals' are measured, else rgb"},
+       .otherwise = "spectral if glass disperses light or the scene has measured spectra other than metals', else rgb"},
       {.names = "-r,--resolution",
        .value = into(o.resolution, resolution_type()),
-       .brief = "Size of the picture in pixels; the height is left out if it follows from the shape",
+       .brief = "Size of the picture in pixels; without height: keep the aspect ratio",
        .otherwise = "the scene file's"},
       {.names = "--clamp",
        .value = into(o.clamp, number_type<float>()),
        .brief = "Clamp each path's contribution to a pixel, except for directly visible lights (biased)",
-       .details = "There are fewer fireflies, but light is lost. The EXR names the limit.",
+       .details = "Reduces fireflies, but loses light. The EXR records the limit.",
        .otherwise = "no limit"},
       {.names = "--crop",
        .value = into(o.crop, pixel_window_type()),
        .brief = "Render only these pixels (x1, y1 excluded)",
        .details =
-           "With the same --photons they equal those of the whole picture, for every method but auto and mlt, exactly "
-           "or up to rounding (docs/using.md)."},
+           "With the same --photons they equal those of the whole picture, exactly or up to rounding, for every method "
+           "but auto and mlt (docs/using.md)."},
       {.names = "-n,--photons",
        .value = into(o.photons, count_type({.low = 1})),
        .brief = "Light paths per pass, such as 500000, 200k or 1M",
-       .details = "auto traces as many of them as pay, from none to 4 times the number.",
+       .details = "auto traces as many as are worth their cost, from none to 4 times the number.",
        .otherwise = "the scene file's (not for auto), else one per pixel, at least 100k (auto, bdpt, vcm: 10k; auto: "
                     "at most 524k)"},
       {.names = "-d,--max-depth",
        .value = into(o.max_depth, count_type({1, largest_int})),
-       .brief = "Scattering events per path, at most",
-       .details = "In media of high albedo the default is higher: until a thousandth of the light is left. The program "
-                  "says how much the limit may have cut off.",
+       .brief = "Maximum number of scattering events per path",
+       .details = "In media of high albedo the default is higher: until 0.1 % of the light is left. The program "
+                  "reports how much light the limit may have cut off.",
        .otherwise = "the scene file's, else 64, in media up to 4096"},
       {.names = "--memory",
        .value = into(o.memory, bytes_type()),
        .brief = "Limit for the picture and the photons or light vertices of a pass, such as 512M or 2G",
-       .details = "The scene is not counted. A render that needs more is refused before it starts; reversephotonmap "
+       .details = "The scene is not counted. A render that needs more is rejected before it starts; reversephotonmap "
                   "works in blocks of pixels that fit. Of many light paths, most methods keep 8.4M at a time (auto, "
                   "bdpt, bpm, vcm: 2.1M; sppm, ppm, photonmap: all). The image does not depend on it.",
        .otherwise = "free memory"}};

@@ -33,13 +33,13 @@ OptionTable render_command_options(RenderCommand& a) {
        .otherwise = "the scene file's, else 64"},
       {.names = "-t,--time",
        .value = into(a.options.seconds, duration_type()),
-       .brief = "Stop when this time is reached, after the running passes: 30s, 1.5m, 2h"},
+       .brief = "Stop after the passes that are running at this time: 30s, 1.5m, 2h"},
       {.names = "--noise",
        .value = into(a.options.noise, share_type()),
        .brief = "Stop when the picture's error is below this, such as 2%",
-       .details = "The error is measured while rendering, noise and bias together, and is below the bound with a "
-                  "probability of 90 %. It is the root of the mean square of each value's relative error, where dark "
-                  "values count as if they had a tenth of the picture's mean. -p and -t are limits beside it."},
+       .details = "The error (noise and bias) is measured while rendering and is below the bound with a "
+                  "probability of 90 %. It is the root mean square of each value's relative error, where dark "
+                  "values are compared to a tenth of the picture's mean. -p and -t remain limits."},
       {.names = "--pass-range",
        .value = into(a.options.pass_range, pass_range_type()),
        .brief = "Passes FIRST:END (END not included), for a shard to be merged with others",
@@ -51,8 +51,9 @@ OptionTable render_command_options(RenderCommand& a) {
        .otherwise = "every ten minutes, in a file that is removed after the render"},
       {.names = "--preview",
        .value = interval(a.preview_seconds, a.no_preview),
-       .brief = "Write the pictures while they are rendered, at least this far apart (5s), or none",
-       .details = "They are written after the first pass and then at times that double. none writes them at the end "
+       .brief = "Update the pictures while rendering, at intervals of at least this (5s), or none",
+       .details = "They are written after the first pass and each time the elapsed time has doubled. none writes them "
+                  "at the end "
                   "alone.",
        .otherwise = "2s on a terminal; else none"},
       {.names = "--tev",
@@ -61,13 +62,13 @@ OptionTable render_command_options(RenderCommand& a) {
        .details = "tev gets all layers."},
       {.names = "--turntable",
        .value = into(a.turntable, count_type({1, most_places})),
-       .brief = "Render so many pictures from all around the model, to -o NAME.####.png",
-       .details = "The camera turns to the right around what it looks at; --at chooses the moment of an animation."},
+       .brief = "Render this many pictures from all around the model, to -o NAME.####.png",
+       .details = "The camera turns to the right around what it looks at; --at chooses the time of an animation."},
       {.names = "--frames",
        .value = into(a.frames, frame_range_type()),
        .brief = "Render the frames FIRST:END (END not included) of a glTF animation, to -o NAME.####.png",
-       .details = "The number of the frame stands in the place of ####. Frame 0 is at 0 seconds. With --turntable: "
-                  "pictures of that.",
+       .details = "The frame's number replaces ####. Frame 0 is at 0 seconds. With --turntable: "
+                  "numbers of its pictures.",
        .otherwise = "24 frames a second"},
       {.names = "--resume",
        .value = into(a.resume, existing_file_type()),
@@ -80,12 +81,12 @@ OptionTable render_command_options(RenderCommand& a) {
   table.push_back({.names = "-q,--quiet", .value = flag(a.quiet), .brief = "No progress, no closing line"});
   table.push_back({.names = "-v,--verbose",
                    .value = flag(a.verbose),
-                   .brief = "Show what auto expects of each choice: variance and work of a pass"});
+                   .brief = "Show the variance and work of a pass that auto predicts for each choice"});
   return table;
 }
 
 std::string render_command_line(const RenderCommand& arguments) {
-  RenderCommand printed;  // at first with the defaults, which the table remembers
+  RenderCommand printed;  // starts with the defaults, which the table remembers
   const OptionTable table = render_command_options(printed);
   printed = arguments;
   return command_line("lanthorn render", table);

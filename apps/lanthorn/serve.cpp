@@ -79,11 +79,12 @@ void announce_address(const ServeCommand& a, std::uint16_t port, const std::stri
   print("http://{}:{}/{}/\n", host, port, token);
   finish_output();
   if (a.quiet) return;
-  say("Open this address in a browser; whoever knows it can look and steer. Ctrl-C ends the server.\n");
-  if (!is_loopback(a.address)) say("lanthorn: the connection is not encrypted: others in the network can read along\n");
+  say("Open this address in a browser; anyone who knows it can watch and control the render. Ctrl-C ends the "
+      "server.\n");
+  if (!is_loopback(a.address)) say("lanthorn: the connection is not encrypted: others on the network can read it\n");
 }
 
-// Until a signal comes, whose handler can only set a flag.
+// Runs until a signal arrives; the signal handler can only set a flag.
 void run_viewer(Viewer& viewer) {
   using namespace std::chrono_literals;
   while (!stop_requested()) {
@@ -98,7 +99,7 @@ void save(const ServeCommand& a, const std::vector<fs::path>& outputs, const Vie
   set_stage(Stage::saving);
   const RenderState* state = viewer.state();
   if (state == nullptr) {
-    say("lanthorn: no whole pass was rendered of this view: nothing to save\n");
+    say("lanthorn: no complete pass of this view was rendered: nothing to save\n");
     end_by_signal();
   }
   RenderFiles files = a;
@@ -140,23 +141,23 @@ OptionTable serve_options(ServeCommand& a) {
        .otherwise = std::to_string(a.port)},
       {.names = "--bind",
        .value = into(a.address, text_type("ADDRESS")),
-       .brief = "Address to listen at, in numbers",
-       .details = "127.0.0.1 can be reached from this machine alone; 0.0.0.0 opens the server to the whole network.",
+       .brief = "Numeric address to listen at",
+       .details = "127.0.0.1 can only be reached from this machine; 0.0.0.0 opens the server to the whole network.",
        .otherwise = a.address},
       {.names = "-p,--passes",
        .value = into(a.options.passes, count_type({1, most_passes})),
-       .brief = "Rest after so many passes of a view",
-       .otherwise = "go on"},
+       .brief = "Pause after this many passes of a view",
+       .otherwise = "no limit"},
       {.names = "-t,--time",
        .value = into(a.options.seconds, duration_type()),
-       .brief = "Rest after this time on a view: 30s, 1.5m, 2h"},
+       .brief = "Pause after this time on a view: 30s, 1.5m, 2h"},
       {.names = "--noise",
        .value = into(a.options.noise, share_type()),
-       .brief = "Rest when the picture's error is below this, such as 2%"},
-      outputs_option(a.outputs, "Where to write the picture that is seen when the server ends", "nowhere")};
+       .brief = "Pause when the picture's error is below this, such as 2%"},
+      outputs_option(a.outputs, "Where to write the picture shown when the server ends", "nowhere")};
   OptionTable table = joined(joined(render_options(a), scene_change_options(a.changes)), std::move(own));
   table = joined(std::move(table), output_options(a.output));
-  table.push_back({.names = "-q,--quiet", .value = flag(a.quiet), .brief = "Print the address alone"});
+  table.push_back({.names = "-q,--quiet", .value = flag(a.quiet), .brief = "Print only the address"});
   return table;
 }
 
@@ -165,8 +166,8 @@ OptionTable serve_options(ServeCommand& a) {
 void add_serve(CLI::App& app) {
   const auto a = std::make_shared<ServeCommand>();
   constexpr const char* footer =
-      "The page shows the picture as it refines, moves the camera (drag: around what is in the middle; shift or right\n"
-      "button: sideways; wheel: nearer and farther), sets lens and environment, dims lights, chooses method, size,\n"
+      "The page shows the picture as it refines, moves the camera (drag: orbit; shift or right\n"
+      "button: pan; wheel: zoom), sets lens and environment, dims lights, chooses method, size,\n"
       "layer, exposure and tone curve, denoises the picture, saves it and gives the command line that renders it.\n"
       "Its address holds a random token: without it, nothing can be read.\n"
       "From another machine: ssh -L 8080:localhost:8080 MACHINE, then open the address there. Nothing is rendered "

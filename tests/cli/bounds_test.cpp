@@ -307,7 +307,7 @@ TEST_F(Bounds, MeshesThatDoNotFitTogetherAreRefusedBeforeAnyIsRead) {
     EXPECT_EQ(ending.exit_code, 2) << ending.err;
     EXPECT_TRUE(contains(ending.err, "the geometry of 3 meshes (30000000 faces) with its search trees takes 5.2 GiB"))
         << ending.err;
-    EXPECT_EQ(contains(ending.err, "huge.pbrt: 3 meshes with 30000000 faces are going to take 5.2 GiB of memory"),
+    EXPECT_EQ(contains(ending.err, "huge.pbrt: 3 meshes with 30000000 faces will take 5.2 GiB of memory"),
               command.starts_with("info"))
         << ending.err;
   }

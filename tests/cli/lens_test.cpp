@@ -163,9 +163,9 @@ TEST_F(Lens, GroundsAreNotFramed) {
 
 TEST_F(Lens, BadOptionsSayWhatWasExpected) {
   dir_.write("flat.pbrt", "Camera \"orthographic\"\nWorldBegin\nLightSource \"infinite\"\nShape \"sphere\"\n");
-  refuse(quick("flat.pbrt", {"--fov", "30", "-o", "a.png"}), "--fov: the scene's camera is no perspective camera");
-  refuse(quick("flat.pbrt", {"--aperture", "8", "-o", "a.png"}), "--aperture: the scene's camera is no perspective");
-  refuse(quick("tiny.pbrt", {"--focus", "3", "-o", "a.png"}), "expected --aperture, too");
+  refuse(quick("flat.pbrt", {"--fov", "30", "-o", "a.png"}), "--fov: the scene's camera is not a perspective camera");
+  refuse(quick("flat.pbrt", {"--aperture", "8", "-o", "a.png"}), "--aperture: the scene's camera is not a perspective");
+  refuse(quick("tiny.pbrt", {"--focus", "3", "-o", "a.png"}), "add --aperture");
   refuse(quick("tiny.pbrt", {"--fov", "180", "-o", "a.png"}), "--fov 180: expected a number from 0.01 to 179");
   refuse(quick("tiny.pbrt", {"--orbit", "30", "-o", "a.png"}), "--orbit 30: expected two numbers of degrees");
   refuse(quick("tiny.pbrt", {"--camera", "Wide", "-o", "a.png"}), "--camera: only glTF files have several cameras");

@@ -192,7 +192,7 @@ TEST_F(CliOptions, WhatCannotBeWrittenIsRefusedBeforeTheFirstPass) {
   refuse({"compare", "a.exr", "a.exr", "--diff", "d.jpg"}, "--diff d.jpg: expected a name that ends in .png");
   refuse({"compare", "a.exr", "a.exr", "--json", "a.svg"}, "--json a.svg: expected a name that ends in .json");
   ASSERT_EQ(chmod(path("a.exr").c_str(), 0444), 0);
-  refuse_render({"-o", "a.exr"}, "-o a.exr: is there and write-protected");
+  refuse_render({"-o", "a.exr"}, "-o a.exr: exists and is write-protected");
   succeed(quick({"-o", "a.exr", "--force"}));
 }
 
@@ -219,7 +219,7 @@ TEST_F(CliOptions, StatesThatHoldSomethingElseAreNotReplaced) {
   EXPECT_EQ(load_state(path("a.state")).pass_count(), 1u);
 
   dir_.write("notes.state", "not a state");
-  refuse(render({"-p", "1", "-o", "notes.state"}), "notes.state: is there and cannot be read");
+  refuse(render({"-p", "1", "-o", "notes.state"}), "notes.state: exists and cannot be read");
   EXPECT_EQ(bytes("notes.state"), "not a state");
   succeed(render({"-p", "1", "-o", "notes.state", "--force"}));
 

@@ -109,7 +109,7 @@ TEST_F(Safety, ASecondSignalDropsThePassAndLeavesNoTraceOfIt) {
   child.send(SIGINT);
   await(child, "finishing this pass, then saving");
   child.send(SIGHUP);
-  await(child, "giving up this pass, then saving");
+  await(child, "abandoning this pass, then saving");
   const Ending ending = child.wait();
   EXPECT_EQ(ending.exit_code, 0) << "signal " << ending.signal << ending.err;
   const std::uint64_t passes = load_state(path("a.state")).pass_count();
@@ -215,7 +215,7 @@ TEST_F(Safety, ConvergeShowsProgressAndKeepsWhatItHas) {
   child.send(SIGINT);
   const Ending ending = child.wait();
   EXPECT_EQ(ending.exit_code, 0) << "signal " << ending.signal << ending.err;
-  EXPECT_TRUE(contains(ending.err, "ending with the renders that are complete")) << ending.err;
+  EXPECT_TRUE(contains(ending.err, "ending with the complete renders")) << ending.err;
   EXPECT_TRUE(contains(ending.out, "variance ~ passes^")) << ending.out;
   const std::uint64_t runs = json("c.json").value("runs", std::uint64_t{0});
   ASSERT_GE(runs, 2u);
@@ -315,7 +315,7 @@ TEST_F(VanishingFolder, TheRenderIsRescuedIntoTheUsersOwnFolder) {
 
 TEST_F(VanishingFolder, TheRenderIsKeptInMemoryUntilItCanBeWritten) {
   const auto child = start_and_remove_folder("/dev/null");
-  await(*child, "The render is in memory alone; trying again every 10 s");
+  await(*child, "The render exists only in memory; retrying every 10 s");
   fs::create_directory(path("sub"));
   const Ending ending = child->wait();
   EXPECT_EQ(ending.exit_code, 0) << ending.err;
@@ -324,7 +324,7 @@ TEST_F(VanishingFolder, TheRenderIsKeptInMemoryUntilItCanBeWritten) {
 
 TEST_F(VanishingFolder, ASignalEndsTheWaiting) {
   const auto child = start_and_remove_folder("/dev/null");
-  await(*child, "The render is in memory alone");
+  await(*child, "The render exists only in memory");
   child->send(SIGINT);
   const Ending ending = child->wait();
   EXPECT_EQ(ending.exit_code, 2) << "signal " << ending.signal;

@@ -118,13 +118,13 @@ TEST_F(Shards, MergeNamesWhatIsMissingDoubleOrDamaged) {
   };
   EXPECT_EQ(problems({"a.state", "b.state"}),
             "lanthorn: missing: render again with --pass-range 4:6\n"
-            "lanthorn: --expect 0:6: 0 of 2 states cannot be merged, 1 ranges of passes are missing: nothing is "
+            "lanthorn: --expect 0:6: 0 of 2 states cannot be merged, 1 ranges of passes missing: nothing is "
             "written\n");
   const std::string corrupt = problems({"a.state", "damaged.state"});
   EXPECT_TRUE(contains(corrupt, "damaged.state: damaged or truncated")) << corrupt;
   EXPECT_TRUE(contains(corrupt, "--pass-range 2:6\n")) << corrupt;
   const std::string doubled = problems({"a.state", "b.state", "c.state"});
-  EXPECT_TRUE(contains(doubled, "in several states: passes 3:4\n")) << doubled;
+  EXPECT_TRUE(contains(doubled, "several states hold passes 3:4\n")) << doubled;
   EXPECT_TRUE(contains(doubled, "--pass-range 5:6\n")) << doubled;
   const std::string other = problems({"a.state", "b.state", "d.state"});
   EXPECT_TRUE(contains(other, "d.state: cannot merge: the renders differ in --seed")) << other;

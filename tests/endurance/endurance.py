@@ -177,7 +177,7 @@ def disk_trial(trial: Trial, rng: random.Random) -> None:
         process = trial.start(outputs, more)
     saved = None
     try:
-        while process.poll() is None and "in memory alone" not in trial.said():
+        while process.poll() is None and "exists only in memory" not in trial.said():
             time.sleep(0.02)
         process.terminate()
         code, err = trial.finish(process)
