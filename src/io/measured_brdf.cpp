@@ -66,7 +66,7 @@ class Reader {
       file_.fail("\"phi_i\" does not begin at -pi, as it must if it spans a part of a turn");
   }
 
-  // The last two dimensions are a grid; those before must be as given.
+  // The last two dimensions are the grid; the outer ones must equal `outer`.
   NodeGrids grids(const std::string& field, const std::vector<std::size_t>& outer) const {
     const std::size_t dimensions = outer.size() + 2;
     const std::vector<std::size_t>& shape = file_.shape(field, dimensions);

@@ -18,12 +18,12 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "tensor files are little-endian");
 
-constexpr std::array<char, 12> magic_bytes{"tensor_file"};  // with its final zero
+constexpr std::array<char, 12> magic_bytes{"tensor_file"};  // including the final zero
 constexpr std::string_view magic(magic_bytes.data(), magic_bytes.size());
 constexpr std::uint32_t most_fields = 1024;
 constexpr std::size_t most_dimensions = 8;
 
-// Bytes of a number by its code: signed and unsigned integers of 1, 2, 4 and 8 bytes, floats of 2, 4 and 8.
+// Size of a number in bytes, by type code: signed and unsigned integers of 1, 2, 4 and 8 bytes, floats of 2, 4 and 8.
 constexpr std::size_t type_sizes[] = {0, 1, 1, 2, 2, 4, 4, 8, 8, 2, 4, 8};
 
 std::string dimensions_text(std::size_t count) {

@@ -63,7 +63,7 @@ void Skinning::apply(description::TriangleMesh& mesh) const {
     mesh.positions[i] = Point(m * glm::dvec4(mesh.positions[i], 1));
     if (!mesh.tangents.empty()) mesh.tangents[i] = Vec3(linear * glm::dvec3(mesh.tangents[i]));
     if (mesh.normals.empty()) continue;
-    // The cofactors: the inverse transpose times the determinant, defined for singular matrices, too.
+    // The cofactor matrix: the inverse transpose times the determinant; unlike the inverse, singular matrices have it.
     const glm::dmat3 cofactors(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]),
                                glm::cross(linear[0], linear[1]));
     mesh.normals[i] = Normal(cofactors * glm::dvec3(mesh.normals[i]));

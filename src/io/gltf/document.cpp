@@ -35,7 +35,7 @@ std::uint32_t little_endian_32(std::string_view bytes, std::size_t at) {
   return value;
 }
 
-// Chapter 4.4.
+// glTF 2.0 §4.4.
 Chunks split_container(std::string_view bytes, const std::string& name) {
   const auto fail = [&](const std::string& message) { return Error(SourceLocation{name}, message); };
   if (bytes.size() < 12) throw fail("the file ends inside of its header");
@@ -70,8 +70,8 @@ SourceLocation place_of_byte(std::string_view text, std::size_t byte, const std:
 }
 
 // Shortens nlohmann's "[json.exception.parse_error.101] parse error at line 1, column 3: syntax error while ... -
-// invalid literal; last read: 'what'; expected ...": returns the text from "syntax error" on, with at most a token of
-// the input.
+// invalid literal; last read: 'what'; expected ...": returns the text from "syntax error" on, quoting at most one token
+// of the input.
 std::string plain_message(const std::string& message) {
   const std::size_t at = message.find("column ");
   const std::size_t colon = at == message.npos ? at : message.find(": ", at);
@@ -86,8 +86,8 @@ std::string plain_message(const std::string& message) {
   return text;
 }
 
-// Counts the nesting before parsing. nlohmann's parser callback could do it, but with a callback the parser visits all
-// elements of an array again at its end.
+// Checks the nesting before parsing. nlohmann's parser callback could do it, but with a callback the parser visits all
+// elements of an array again at the array's end.
 void check_nesting(std::string_view text, const std::string& name) {
   int depth = 0;
   bool in_string = false;
@@ -151,7 +151,7 @@ int base64_digit(char c) {
   return -1;
 }
 
-// RFC 4648, §4 and §5; the padding may be missing.
+// RFC 4648, §4 and §5; padding is optional.
 std::optional<std::string> base64_decoded(std::string_view text) {
   while (!text.empty() && text.back() == '=') text.remove_suffix(1);
   std::string result;
@@ -172,7 +172,7 @@ std::optional<std::string> base64_decoded(std::string_view text) {
   return result;
 }
 
-// The part [offset, offset + length) of `bytes`. Error messages call their owner `what`.
+// The range [offset, offset + length) of `bytes`. Error messages call their owner `what`.
 std::string_view part(std::string_view bytes, std::uint64_t offset, std::uint64_t length, const Value& place,
                       const char* what) {
   if (offset > bytes.size() || length > bytes.size() - offset)
@@ -256,13 +256,13 @@ std::optional<std::string> Document::data_uri(const Value& uri) {
 
 namespace {
 
-// Of a name with slashes of any kind.
+// The last component of a name with slashes of either kind.
 std::string last_part(const std::string& name) {
   const std::size_t slash = name.find_last_of("/\\");
   return slash == name.npos ? name : name.substr(slash + 1);
 }
 
-// With backslashes, too: files are looked for as if these were slashes.
+// Treats backslashes as slashes, as the search for files does.
 bool leaves_folder(const std::filesystem::path& name) {
   std::string text = name.string();
   std::replace(text.begin(), text.end(), '\\', '/');
@@ -284,7 +284,7 @@ std::filesystem::path Document::add_file(const Value& uri) {
   }
   const auto warn_of = [&](const std::string& message) { warn("elsewhere", uri, message); };
   std::filesystem::path path = find_file(folder_, decoded.string(), access_, warn_of);
-  // Sites that host models may escape the names of the files themselves.
+  // Some model hosting sites escape the names of the files themselves.
   if (const std::filesystem::path literal = folder_ / text;
       access_ != nullptr && access_->is_missing(path) && !access_->is_missing(literal))
     path = literal;
@@ -306,7 +306,7 @@ description::Index Document::embedded_image(const Value& image) {
   return embedded_.emplace(image.pointer(), index).first->second;
 }
 
-// The other files of the document, which a missing one is reported with.
+// Adds the document's other files, so that a missing file is reported together with them.
 void Document::add_all_files() {
   for (const std::string_view array : {"buffers", "images"})
     for (std::size_t i = 0; i < count(array); ++i)
@@ -358,7 +358,7 @@ std::string Document::decompressed(const Value& view, const Value& compression) 
   const auto stride = static_cast<std::size_t>(compression.at("byteStride").integer(256));
   const std::uint64_t count = compression.at("count").integer(most);
   const std::string mode = compression.at("mode").text();
-  // One byte of either encoding decodes to fewer than 256 bytes, which bounds the count.
+  // In either encoding, one byte decodes to fewer than 256 bytes, which bounds the count.
   if (stride == 0 || count * stride > 256 * (source.size() + 256))
     throw compression.error("the compressed data is too short for " + std::to_string(count) + " elements of " +
                             std::to_string(stride) + " bytes");

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t most_instances = std::size_t{1} << 24;
 
-// The root nodes of the scene: the one that the member "scene" names, else the first. In a file without scenes, the
+// The root nodes of the scene that the member "scene" names, else of the first scene. In a file without scenes, the
 // nodes without a parent.
 std::vector<std::size_t> root_nodes(Document& document) {
   std::vector<std::size_t> roots;

@@ -58,15 +58,16 @@ Interpolation interpolation_of(const Value& sampler) {
   throw sampler.at("interpolation").error("must be STEP, LINEAR or CUBICSPLINE, not " + in_quotes(name));
 }
 
-// The keys around a time. Before the first and after the last key, both are the same.
+// The keys around a time. Before the first and after the last key, `first` equals `second`.
 struct Keys {
   std::size_t first = 0, second = 0;
-  double fraction = 0;  // of the way from one to the other
+  double fraction = 0;  // of the way from the first to the second
   double span = 0;      // seconds between them
 
   Keys(const Accessor& times, double seconds) {
     const auto time = [&](std::size_t i) { return static_cast<double>(times.number(i, 0)); };
-    std::size_t low = 0, high = times.count();  // times below `low` are not after `seconds`, those from `high` on are
+    std::size_t low = 0, high = times.count();  // invariant: times before `low` are <= `seconds`, times from `high` on
+                                                // are later
     while (low < high) {
       const std::size_t middle = low + (high - low) / 2;
       (time(middle) <= seconds ? low : high) = time(middle) <= seconds ? middle + 1 : middle;
@@ -79,7 +80,7 @@ struct Keys {
   }
 };
 
-// A channel's values: at each key `width` numbers, and as many for the tangents before and after it if it is a spline.
+// A channel's values: `width` numbers per key, and in a spline as many for the tangents before and after it.
 class Track {
  public:
   Track(Document& document, const Value& sampler, std::size_t components, std::size_t elements)
@@ -120,7 +121,7 @@ class Track {
         result.push_back(static_cast<double>(values_.number((key * parts + part) * elements_ + e, c)));
     return result;
   }
-  // Appendix C.5.
+  // Cubic spline interpolation (appendix C.5).
   Numbers spline(const Keys& keys) const {
     const Numbers a = value(keys.first, 1, 3), leaving = value(keys.first, 2, 3);
     const Numbers b = value(keys.second, 1, 3), arriving = value(keys.second, 0, 3);

@@ -35,7 +35,7 @@ Place parse(std::string_view text, const DirectiveSink& sink, FileStack& files, 
   return Parser(text, own, files, sink, context).parse();
 }
 
-// The same for a pbrt-v3 file, with pbrt-v4's directives.
+// As `parse` for a pbrt-v3 file, translated to pbrt-v4's directives.
 Place parse_upgraded(std::string_view text, const DirectiveSink& sink, FileStack& files, Context& context) {
   Upgrader upgrader(context, sink);
   const Place end = parse(
@@ -56,7 +56,7 @@ SceneDescription read(std::string_view text, std::filesystem::path folder, const
   try {
     assembler.finish((is_v3(context) ? parse_upgraded : parse)(text, build, files, context));
   } catch (const Error&) {
-    if (context.has_deferred()) context.report_missing();  // what is wrong may be defined in a missing file
+    if (context.has_deferred()) context.report_missing();  // a missing file may define what the error misses
     throw;
   }
   return std::move(context.scene);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Lights of pbrt-v3 have the spectra that they are given: a black body, which has a maximum of 1, or samples. Those of
-// pbrt-v4 have luminance 1 and a scale.
+// pbrt-v3 uses a light's spectrum as given: a black body, normalised to a maximum of 1, or samples. pbrt-v4 normalises
+// it to luminance 1 and multiplies by a scale.
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -48,7 +48,7 @@ class Emission {
     for (const char* ignored : {"samples", "nsamples"}) old.take(ignored);
   }
 
-  // With an image in place of the spectrum, the factor has no colour.
+  // If an image replaces the spectrum, the factor cannot have a colour.
   void into_scale(OldParameters& old, UpgradeOutput& output) {
     if (!spectrum_) return;
     const Factor grey = output.grey(*spectrum_, old.entity());
@@ -106,7 +106,7 @@ void infinite(OldParameters& old, UpgradeOutput& output) {
   emit_light("infinite", old, std::move(emission), std::move(image), output);
 }
 
-// pbrt-v3 puts the top of the image at the bottom of the picture.
+// pbrt-v3 projects the image upside down.
 void projection(OldParameters& old, UpgradeOutput& output) {
   Emission emission(old, "I", output);
   emission.into_scale(old, output);

@@ -38,7 +38,7 @@ void UpgradeOutput::add_texture(const std::string& name, bool is_spectrum, const
 }
 
 Parameter UpgradeOutput::scaled(Parameter spectrum, float factor) {
-  static_cast<void>(constant_colour(spectrum));  // throws for what is no spectrum
+  static_cast<void>(constant_colour(spectrum));  // throws unless it is a spectrum
   if (factor == 1) return spectrum;
   if (auto* numbers = std::get_if<std::vector<float>>(&spectrum.values)) {
     const bool is_sampled = spectrum.type == ParameterType::spectrum;
@@ -75,7 +75,7 @@ std::string UpgradeOutput::grey_texture(const std::string& name, Place place, in
   constexpr int deepest = 100;
   if (const auto known = grey_textures_.find(name); known != grey_textures_.end()) return known->second;
   const auto source = spectrum_textures_.find(name);
-  if (source == spectrum_textures_.end()) return name;  // not defined: reported where it is used
+  if (source == spectrum_textures_.end()) return name;  // undefined: reported where it is used
   if (depth > deepest)
     throw Error(place.location(), "textures are nested more than " + std::to_string(deepest) + " deep");
   Texture texture = source->second;

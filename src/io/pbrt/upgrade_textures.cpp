@@ -68,8 +68,7 @@ void checkerboard(OldTexture from) {
   from.add("checkerboard", {});
 }
 
-// (u, v, 0) as a colour.
-// The fractional parts of the coordinates as red and green. A bilerp has no periods: the first one is moved to [0,1].
+// The fractional parts of (u, v) as red and green. A bilerp is not periodic: only the first period, [0,1], is kept.
 void uv(OldTexture from) {
   const Place place = from.old.place();
   Parameters parameters = {rgb_parameter("v00", {0, 0, 0}, place), rgb_parameter("v01", {0, 1, 0}, place),
@@ -85,7 +84,7 @@ void uv(OldTexture from) {
   from.add("bilerp", std::move(parameters));
 }
 
-// A texture that pbrt-v4 has for numbers only: black and white mixed by it.
+// A texture that pbrt-v4 provides only as a float texture: mixes black and white by it.
 void noise(OldTexture from, const std::string& kind) {
   if (!from.is_spectrum) return from.add(kind, {});
   const Place place = from.old.place();

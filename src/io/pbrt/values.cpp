@@ -122,7 +122,7 @@ bool names_one_of(const std::set<Index>& lost, const std::unordered_map<std::str
   return found != textures.end() && lost.count(found->second) > 0;
 }
 
-// In place of a texture that is lost: grey surfaces, no emission, else the parameter's default.
+// Replaces a skipped texture: grey surfaces, no emission, else the parameter's default.
 std::optional<description::SpectrumParameter> neutral_spectrum(SpectrumRole role) {
   if (role == SpectrumRole::unbounded) return {};
   return description::SpectrumParameter{role == SpectrumRole::albedo ? 0.5f : 0.0f, {}};
