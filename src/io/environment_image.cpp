@@ -44,7 +44,7 @@ std::array<std::size_t, 3> color_channels(const Image& image, const fs::path& fi
              y = image.find_channel("Y");
   if (y) return {*y, *y, *y};
   if (r && g && b) return {*r, *g, *b};
-  throw Error({file.string()}, "is no environment: it has no channels R, G, B");
+  throw Error({file.string()}, "is not an environment: it has no channels R, G, B");
 }
 
 void copy_face(const Image& from, const std::array<std::size_t, 3>& channels, const FacePlace& place, int face,
@@ -114,7 +114,7 @@ Image read_layout(const std::vector<fs::path>& files, std::uint64_t max_pixels) 
   }
   if (!layout_of(image))
     throw Error({file.string()},
-                fmt::format("is no environment: it is {} x {} pixels; expected 2:1 (equirectangular), square "
+                fmt::format("is not an environment: it is {} x {} pixels; expected 2:1 (equirectangular), square "
                             "(octahedral), a cube of 6:1, 1:6, or a cross of 4:3 or 3:4 with nothing beside its faces",
                             image.width, image.height));
   return image;
@@ -129,7 +129,7 @@ Image read_environment(const std::vector<fs::path>& files, std::uint64_t max_pix
     for (const std::size_t c : channels)
       if (const float x = image.pixels[pixel + c]; x > 0 && x <= largest_environment_radiance) return image;
   throw Error({files.front().string()},
-              fmt::format("is no environment: it holds no light, which is numbers above 0 and up to {:g}",
+              fmt::format("is not an environment: it holds no light, that is, no number above 0 and up to {:g}",
                           largest_environment_radiance));
 }
 

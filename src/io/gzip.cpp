@@ -49,11 +49,11 @@ class Inflater {
       if (stream_.avail_in == 0 && remaining_ == 0)
         done_ = true;
       else if (inflateReset(&stream_) != Z_OK)
-        fail("damaged gzip data");
+        fail("the gzip data is damaged");
     } else if (starved) {
-      fail("gzip data ends early");
+      fail("the gzip data is truncated");
     } else if (result != Z_OK) {
-      fail("damaged gzip data");
+      fail("the gzip data is damaged");
     }
   }
 
@@ -104,7 +104,7 @@ std::string gunzip(std::string_view bytes, const std::string& name, std::size_t 
     used += piece.used;
     if (used > limit)
       throw Error(SourceLocation{name}, "decompressed data is larger than " + memory_text(static_cast<double>(limit)) +
-                                            ", the most that is read: 4 GiB, or half of the memory there is");
+                                            ", the limit: 4 GiB, or half of the memory");
     more = piece.used == piece.size;
   }
   return joined(std::move(pieces), used);

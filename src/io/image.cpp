@@ -192,7 +192,7 @@ void write_image(const fs::path& path, const Image& image, const DisplaySettings
              is_tiff = extension == ".tif" || extension == ".tiff";
   if (!is_jpeg && !is_tiff)
     throw Error({path.string()},
-                fmt::format("unknown kind of picture; its name must end in .exr (all layers, linear), {}",
+                fmt::format("unknown kind of picture; expected a name that ends in .exr (all layers, linear), {}",
                             fmt::join(picture_extensions().begin() + 1, picture_extensions().end(), ", ")));
   const std::vector<unsigned char> bytes =
       encode_by_codec(is_jpeg ? "jpeg" : "tiff", displayed(image, display), metadata);

@@ -104,7 +104,7 @@ class HeaderReader {
 
   std::vector<std::string_view> next_line() {
     ++line_;
-    if (at_ >= bytes_.size()) fail("the file ends inside of its header");
+    if (at_ >= bytes_.size()) fail("the file ends inside its header");
     const std::size_t end = std::min(bytes_.find('\n', at_), bytes_.size());
     std::string_view line = bytes_.substr(at_, end - at_);
     at_ = std::min(end + 1, bytes_.size());
@@ -184,7 +184,7 @@ class AsciiBody {
     skip_blanks();
     double value = 0;
     const auto [end, error] = std::from_chars(at_, end_, value);
-    if (error == std::errc::invalid_argument) fail(at_ == end_ ? "the file ends too early" : "expected a number");
+    if (error == std::errc::invalid_argument) fail(at_ == end_ ? "the file is truncated" : "expected a number");
     at_ = end;
     return error == std::errc::result_out_of_range ? 0 : value;
   }
@@ -245,7 +245,7 @@ class BinaryBody {
 
   double number(Number type) {
     const std::size_t size = size_of(type);
-    if (remaining() < size) fail("the file ends too early");
+    if (remaining() < size) fail("the file is truncated");
     const double value = load_number<swap>(type, at_);
     at_ += size;
     return value;
@@ -359,7 +359,7 @@ class BodyReader {
 
   std::uint64_t list_length(const Property& p) {
     const double count = body_.number(*p.count_type);
-    if (!(count >= 0) || count > static_cast<double>(body_.remaining())) body_.fail("a list has an impossible length");
+    if (!(count >= 0) || count > static_cast<double>(body_.remaining())) body_.fail("a list has an invalid length");
     return static_cast<std::uint64_t>(count);
   }
 
@@ -437,7 +437,7 @@ class BodyReader {
 
   std::uint32_t vertex_index(double index) {
     if (!(index >= 0 && index < 4294967295.0) || index != std::floor(index))
-      body_.fail("a face has an impossible vertex index");
+      body_.fail("a face has an invalid vertex index");
     const auto result = static_cast<std::uint32_t>(index);
     largest_index_ = std::max(largest_index_, result);
     return result;

@@ -110,9 +110,9 @@ auto discreet(const FileAccess& access, const std::string& name, Read&& read) {
   } catch (const Error& problem) {
     throw shown(access, problem.where, problem.message);
   } catch (const std::bad_alloc&) {
-    throw Error({name}, "the scene needs more memory than there is");
+    throw Error({name}, "the scene needs more memory than available");
   } catch (const std::length_error&) {
-    throw Error({name}, "the scene needs more memory than there is");
+    throw Error({name}, "the scene needs more memory than available");
   }
 }
 
@@ -130,8 +130,7 @@ SceneSource::SceneSource(const std::filesystem::path& path, const ReadOptions& o
       methods_(std::move(methods)),
       access_(access_for(folder_, options)) {
   if (!is_scene_file(path))
-    throw Error(name_ +
-                ": not a kind of scene file that Lanthorn reads (.pbrt, .gltf, .glb, .obj, all of them also as .gz)");
+    throw Error(name_ + ": unknown kind of scene file; expected .pbrt, .gltf, .glb or .obj, each also as .gz");
   if (!options.camera.empty() && !is_gltf(path))
     throw Error(name_ + ": --camera: only glTF files have several cameras");
 }

@@ -90,7 +90,7 @@ std::string message_of(const StandIns& lacking, const std::optional<StandInView>
   const std::string studio = "a studio of three soft lamps";
   if (!view) return has_studio ? "the file has no light: " + studio + " stands in" : "";
   std::string text = lacking.has_blind_camera ? "the file has no camera that sees anything" : "the file has no camera";
-  if (hides_lights) text += ", and its lights are enclosed in closed meshes, whose outside they do not light";
+  if (hides_lights) text += ", and its lights are inside closed meshes, whose outside they do not illuminate";
   const bool has_lamp = lacking.light && is_inside, is_in_studio = (lacking.light || hides_lights) && has_studio;
   if (lacking.light && (has_lamp || is_in_studio)) text += " and no light";
   const char* shown = is_inside    ? ": a view "

@@ -50,7 +50,7 @@ TensorFile::TensorFile(std::string_view bytes, std::string name) : bytes_(bytes)
 void TensorFile::fail(const std::string& message) const { throw Error(SourceLocation{name_}, message); }
 
 std::string_view TensorFile::take(std::size_t& at, std::size_t count) const {
-  if (count > bytes_.size() - at) fail("ends inside of its header");
+  if (count > bytes_.size() - at) fail("ends inside its header");
   const std::string_view taken = bytes_.substr(at, count);
   at += count;
   return taken;
@@ -79,7 +79,7 @@ TensorFile::Field TensorFile::read_field(std::size_t& at) const {
     size *= extent;
     field.shape.push_back(static_cast<std::size_t>(extent));
   }
-  if (offset > bytes_.size() || size > bytes_.size() - offset) fail("has a field that does not lie in the file");
+  if (offset > bytes_.size() || size > bytes_.size() - offset) fail("has a field that extends beyond the file");
   field.bytes = bytes_.substr(static_cast<std::size_t>(offset), static_cast<std::size_t>(size));
   return field;
 }

@@ -64,7 +64,7 @@ TEST_F(Cli, ConvertTranslatesToPbrtV4) {
   EXPECT_EQ(ending.out, "new.pbrt: old/scene.pbrt as a pbrt-v4 file\n");
   EXPECT_TRUE(contains(ending.err, "old/scene.pbrt:5:1: the roughness \"sigma\"")) << ending.err;
   EXPECT_TRUE(contains(succeed({"info", "new.pbrt"}).out, "2 diffuse"));
-  refuse({"convert", "new.pbrt", "newer.pbrt"}, "Film \"rgb\" in line 1 is of pbrt-v4 already");
+  refuse({"convert", "new.pbrt", "newer.pbrt"}, "Film \"rgb\" in line 1 belongs to pbrt-v4");
   refuse({"convert", "old/scene.pbrt", "old/part.pbrt"}, "part.pbrt, which the scene reads");
   refuse({"convert", "old/scene.pbrt", "old/scene.pbrt"}, "is the scene file");
   refuse({"convert", "old/scene.pbrt", "new.txt"}, "expected a name that ends in .pbrt");
@@ -392,7 +392,7 @@ TEST_F(Cli, RendersModelsWithoutCameraOrLight) {
   dir_.write("broken.gltf", "{\"asset\": {\"version\": \"2.0\"}, \"scene\": 4}");
   dir_.write("model.stl", "solid");
   refuse({"render", "broken.gltf", "-o", "a.png"}, "broken.gltf#/scene: is 4, but there are 0 scenes");
-  refuse({"render", "model.stl", "-o", "a.png"}, "not a kind of scene file that Lanthorn reads");
+  refuse({"render", "model.stl", "-o", "a.png"}, "unknown kind of scene file");
 }
 
 TEST_F(Cli, WritesToTheSceneFilesOwnNameAndReportsProgress) {

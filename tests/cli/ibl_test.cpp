@@ -143,9 +143,9 @@ TEST_F(CliIbl, RefusesWhatIsNoEnvironmentAndWritesNothing) {
   refuse({"ibl", "text.hdr", "-o", "out"}, "text.hdr");
   refuse({"ibl", "missing.hdr", "-o", "out"}, "missing.hdr: no such file");
   write_exr(path("odd.exr"), Image(50, 20, {"R", "G", "B"}));
-  refuse({"ibl", "odd.exr", "-o", "out"}, "odd.exr: is no environment: it is 50 x 20 pixels");
+  refuse({"ibl", "odd.exr", "-o", "out"}, "odd.exr: is not an environment: it is 50 x 20 pixels");
   write_exr(path("black.exr"), Image(64, 32, {"R", "G", "B"}));
-  refuse({"ibl", "black.exr", "-o", "out"}, "black.exr: is no environment: it holds no light");
+  refuse({"ibl", "black.exr", "-o", "out"}, "black.exr: is not an environment: it holds no light");
   dir_.write("empty.hdr", "");
   refuse({"ibl", "empty.hdr", "-o", "out"}, "empty.hdr: the file is no image");
   dir_.write("nowhere.pfm", "PF\n0 0\n-1.0\n");

@@ -267,7 +267,7 @@ class LinkTest(unittest.TestCase):
 
     def test_a_message_that_is_cut_short_ends_the_program(self):
         self.send({"request": "hello"}, b"1234", data_size=2**30)  # takes no gigabyte
-        self.assert_ends("ends too early")
+        self.assert_ends("is truncated")
 
     def test_a_message_that_is_too_large_ends_the_program(self):
         self.send({"request": "hello"}, data_size=2**60)

@@ -49,7 +49,7 @@ Skinning::Skinning(std::span<const glm::dmat4> joints, std::size_t vertices) : j
 void Skinning::add(std::size_t vertex, std::uint32_t joint, float weight, const Value& place) {
   if (!(weight > 0)) return;
   if (joint >= joints_.size())
-    throw place.error("vertex " + std::to_string(vertex) + " hangs on joint " + std::to_string(joint) +
+    throw place.error("vertex " + std::to_string(vertex) + " is bound to joint " + std::to_string(joint) +
                       ", but the skin has " + std::to_string(joints_.size()));
   blends_[vertex].sum += static_cast<double>(weight) * joints_[joint];
   blends_[vertex].weight += static_cast<double>(weight);

@@ -38,9 +38,9 @@ std::uint32_t little_endian_32(std::string_view bytes, std::size_t at) {
 // glTF 2.0 §4.4.
 Chunks split_container(std::string_view bytes, const std::string& name) {
   const auto fail = [&](const std::string& message) { return Error(SourceLocation{name}, message); };
-  if (bytes.size() < 12) throw fail("the file ends inside of its header");
+  if (bytes.size() < 12) throw fail("the file ends inside its header");
   if (const std::uint32_t version = little_endian_32(bytes, 4); version != 2)
-    throw fail("is version " + std::to_string(version) + " of glTF's binary container: only 2 is read");
+    throw fail("is version " + std::to_string(version) + " of glTF's binary container": only version 2 is supported");
   if (const std::uint32_t length = little_endian_32(bytes, 8); length > bytes.size())
     throw fail("the file has " + std::to_string(bytes.size()) + " bytes, but its header says " +
                std::to_string(length));
@@ -49,14 +49,14 @@ Chunks split_container(std::string_view bytes, const std::string& name) {
   Chunks chunks;
   bool has_text = false;
   for (std::size_t at = 12; at < bytes.size();) {
-    if (bytes.size() - at < 8) throw fail("the file ends inside of a chunk's header");
-    const std::uint32_t length = little_endian_32(bytes, at), type = little_endian_32(bytes, at + 4);
-    at += 8;
-    if (length > bytes.size() - at) throw fail("the file ends inside of a chunk");
-    constexpr std::uint32_t json_type = 0x4E4F534A, binary_type = 0x004E4942;
-    if (type == json_type && !std::exchange(has_text, true)) chunks.text = bytes.substr(at, length);
-    if (type == binary_type && !chunks.binary) chunks.binary = bytes.substr(at, length);
-    at += length;
+      if (bytes.size() - at < 8) throw fail("the file ends inside a chunk's header");
+      const std::uint32_t length = little_endian_32(bytes, at), type = little_endian_32(bytes, at + 4);
+      at += 8;
+      if (length > bytes.size() - at) throw fail("the file ends inside a chunk");
+      constexpr std::uint32_t json_type = 0x4E4F534A, binary_type = 0x004E4942;
+      if (type == json_type && !std::exchange(has_text, true)) chunks.text = bytes.substr(at, length);
+      if (type == binary_type && !chunks.binary) chunks.binary = bytes.substr(at, length);
+      at += length;
   }
   if (!has_text) throw fail("the file has no JSON chunk");
   return chunks;
@@ -177,7 +177,7 @@ std::string_view part(std::string_view bytes, std::uint64_t offset, std::uint64_
                       const char* what) {
   if (offset > bytes.size() || length > bytes.size() - offset)
     throw place.error("bytes " + std::to_string(offset) + " to " + std::to_string(offset + length) +
-                      " lie outside of the " + what + ", which has " + std::to_string(bytes.size()));
+                      " lie outside the " + what + ", which has " + std::to_string(bytes.size()));
   return bytes.substr(static_cast<std::size_t>(offset), static_cast<std::size_t>(length));
 }
 
@@ -192,7 +192,7 @@ void apply_filter(const std::string& filter, std::string& bytes, std::size_t cou
   else if (filter == "EXPONENTIAL" && stride % 4 == 0)
     meshopt_decodeFilterExp(bytes.data(), count, stride);
   else
-    throw place.error("filter " + in_quotes(filter) + " is not read for a byteStride of " + std::to_string(stride));
+    throw place.error("filter " + in_quotes(filter) + "is not supported for a byteStride of " + std::to_string(stride));
 }
 
 }  // namespace
@@ -279,7 +279,7 @@ std::filesystem::path Document::add_file(const Value& uri) {
   if (leaves_folder(decoded) || (colon != text.npos && text.find('/') > colon)) {
     decoded = last_part(decoded.string());
     if (access_ == nullptr || access_->is_missing(access_->find(folder_, decoded)))
-      throw uri.error("only data URIs and relative URIs that stay in the file's folder are read, not " +
+      throw uri.error("only data URIs and relative URIs that stay in the file's folder are supported, not " +
                       in_quotes(text));
   }
   const auto warn_of = [&](const std::string& message) { warn("elsewhere", uri, message); };

@@ -127,7 +127,7 @@ class MaterialReader {
     light.location = material_.location();
     document_.scene.view.film.display_emission = true;
     document_.warn("KHR_materials_unlit", material_,
-                   "KHR_materials_unlit: surfaces that are not lit emit their colour, which lights others a little");
+                   "KHR_materials_unlit: unlit surfaces emit their colour, which slightly illuminates other surfaces");
     return light;
   }
 
@@ -144,7 +144,7 @@ class MaterialReader {
     if (!use->image) return {{}, true};
     if (uv_set_.value_or(use->uv_set) != use->uv_set)
       document_.warn("texCoord", owner,
-                     "textures of one material use different texture coordinates: all get those of the first");
+                     "textures of one material use different texture coordinates: all use those of the first");
     uv_set_ = uv_set_.value_or(use->uv_set);
     return {use->image};
   }
@@ -235,7 +235,7 @@ class MaterialReader {
       result_.roughness = add(*image);
     }
     document_.warn("KHR_materials_pbrSpecularGlossiness", old,
-                   "KHR_materials_pbrSpecularGlossiness is approximated; its alpha is not read");
+                   "KHR_materials_pbrSpecularGlossiness is approximated; its alpha is ignored");
   }
 
   void read_specular() {
@@ -277,7 +277,7 @@ class MaterialReader {
                                                 "diffuseTransmissionColorTexture", neutral_grey);
     if (result_.diffuse_transmission.texture || result_.diffuse_transmission.value != 0)
       document_.warn("KHR_materials_diffuse_transmission", *diffuse,
-                     "KHR_materials_diffuse_transmission is approximated: what transmits does not reflect");
+                     "KHR_materials_diffuse_transmission is approximated: parts that transmit do not reflect");
   }
 
   void read_anisotropy() {
@@ -287,10 +287,10 @@ class MaterialReader {
     tangent_turn_ = anisotropy->number("anisotropyRotation", 0);
     if (anisotropy->find("anisotropyTexture"))
       document_.warn("anisotropyTexture", *anisotropy,
-                     "KHR_materials_anisotropy: directions of textures are ignored, their strength is not");
+                     "KHR_materials_anisotropy: the textures' directions are ignored, their strengths are used");
     if (result_.metallic.texture || result_.metallic.value < 1)
       document_.warn("KHR_materials_anisotropy", *anisotropy,
-                     "KHR_materials_anisotropy is approximated: metal and glass have it, opaque dielectrics do not");
+                     "KHR_materials_anisotropy is approximated: it affects metal and glass, not opaque dielectrics");
   }
 
   // Cauchy's formula n(lambda) = a + b / lambda^2 with the given index at the d line (587.6 nm) and the Abbe number

@@ -89,7 +89,7 @@ class Track {
         interpolation_(interpolation_of(sampler)),
         components_(components),
         elements_(elements) {
-    if (times_.count() == 0) throw sampler.at("input").error("an animation needs a key at least");
+    if (times_.count() == 0) throw sampler.at("input").error("an animation needs at least one key");
     const std::size_t needed = elements * (interpolation_ == Interpolation::cubic_spline ? 3 : 1);
     if (needed == 0 || values_.count() % needed != 0 || values_.count() / needed != times_.count())
       throw sampler.at("output").error("has " + std::to_string(values_.count()) + " elements, but " +
@@ -153,11 +153,11 @@ Pose::Pose(Document& document, std::optional<double> seconds) : document_(docume
   if (!seconds && count > 0)
     document.warn(
         "animations", document.root().at("animations"),
-        "animations are not played: objects are at rest; --at shows another time, such as --at 1.5 (seconds)");
+        "animations are not played: objects are in the rest pose; --at selects a time, such as --at 1.5 (seconds)");
   if (!seconds) return;
   if (count > 1)
     document.warn("animations", document.root().at("animations"),
-                  "the file has several animations: the first one is shown");
+                  "the file has several animations: the first one is used");
   animate(document.element("animations", 0), *seconds);
 }
 

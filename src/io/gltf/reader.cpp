@@ -52,9 +52,10 @@ constexpr std::array<std::string_view, 23> extensions_read = {
 void check_version(const Document& document) {
   const Value asset = document.root().at("asset");
   const std::string version = asset.at("version").text();
-  if (!version.starts_with("2.")) throw asset.at("version").error("only glTF 2 is read, not " + in_quotes(version));
+  if (!version.starts_with("2."))
+    throw asset.at("version").error("only glTF 2 is supported, not " + in_quotes(version));
   if (const auto least = asset.find("minVersion"); least && least->text() != "2.0")
-    throw least->error("only glTF 2.0 is read, not " + in_quotes(least->text()));
+    throw least->error("only glTF 2.0 is supported, not " + in_quotes(least->text()));
 }
 
 void check_extensions(Document& document) {
@@ -246,7 +247,7 @@ class SceneReader {
       }
     if (!strokes_.empty())
       document_.warn("strokes", document_.root(),
-                     "points and lines have no size in the file: they are a thousandth of the scene thick");
+                     "points and lines have no size in the file: their radius is a thousandth of the scene's size");
   }
 
   void add_shape(Shape shape, const Transform& place) {
@@ -391,7 +392,8 @@ class SceneReader {
     } else {
       throw source.at("type").error("must be point, spot or directional, not " + in_quotes(type));
     }
-    if (source.find("range")) document_.warn("range", source, "the range of lights is ignored: they reach everywhere");
+    if (source.find("range"))
+      document_.warn("range", source, "the range of lights is ignored: they reach any distance");
     light.light_to_world = Transform(to_world);
     if (light.light_to_world.is_singular()) throw reference.error("the light's node has a singular transformation");
     document_.scene.lights.push_back(std::move(light));

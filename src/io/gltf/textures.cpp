@@ -59,7 +59,7 @@ std::optional<Value> find_image(Document& document, const Value& texture) {
   const std::optional<Value> basis = plain ? plain : image_of(texture.extension("KHR_texture_basisu"));
   if (!basis) {
     document.warn("texture source", texture,
-                  "the texture has no image in PNG, JPEG or WebP format: a neutral value stands in");
+                  "the texture has no image in PNG, JPEG or WebP format: a neutral value replaces it");
     return {};
   }
   const auto uri = basis->find("uri");
@@ -67,7 +67,7 @@ std::optional<Value> find_image(Document& document, const Value& texture) {
   document.warn("KHR_texture_basisu", texture,
                 "KHR_texture_basisu: KTX2 images such as " +
                     (is_file ? file_in_quotes(uri->text()) : basis->location().file) +
-                    " cannot be read: neutral values stand in for textures without another image. Convert the file "
+                    " are not supported: neutral values replace textures without another image. Convert the file "
                     "with \"gltf-transform ktxdecompress IN OUT\" (of npm's @gltf-transform/cli and Khronos' "
                     "KTX-Software)");
   return {};

@@ -75,11 +75,11 @@ class MaterialFile {
         current->location = words_.location(key);
         current->name = words_.rest().text;
         if (current->name.empty())
-          warn_("mtl name", words_.location(), "the material has no name: usemtl without a name means it");
+          warn_("mtl name", words_.location(), "the material has no name: usemtl without a name refers to it");
       } else if (current) {
         read_line(key, *current);
       } else {
-        throw Error(words_.location(key), in_quotes(key.text) + " stands before the first newmtl");
+        throw Error(words_.location(key), in_quotes(key.text) + " appears before the first newmtl");
       }
     }
     if (current) add(*current);
@@ -104,7 +104,7 @@ class MaterialFile {
     const Word first = words_.word("a colour");
     if (first.text == "spectral" || first.text == "xyz") {
       warn_("mtl " + std::string(first.text), words_.location(first),
-            "colours given as " + in_quotes(first.text) + " are not supported: ignored");
+            "colours specified by " + in_quotes(first.text) + " are not supported: ignored");
       return true;
     }
     colour->r = colour->g = colour->b = not_negative(first);
@@ -347,7 +347,8 @@ class MaterialFile {
     const float opacity = std::clamp(m.opacity.value_or(1), 0.0f, 1.0f);
     if (opacity == 0 && !is_glass && !m.map_d)
       warn_("mtl d", m.location,
-            "material " + in_quotes(m.name) + " would be invisible by \"d\" or \"Tr\", most often by mistake: opaque");
+            "material " + in_quotes(m.name) +
+                " would be invisible because of \"d\" or \"Tr\", usually a mistake: it is opaque");
     if (m.map_d)
       surface.alpha = add_float(m, *m.map_d, Encoding::linear);
     else if (!is_glass)
@@ -360,7 +361,8 @@ class MaterialFile {
       scene_.area_lights.push_back(light);
     }
     if (!materials_.emplace(m.name, surface).second)
-      warn_("mtl twice", m.location, "material " + in_quotes(m.name) + " is defined twice: the first one counts");
+      warn_("mtl twice", m.location,
+            "material " + in_quotes(m.name) + " is defined twice: the first definition is used");
   }
 
   Words words_;

@@ -115,7 +115,7 @@ class Reader {
       color = Vec3(component(*r), component(*g), component(*b));
       if (!std::isfinite(color->x + color->y + color->z)) {
         color.reset();
-        warn("vertex colours", words_.location(key), "vertex colours that are no numbers count as white");
+        warn("vertex colours", words_.location(key), "vertex colours that are not numbers are read as white");
       }
     }
     if (!color && colors_.empty()) return;
@@ -217,15 +217,15 @@ class Reader {
   std::uint32_t index(std::int64_t i, std::size_t count, const Word& word, const char* what) const {
     const auto n = static_cast<std::int64_t>(count);
     if (i == 0 || i > n || i < -n)
-      throw Error(words_.location(word), std::string("there is no ") + what + " " + std::to_string(i) +
-                                             " here: " + std::to_string(count) + " come before this line");
+      throw Error(words_.location(word), std::string("there is no ") + what + " " + std::to_string(i) + " here: only " +
+                                             std::to_string(count) + " precede this line");
     return static_cast<std::uint32_t>(i > 0 ? i - 1 : n + i);
   }
 
   // An index of texture coordinates or normals, which some files refer to without having any.
   std::uint32_t attribute(std::int64_t i, std::size_t count, const Word& word, const char* what) {
     if (count > 0) return index(i, count, word, what);
-    warn(what, words_.location(word), std::string("faces name a ") + what + ", but none comes before them: ignored");
+    warn(what, words_.location(word), std::string("faces refer to a ") + what + ", but none precedes them: ignored");
     return none;
   }
 
@@ -387,7 +387,7 @@ class Reader {
                                       library + " of the lines \"newmtl " + material + "\" and " + map
                                 : "add the line " + map + " to its material";
     warn("texture beside", {scene_.filename, 1, 1},
-         "no material has a picture, but " + file_in_quotes(*picture) + " lies beside the file: to show it, " + how);
+         "no material has a picture, but " + file_in_quotes(*picture) + " lies beside the file: to use it, " + how);
   }
 
   Words words_;

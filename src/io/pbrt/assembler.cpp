@@ -90,7 +90,7 @@ void Assembler::coord_sys_transform(const std::string& name, Place place) {
     state_.ctm = it->second;
   else
     context_.warn("coordinate system " + name, place,
-                  "there is no coordinate system " + in_quotes(name) + ": the transform stays as it is");
+                  "there is no coordinate system " + in_quotes(name) + ": the transform does not change");
 }
 
 void Assembler::active_transform(Directive& d) {
@@ -120,7 +120,7 @@ Transform Assembler::fixed_transform(const char* thing, Place place) {
 
 void Assembler::push(Block block, Place place) {
   if (saved_.size() >= deepest_nesting)
-    throw Error(place.location(), "blocks are nested more than " + std::to_string(deepest_nesting) + " deep");
+    throw Error(place.location(), "blocks are nested more than " + std::to_string(deepest_nesting) + " levels deep");
   saved_.push_back({state_, block, place});
 }
 
@@ -193,7 +193,7 @@ void Assembler::option(Directive& d) {
 }
 
 void Assembler::world_begin(Place place) {
-  if (in_world_) throw Error(place.location(), "WorldBegin stands here for the second time");
+  if (in_world_) throw Error(place.location(), "this is the second WorldBegin");
   in_world_ = true;
   state_.ctm = {};
   state_.active = {true, true};
@@ -213,7 +213,7 @@ Index Assembler::object_index(const std::string& name, Place place) {
 
 void Assembler::object_begin(const std::string& name, Place place) {
   require_world("ObjectBegin", place);
-  if (current_object_) throw Error(place.location(), "ObjectBegin inside of an object");
+  if (current_object_) throw Error(place.location(), "ObjectBegin inside an object");
   const Index object = object_index(name, place);
   if (object_defined_[object]) throw Error(place.location(), "object " + in_quotes(name) + " is defined twice");
   push(Block::object, place);
@@ -231,7 +231,7 @@ void Assembler::object_end(Place place) {
 // world space.
 void Assembler::object_instance(const std::string& name, Place place) {
   require_world("ObjectInstance", place);
-  if (current_object_) throw Error(place.location(), "ObjectInstance inside of an object");
+  if (current_object_) throw Error(place.location(), "ObjectInstance inside an object");
   context_.scene.instances.push_back({object_index(name, place), object_to_world(), place.location()});
 }
 
@@ -497,7 +497,7 @@ void Assembler::resolve_references(description::Shape& shape) {
   const auto& material = context_.scene.materials[shape.material].node;
   if (shape.area_light && std::holds_alternative<description::InterfaceMaterial>(material)) {
     context_.warn("interface emitter", shape.location,
-                  "a shape of material \"interface\" cannot give off light: it is dark");
+                  "a shape of material \"interface\" cannot emit light: it does not emit");
     shape.area_light.reset();
   }
 }
@@ -557,7 +557,7 @@ void Assembler::read_ply_files() {
     } catch (const std::bad_alloc&) {
       results[i].problem = std::make_exception_ptr(
           Error(pending_plys_[i].place.location(),
-                "mesh \"" + printable(pending_plys_[i].path.string()) + "\" needs more memory than there is"));
+                "mesh \"" + printable(pending_plys_[i].path.string()) + "\" needs more memory than available"));
     } catch (...) {
       results[i].problem = std::current_exception();
     }

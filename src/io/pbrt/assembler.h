@@ -62,7 +62,7 @@ class Assembler {
   void alone(Directive& d);
 
   using Change = std::function<Transform(const Transform&)>;
-  /// Replaces the active transforms. Singular transforms are allowed; the things that use them check.
+  /// Changes the active transforms. Singular transforms are allowed here; the directives that use them check.
   void change_transform(const Change& change);
   void look_at(Directive& d);
   void translate_by(Directive& d);

@@ -98,7 +98,7 @@ RealisticCamera realistic(const ParameterList& list, Context& context) {
     if (e.curvature_radius != 0) continue;
     if (diameter > e.aperture_diameter && list.has("aperturediameter"))
       context.warn("aperturediameter", list.find("aperturediameter")->place,
-                   "\"aperturediameter\" is wider than the stop of the lens: it is as wide as that");
+                   "\"aperturediameter\" is wider than the aperture stop of the lens: it is reduced to the stop");
     e.aperture_diameter = std::min(e.aperture_diameter, diameter);
   }
   if (const Parameter* aperture = list.find("aperture"); aperture && list.get("aperture", "circular") != "circular")

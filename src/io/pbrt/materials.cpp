@@ -133,7 +133,7 @@ MaterialNode hair(const ParameterList& list, Context& context) {
           static_cast<int>(eumelanin || pheomelanin) >
       1)
     context.warn("hair color", list.place(),
-                 "hair has more than one of \"sigma_a\", a colour and melanin: the first of these counts");
+                 "hair has more than one of \"sigma_a\", a colour and melanin: the first of these is used");
   result.eumelanin = eumelanin.value_or(FloatParameter{pheomelanin ? 0.0f : 1.3f, {}});
   result.pheomelanin = pheomelanin.value_or(FloatParameter{0, {}});
   result.eta = float_or_texture(list, "eta", 1.55f, context);

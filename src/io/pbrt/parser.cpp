@@ -22,7 +22,8 @@ Error unexpected(const Token& found, const std::string& wanted) {
 Error unknown_directive(const Token& token, bool is_of_v2) {
   const std::string name = in_quotes(token.text);
   if (!is_of_v2) return {token.place.location(), "unknown directive " + name};
-  return {token.place.location(), "directive " + name + " is of pbrt-v2: files of pbrt-v3 and pbrt-v4 are read"};
+  return {token.place.location(),
+          "directive " + name + " belongs to pbrt-v2: only pbrt-v3 and pbrt-v4 files are supported"};
 }
 
 bool bool_value(const Token& token) {
@@ -197,7 +198,8 @@ void Parser::include(const Directive& directive) {
   if (std::find(files_.open.begin(), files_.open.end(), path) != files_.open.end())
     throw Error(place.location(), "file \"" + printable(path.string()) + "\" includes itself");
   if (files_.open.size() >= deepest_include)
-    throw Error(place.location(), "files include each other more than " + std::to_string(deepest_include) + " deep");
+    throw Error(place.location(),
+                "files include each other more than " + std::to_string(deepest_include) + " levels deep");
   const bool is_import = directive.name == import_begin;
   if (is_import) sink_(directive);
   const std::string text = read_included(path, place);

@@ -68,8 +68,8 @@ UpgradedScene upgrade(std::string_view text, std::filesystem::path folder, const
   if (!is_v3(context))
     throw Error({name}, context.version
                             ? context.version->text + " in line " + std::to_string(context.version->location.line) +
-                                  " is of pbrt-v4 already: there is nothing to convert"
-                            : "nothing in the file is of pbrt-v3: there is nothing to convert");
+                                  " belongs to pbrt-v4: there is nothing to convert"
+                            : "nothing in the file is specific to pbrt-v3: there is nothing to convert");
   const auto canonical = [](const std::filesystem::path& path) {
     return std::filesystem::weakly_canonical(path.empty() ? "." : path);
   };

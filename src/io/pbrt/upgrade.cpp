@@ -18,7 +18,7 @@ std::string saved_transform(std::size_t n) { return "TransformBegin " + std::to_
 
 Upgrader::Upgrader(Context& context, const DirectiveSink& sink) : output_(context, sink) {
   context.warn("version", context.version->location,
-               context.version->text + " is of pbrt-v3: the file is translated to pbrt-v4");
+               context.version->text + " belongs to pbrt-v3: the file is translated to pbrt-v4");
 }
 
 Upgrader::Handler Upgrader::handler(std::string_view directive) {
@@ -76,7 +76,7 @@ void Upgrader::finish() {
 }
 
 void Upgrader::only_in_v2(Directive& d) {
-  output_.note("directive " + in_quotes(d.name) + " is of pbrt-v2: left out", d.place);
+  output_.note("directive " + in_quotes(d.name) + " belongs to pbrt-v2: ignored", d.place);
 }
 
 void Upgrader::only_in_v4(Directive& d) {
@@ -85,7 +85,7 @@ void Upgrader::only_in_v4(Directive& d) {
 
 void Upgrader::open(std::string_view end, Place place) {
   if (blocks_.size() >= deepest_nesting)
-    throw Error(place.location(), "blocks are nested more than " + std::to_string(deepest_nesting) + " deep");
+    throw Error(place.location(), "blocks are nested more than " + std::to_string(deepest_nesting) + " levels deep");
   blocks_.push_back({end, place, material_, is_lamp_});
 }
 
@@ -200,7 +200,7 @@ void Upgrader::rename_textures(Parameters& parameters, const std::function<bool(
     const std::string name = texture_of(p);
     if (name.empty() || spectrum_textures_.find(name) || float_textures_.find(name)) return false;
     output_.note("texture " + in_quotes(name) + " is not defined before it is used: " + in_quotes(p.name) +
-                     " has its default, as in pbrt-v3",
+                     " keeps its default, as in pbrt-v3",
                  p.place);
     return true;
   });
@@ -270,7 +270,7 @@ void Upgrader::named_material(Directive& d) {
   const Material* known = materials_.find(d.strings.front());
   if (known == nullptr) {
     output_.note("material " + in_quotes(d.strings.front()) +
-                     " is not defined before it is used: the current material stays, as in pbrt-v3",
+                     " is not defined before it is used: the current material does not change, as in pbrt-v3",
                  d.place);
     return;
   }
@@ -317,7 +317,7 @@ bool Upgrader::override_material(Directive& d) {
 bool Upgrader::make_visible(Place place) {
   const bool has_surface = !material_.old || (!material_.old->kind.empty() && material_.old->kind != "none");
   if (has_surface || !is_lamp_) return false;
-  output_.note("lamps without a material are black: nothing is seen through them", place);
+  output_.note("emitters without a material are black: they hide what is behind them", place);
   output_.emit("AttributeBegin", {}, {}, place);
   output_.emit("Material", {"diffuse"}, {rgb_parameter("reflectance", {0, 0, 0}, place)}, place);
   return true;

@@ -66,7 +66,7 @@ class Emission {
  private:
   void multiply(Parameter& factor, const char* name, OldParameters& old, UpgradeOutput& output) {
     if (factor.type == ParameterType::real) {
-      output.note("\"float scale\" of " + old.entity() + " has no effect in pbrt-v3, where it is a colour: ignored",
+      output.note("\"float scale\" of " + old.entity() + " has no effect in pbrt-v3, which expects a colour: ignored",
                   factor.place);
       return;
     }
@@ -125,8 +125,7 @@ void projection(OldParameters& old, UpgradeOutput& output) {
 void note_edge(const OldParameters& old, UpgradeOutput& output) {
   const Parameter* width = old.find("conedeltaangle");
   const auto angle = width != nullptr ? constant_colour(*width) : std::nullopt;
-  if (!angle || angle->r != 0)
-    output.note("the edge of a spot light is that of pbrt-v4, which falls off more slowly", old.place());
+  if (!angle || angle->r != 0) output.note("spot lights have pbrt-v4's edge, which falls off more slowly", old.place());
 }
 
 }  // namespace

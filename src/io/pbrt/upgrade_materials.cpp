@@ -304,8 +304,7 @@ class MaterialUpgrade {
     for (Factor& f : uv)
       if (is_remapped && f.texture.empty() && !is_smooth) f.value = width_of(f.value);
     if (has_texture && is_remapped)
-      output_.note("the width of highlights by textures of roughness is the root of the roughness, as in pbrt-v4",
-                   place_);
+      output_.note("for textured roughness, GGX alpha is the square root of the roughness, as in pbrt-v4", place_);
     if (has_texture && is_remapped)
       for (Factor& f : uv) f.value *= f.value;
     return widths(uv[0], uv[1], has_texture && is_remapped);
@@ -342,7 +341,7 @@ class MaterialUpgrade {
   void drop_tint() {
     for (const char* name : {"Kr", "Kt"})
       if (const auto given = old_.take(name); given && constant_colour(*given) != Rgb{1, 1, 1})
-        output_.note(in_quotes(name) + " of " + old_.entity() + " is left out: it is clear", given->place);
+        output_.note(in_quotes(name) + " of " + old_.entity() + " is left out: the material is clear", given->place);
   }
 
   void note_disney() {

@@ -44,7 +44,7 @@ Upgraded upgrade_camera(const std::string& kind, OldParameters old, UpgradeOutpu
   }
   if (kind == "realistic") {
     old.take("simpleweighting");
-    output.note("pixels of the camera \"realistic\" hold the irradiance of the film, as in pbrt-v4: another brightness",
+    output.note("pixels of the camera \"realistic\" hold the film's irradiance, as in pbrt-v4: the brightness differs",
                 old.place());
   }
   return with_rest(kind, std::move(parameters), old);
@@ -107,8 +107,8 @@ Upgraded upgrade_photon_map(const std::string& kind, OldParameters old, UpgradeO
         "maxdepth", std::min(eye.value_or(otherwise), most) + std::min(photon.value_or(otherwise), most), old.place()));
   old.take("gatherangle");
   const bool gathers = old.take_bool("finalgather").value_or(true);
-  output.note("the integrator " + in_quotes(kind) + " is of pbrt-v2: Lanthorn's photonmap stands for it" +
-                  (gathers ? "" : ", which has a final gathering though \"finalgather\" is false"),
+  output.note("the integrator " + in_quotes(kind) + " is of pbrt-v2: Lanthorn's photonmap replaces it" +
+                  (gathers ? "" : ", which uses final gathering although \"finalgather\" is false"),
               old.place());
   return with_rest("photonmap", std::move(parameters), old);
 }
@@ -126,8 +126,9 @@ UpgradedIntegrator upgrade_integrator(const std::string& kind, OldParameters old
   if (kind == "photonmap" || kind == "exphotonmap") return {upgrade_photon_map(kind, std::move(old), output), passes};
   if (kind != "whitted" && kind != "directlighting") return {with_rest(kind, {}, old), passes};
   old.take("strategy");
-  output.note("the integrator " + in_quotes(kind) + " is replaced by \"path\", which adds light of all other paths",
-              old.place());
+  output.note(
+      "the integrator " + in_quotes(kind) + " is replaced by \"path\", which also includes all other light paths",
+      old.place());
   return {with_rest("path", {}, old), passes};
 }
 
@@ -268,12 +269,11 @@ std::optional<Upgraded> upgrade_shape(const std::string& kind, OldParameters old
     output.note("shapes of kind \"nurbs\", which pbrt-v4 does not have, are left out", old.place());
     return {};
   }
-  if (old.take("shadowalpha"))
-    output.note("\"shadowalpha\", a transparency for shadows alone, is ignored", old.place());
+  if (old.take("shadowalpha")) output.note("\"shadowalpha\", a transparency for shadows only, is ignored", old.place());
   old.take("discarddegenerateUVs");
   if (kind == "heightfield") return height_field(old);
   if (auto mesh = quadric(kind, old)) {
-    output.note("shapes of kind " + in_quotes(kind) + ", which pbrt-v4 does not have, are made of triangles",
+    output.note("shapes of kind " + in_quotes(kind) + ", which pbrt-v4 does not have, are converted to triangles",
                 old.place());
     return mesh;
   }

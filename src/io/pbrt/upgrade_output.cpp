@@ -66,7 +66,7 @@ Factor UpgradeOutput::grey(const Parameter& spectrum, const std::string& entity)
     return {0.5f};
   }
   if (colour->r != colour->g || colour->g != colour->b)
-    note(in_quotes(spectrum.name) + " of " + entity + " has a colour: its mean counts", spectrum.place);
+    note(in_quotes(spectrum.name) + " of " + entity + " is coloured: its mean is used", spectrum.place);
   return {mean(*colour)};
 }
 
@@ -77,7 +77,7 @@ std::string UpgradeOutput::grey_texture(const std::string& name, Place place, in
   const auto source = spectrum_textures_.find(name);
   if (source == spectrum_textures_.end()) return name;  // undefined: reported where it is used
   if (depth > deepest)
-    throw Error(place.location(), "textures are nested more than " + std::to_string(deepest) + " deep");
+    throw Error(place.location(), "textures are nested more than " + std::to_string(deepest) + " levels deep");
   Texture texture = source->second;
   if (texture.kind == "marble") {
     note("texture \"marble\" as a number is not supported: it is 0.5", place);

@@ -58,7 +58,7 @@ void scale(OldTexture from) {
   const auto a = constant_colour(first), b = constant_colour(second);
   if (a && b) return from.add("constant", {rgb_parameter("value", {a->r * b->r, a->g * b->g, a->b * b->b}, place)});
   if (!b)
-    from.output.note("the product of two textures: of one of them, the mean of red, green and blue counts", place);
+    from.output.note("the product of two textures: one of them is replaced by its mean of red, green and blue", place);
   const Factor factor = from.output.grey(second, "a texture \"scale\"");
   from.add("scale", {renamed(std::move(first), "tex"), factor_parameter("scale", factor, place)});
 }

@@ -187,10 +187,11 @@ TEST_F(EnvironmentFiles, OfCubesHaveSixLayouts) {
 
 TEST_F(EnvironmentFiles, ThatAreNoneAreNamed) {
   const auto odd = save("odd.exr", Image(10, 4, {"R", "G", "B"}));
-  EXPECT_EQ(problem_of({odd}),
-            odd.string() +
-                ": is no environment: it is 10 x 4 pixels; expected 2:1 (equirectangular), square (octahedral), a cube "
-                "of 6:1, 1:6, or a cross of 4:3 or 3:4 with nothing beside its faces");
+  EXPECT_EQ(
+      problem_of({odd}),
+      odd.string() +
+          ": is not an environment: it is 10 x 4 pixels; expected 2:1 (equirectangular), square (octahedral), a cube "
+          "of 6:1, 1:6, or a cross of 4:3 or 3:4 with nothing beside its faces");
   // A photograph has the shape of a cross, but something in its corners.
   for (const auto& [width, height] : std::vector<std::array<int, 2>>{{8, 6}, {6, 8}}) {
     Image photograph(width, height, {"R", "G", "B"});
@@ -200,7 +201,7 @@ TEST_F(EnvironmentFiles, ThatAreNoneAreNamed) {
               std::string::npos);
   }
   const auto depth = save("depth.exr", Image(4, 2, {"Z"}));
-  EXPECT_EQ(problem_of({depth}), depth.string() + ": is no environment: it has no channels R, G, B");
+  EXPECT_EQ(problem_of({depth}), depth.string() + ": is not an environment: it has no channels R, G, B");
   const auto face = save("face.exr", Image(2, 2, {"R", "G", "B"})),
              large = save("large.exr", Image(4, 4, {"R", "G", "B"}));
   EXPECT_EQ(problem_of({face, face, face, large, face, face}),
@@ -213,7 +214,7 @@ TEST_F(EnvironmentFiles, ThatAreNoneAreNamed) {
     dark.at(1, 1, 0) = value;
     const auto file = save("dark.exr", dark);
     EXPECT_EQ(problem_of({file}),
-              file.string() + ": is no environment: it holds no light, which is numbers above 0 and up to 1e+30");
+              file.string() + ": is not an environment: it holds no light, that is, no number above 0 and up to 1e+30");
   }
   dark.at(1, 1, 0) = 1e-20f;
   EXPECT_EQ(problem_of({save("dark.exr", dark)}), "");

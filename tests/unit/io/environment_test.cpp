@@ -130,7 +130,7 @@ TEST_F(Environment, OfPbrtFilesStandsAsTheCameraDoes) {
   SceneDescription zup = read("zup.pbrt", {.source = file(equirectangular())});
   ASSERT_FALSE(zup.warnings.empty());
   EXPECT_NE(zup.warnings.back().message.find("+z is up"), std::string::npos) << zup.warnings.back().message;
-  EXPECT_NE(zup.warnings.back().message.find("--environment-up y says otherwise"), std::string::npos);
+  EXPECT_NE(zup.warnings.back().message.find("use --environment-up y to change it"), std::string::npos);
   const Transform to_world = zup.view.camera.camera_to_world.start;
   const SharedScene scene = build_scene(std::move(zup));
   expect(scene, {0, 0, 1}, {0, 1, 0});

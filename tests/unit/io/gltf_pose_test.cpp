@@ -186,7 +186,7 @@ TEST(GltfSkin, ErrorsNameThePlace) {
   file.root["meshes"][0]["primitives"][0]["attributes"]["JOINTS_0"] =
       file.accessor<std::uint8_t>({0, 0, 0, 0, 2, 0, 0, 0, 0, 1, 9, 9}, 4);
   EXPECT_EQ(gltf_error(file),
-            "t.gltf#/meshes/0/primitives/0/attributes/JOINTS_0: vertex 1 hangs on joint 2, but the skin has 2");
+            "t.gltf#/meshes/0/primitives/0/attributes/JOINTS_0: vertex 1 is bound to joint 2, but the skin has 2");
   file = skinned();
   file.root["meshes"][0]["primitives"][0]["attributes"].erase("WEIGHTS_0");
   EXPECT_EQ(gltf_error(file), "t.gltf#/meshes/0/primitives/0/attributes: needs the member \"WEIGHTS_0\"");

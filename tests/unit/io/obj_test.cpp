@@ -97,18 +97,18 @@ TEST(Obj, ErrorsHaveLineAndColumn) {
   EXPECT_EQ(error_of("v 0 0 1e99\n"), "t.obj:1:7: the number \"1e99\" is too large");
   EXPECT_EQ(error_of("v 0 0 nan\n"), "t.obj:1:7: expected a number, found \"nan\"");
   EXPECT_EQ(error_of("v 0 0 1e-99\n"), "no error");
-  EXPECT_EQ(error_of(triangle + "f 1 2 4\n"), "t.obj:4:7: there is no vertex 4 here: 3 come before this line");
-  EXPECT_EQ(error_of(triangle + "f 1 2 0\n"), "t.obj:4:7: there is no vertex 0 here: 3 come before this line");
-  EXPECT_EQ(error_of(triangle + "f 1 2 -4\n"), "t.obj:4:7: there is no vertex -4 here: 3 come before this line");
+  EXPECT_EQ(error_of(triangle + "f 1 2 4\n"), "t.obj:4:7: there is no vertex 4 here: only 3 precede this line");
+  EXPECT_EQ(error_of(triangle + "f 1 2 0\n"), "t.obj:4:7: there is no vertex 0 here: only 3 precede this line");
+  EXPECT_EQ(error_of(triangle + "f 1 2 -4\n"), "t.obj:4:7: there is no vertex -4 here: only 3 precede this line");
   EXPECT_EQ(error_of(triangle + "vt 0 0\nf 1/2 2 3\n"),
-            "t.obj:5:3: there is no texture coordinate 2 here: 1 come before this line");
+            "t.obj:5:3: there is no texture coordinate 2 here: only 1 precede this line");
   EXPECT_EQ(error_of(triangle + "vn 0 0 1\nf 1//2 2 3\n"),
-            "t.obj:5:3: there is no normal 2 here: 1 come before this line");
+            "t.obj:5:3: there is no normal 2 here: only 1 precede this line");
   EXPECT_EQ(error_of(triangle + "f 1 2 3.5\n"),
             "t.obj:4:7: expected a corner such as 1, 1/2, 1//3 or 1/2/3, found \"3.5\"");
   EXPECT_EQ(error_of(triangle + "f 1 2 99999999999999999999\n"),
             "t.obj:4:7: expected a corner such as 1, 1/2, 1//3 or 1/2/3, found \"99999999999999999999\"");
-  EXPECT_EQ(error_of("mtllib m.mtl\n", "Kd 1 1 1\n"), "dir/m.mtl:1:1: \"Kd\" stands before the first newmtl");
+  EXPECT_EQ(error_of("mtllib m.mtl\n", "Kd 1 1 1\n"), "dir/m.mtl:1:1: \"Kd\" appears before the first newmtl");
   EXPECT_EQ(error_of("mtllib m.mtl\n", "newmtl a\nKd 1 -1 0\n"), "dir/m.mtl:2:6: must not be negative, but is \"-1\"");
   EXPECT_EQ(error_of("mtllib m.mtl\n", "newmtl a\nmap_Kd -clamp on\n"), "dir/m.mtl:2:17: a file name is missing");
 }
@@ -137,8 +137,8 @@ TEST(Obj, CornersOfFilesWithoutNormals) {
   const std::vector<std::string> all = warnings(scene);
   ASSERT_EQ(all.size(), 2u);
   EXPECT_EQ(all[0],
-            "t.obj:4:3: faces name a texture coordinate, but none comes before them: ignored (and 2 more like it)");
-  EXPECT_EQ(all[1], "t.obj:4:3: faces name a normal, but none comes before them: ignored (and 5 more like it)");
+            "t.obj:4:3: faces refer to a texture coordinate, but none precedes them: ignored (and 2 more like it)");
+  EXPECT_EQ(all[1], "t.obj:4:3: faces refer to a normal, but none precedes them: ignored (and 5 more like it)");
 }
 
 TEST(Mtl, SeveralLibrariesInALine) {
@@ -168,7 +168,7 @@ TEST(Obj, WhatIsNotReadIsSaidOnce) {
                                       "s 1\nl 1 2\nl 2 3\nf 1 2\nusemtl gold\nf 1 2 3\no x\ng y\n");
   EXPECT_EQ(warnings(scene),
             (std::vector<std::string>{"t.obj:1:8: dir/none.mtl: no such file: its materials are left out",
-                                      "t.obj:2:1: vertex colours that are no numbers count as white",
+                                      "t.obj:2:1: vertex colours that are not numbers are read as white",
                                       "t.obj:7:1: \"l\" is not supported: ignored (and 1 more like it)",
                                       "t.obj:9:1: faces of fewer than three corners are left out",
                                       "t.obj:11:1: there is no material \"gold\": grey is used"}));
@@ -273,13 +273,13 @@ TEST(Obj, APictureCalledAfterTheModelIsSuggested) {
   dir.write("head_Diffuse.TGA", "");
   EXPECT_EQ(
       said(faces),
-      "Head.obj:1:1: no material has a picture, but \"head_Diffuse.TGA\" lies beside the file: to show it, begin "
+      "Head.obj:1:1: no material has a picture, but \"head_Diffuse.TGA\" lies beside the file: to use it, begin "
       "the file with \"mtllib Head.mtl\" and \"usemtl skin\", and write Head.mtl of the lines \"newmtl skin\" and "
       "\"map_Kd head_Diffuse.TGA\"");
   EXPECT_TRUE(said(triangle + "f 1 2 3\n").empty()) << "no texture coordinates";
   dir.write("a.mtl", "newmtl m\n");
   EXPECT_TRUE(said("mtllib a.mtl\nusemtl m\n" + faces)
-                  .ends_with("to show it, add the line \"map_Kd head_Diffuse.TGA\" "
+                  .ends_with("to use it, add the line \"map_Kd head_Diffuse.TGA\" "
                              "to its material"));
   dir.write("a.mtl", "newmtl m\nmap_Kd head_d.png\n");
   EXPECT_EQ(said("mtllib a.mtl\nusemtl m\n" + faces), "");
@@ -397,15 +397,15 @@ TEST(Mtl, InvisibleAndNamelessMaterialsAreShown) {
   for (const char* line : {"d 0\n", "Tr 1\n"}) {
     const SceneDescription scene = with_mtl(line);
     EXPECT_EQ(scene.shapes.at(0).alpha.value, 1) << line;
-    EXPECT_EQ(warnings(scene), std::vector<std::string>{"dir/m.mtl:1:1: material \"m\" would be invisible by \"d\" or "
-                                                        "\"Tr\", most often by mistake: opaque"});
+    EXPECT_EQ(warnings(scene), std::vector<std::string>{"dir/m.mtl:1:1: material \"m\" would be invisible because of "
+                                                        "\"d\" or \"Tr\", usually a mistake: it is opaque"});
   }
   const SceneDescription nameless =
       read(triangle + "mtllib m.mtl\nusemtl\nf 1 2 3\n", {{"dir/m.mtl", "newmtl\nKd 1 0 0\n"}});
   EXPECT_EQ(rgb(std::get<DiffuseMaterial>(nameless.materials.at(nameless.shapes.at(0).material).node).reflectance),
             (Rgb{1, 0, 0}));
   EXPECT_EQ(warnings(nameless),
-            std::vector<std::string>{"dir/m.mtl:1:7: the material has no name: usemtl without a name means it"});
+            std::vector<std::string>{"dir/m.mtl:1:7: the material has no name: usemtl without a name refers to it"});
 }
 
 TEST(Mtl, TheAlphaOfColoursCountsWhereNoMapOfAlphaIsGiven) {

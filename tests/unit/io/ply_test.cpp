@@ -209,7 +209,7 @@ struct BadFile {
 TEST(Ply, ErrorsNameFileAndLine) {
   const std::string good = "0 0 0\n1 0 0\n1 1 0\n";
   const std::vector<BadFile> files = {
-      {"", "bad.ply:1:1: the file ends inside of its header"},
+      {"", "bad.ply:1:1: the file ends inside its header"},
       {"obj\n", "bad.ply:1:1: is not a PLY file: its first line is not \"ply\""},
       {"ply\nend_header\n", "bad.ply:2:1: the header has no format line"},
       {"ply\nformat ebcdic 1.0\n", "bad.ply:2:1: unknown encoding \"ebcdic\""},
@@ -221,10 +221,10 @@ TEST(Ply, ErrorsNameFileAndLine) {
       {"ply\nfrob\n", "bad.ply:2:1: unknown header line \"frob\""},
       {small_file("0 0 0\n1 0 zero\n1 1 0\n3 0 1 2\n"), "bad.ply:11: expected a number"},
       {small_file(good + "3 0 1 3\n"), "bad.ply:13: a face uses vertex 3, but there are 3"},
-      {small_file(good + "3 0 1 -1\n"), "bad.ply:13: a face has an impossible vertex index"},
-      {small_file(good + "3 0 1 0.5\n"), "bad.ply:13: a face has an impossible vertex index"},
-      {small_file(good + "9999999 0 1 2\n"), "bad.ply:13: a list has an impossible length"},
-      {small_file(good + "-3 0 1 2\n"), "bad.ply:13: a list has an impossible length"},
+      {small_file(good + "3 0 1 -1\n"), "bad.ply:13: a face has an invalid vertex index"},
+      {small_file(good + "3 0 1 0.5\n"), "bad.ply:13: a face has an invalid vertex index"},
+      {small_file(good + "9999999 0 1 2\n"), "bad.ply:13: a list has an invalid length"},
+      {small_file(good + "-3 0 1 2\n"), "bad.ply:13: a list has an invalid length"},
       {small_file(good, "4000000000"), "bad.ply:10: the file is too short for 4000000000 times element \"vertex\""},
       {small_file(good, "18446744073709551615"),
        "bad.ply:10: the file is too short for 18446744073709551615 times element \"vertex\""},

@@ -499,7 +499,7 @@ TEST(StandInLight, LightsThatMeshesEncloseGetTheHelpOfTheStudio) {
   EXPECT_TRUE(std::holds_alternative<description::InfiniteLight>(scene.lights[1].node));
   EXPECT_TRUE(scene.view.film.measures_exposure) << "if the lamp does shine through";
   const std::string& said = scene.warnings.back().message;
-  EXPECT_TRUE(said.starts_with("the file has no camera, and its lights are enclosed in closed meshes")) << said;
+  EXPECT_TRUE(said.starts_with("the file has no camera, and its lights are inside closed meshes")) << said;
   EXPECT_TRUE(said.ends_with("in a studio of three soft lamps, stands in")) << said;
 }
 

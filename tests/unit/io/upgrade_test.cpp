@@ -244,7 +244,7 @@ INSTANTIATE_TEST_SUITE_P(V3, UpgradedAlbedos, testing::ValuesIn(sums()),
 
 TEST(Upgrade, TheFirstSignTellsTheVersion) {
   const auto first_warning = [](const std::string& text) { return warnings_of(text).front(); };
-  const std::string message = " is of pbrt-v3: the file is translated to pbrt-v4";
+  const std::string message = " belongs to pbrt-v3: the file is translated to pbrt-v4";
   EXPECT_EQ(first_warning(v3_head + "WorldBegin"), "1 Film \"image\"" + message);
   EXPECT_EQ(first_warning("WorldBegin\nMaterial \"matte\""), "2 Material \"matte\"" + message);
   EXPECT_EQ(first_warning("WorldBegin\nMakeNamedMaterial \"m\" \"string type\" [\"glass\"]"),
@@ -274,8 +274,9 @@ TEST(Upgrade, MixturesAreErrors) {
       "t.pbrt:2:1: unknown directive \"ColorSpace\"; it is of pbrt-v4, but Film \"image\" in line 1 is of pbrt-v3");
   EXPECT_EQ(error_of(v3_head + "WorldBegin\nMaterial \"mate\""), "t.pbrt:3:1: unknown material \"mate\"");
   EXPECT_EQ(error_of("Film \"rgb\" \"color x\" [1 1 1]"), "t.pbrt:1:12: unknown parameter type \"color\"");
-  EXPECT_EQ(error_of("SurfaceIntegrator \"photonmap\""),
-            "t.pbrt:1:1: directive \"SurfaceIntegrator\" is of pbrt-v2: files of pbrt-v3 and pbrt-v4 are read");
+  EXPECT_EQ(
+      error_of("SurfaceIntegrator \"photonmap\""),
+      "t.pbrt:1:1: directive \"SurfaceIntegrator\" belongs to pbrt-v2: only pbrt-v3 and pbrt-v4 files are supported");
 }
 
 TEST(Upgrade, ErrorsHavePlaces) {
@@ -304,16 +305,16 @@ TEST(Upgrade, NotesAreCounted) {
                   "Texture \"t\" \"float\" \"constant\" Shape \"sphere\" \"texture shadowalpha\" \"t\"\n"
                   "NamedMaterial \"m\"\nMaterial \"matte\" \"texture Kd\" \"u\"\n");
   const std::vector<std::string> expected = {
-      "1 Film \"image\" is of pbrt-v3: the file is translated to pbrt-v4",
-      "2 the integrator \"whitted\" is replaced by \"path\", which adds light of all other paths",
-      "4 shapes of kind \"cone\", which pbrt-v4 does not have, are made of triangles (2 times)",
+      "1 Film \"image\" belongs to pbrt-v3: the file is translated to pbrt-v4",
+      "2 the integrator \"whitted\" is replaced by \"path\", which also includes all other light paths",
+      "4 shapes of kind \"cone\", which pbrt-v4 does not have, are converted to triangles (2 times)",
       "6 shapes of kind \"nurbs\", which pbrt-v4 does not have, are left out",
       "7 the roughness \"sigma\" of the material \"matte\" is left out",
-      "8 \"Kt\" of Material \"glass\" is left out: it is clear",
+      "8 \"Kt\" of Material \"glass\" is left out: the material is clear",
       "9 the data of materials \"fourier\" cannot be read: they are replaced by \"diffuse\"",
-      "10 \"shadowalpha\", a transparency for shadows alone, is ignored",
-      "11 material \"m\" is not defined before it is used: the current material stays, as in pbrt-v3",
-      "12 texture \"u\" is not defined before it is used: \"Kd\" has its default, as in pbrt-v3"};
+      "10 \"shadowalpha\", a transparency for shadows only, is ignored",
+      "11 material \"m\" is not defined before it is used: the current material does not change, as in pbrt-v3",
+      "12 texture \"u\" is not defined before it is used: \"Kd\" keeps its default, as in pbrt-v3"};
   EXPECT_EQ(warnings, expected);
 }
 
@@ -403,7 +404,7 @@ TEST(Upgrade, WritesTheTranslation) {
   EXPECT_EQ(after.files.count("../old/parts/one.ply"), 1u);
   EXPECT_EQ(test::error_text([&] { upgrade_pbrt(dir.path() / "new/scene.pbrt", dir.path()); }),
             (dir.path() / "new/scene.pbrt").string() +
-                ": Film \"rgb\" in line 4 is of pbrt-v4 already: there is nothing to convert");
+                ": Film \"rgb\" in line 4 belongs to pbrt-v4: there is nothing to convert");
 }
 
 // What pbrt-v2 has of its own is translated, or left out with a warning; the rest is as in pbrt-v3.
@@ -424,7 +425,7 @@ TEST(Upgrade, FilesOfPbrtV2AreRead) {
   const std::vector<std::string> said = warnings_of(text);
   for (const char* name : {"Renderer", "Volume", "VolumeIntegrator"})
     EXPECT_TRUE(std::any_of(said.begin(), said.end(), [&](const std::string& warning) {
-      return warning.ends_with("directive \"" + std::string(name) + "\" is of pbrt-v2: left out");
+      return warning.ends_with("directive \"" + std::string(name) + "\" belongs to pbrt-v2: ignored");
     })) << name;
   const auto milk = [](const std::string& name) {
     return read(v3_head + "WorldBegin\nMaterial \"subsurface\" \"color sigma_a\" [1 2 3] \"color " + name +
@@ -451,10 +452,10 @@ TEST(Upgrade, PhotonMapsAreOurs) {
     const std::vector<std::string> all = warnings_of(head + more + "WorldBegin WorldEnd");
     return all.empty() ? std::string() : all.back();
   };
-  const std::string replaced = "2 the integrator \"photonmap\" is of pbrt-v2: Lanthorn's photonmap stands for it";
+  const std::string replaced = "2 the integrator \"photonmap\" is of pbrt-v2: Lanthorn's photonmap replaces it";
   EXPECT_EQ(said(""), replaced);
   EXPECT_EQ(said("\"bool finalgather\" false "),
-            replaced + ", which has a final gathering though \"finalgather\" is false");
+            replaced + ", which uses final gathering although \"finalgather\" is false");
 }
 
 // Quadrics that pbrt-v4 lacks: their points and normals, by the equations f(p) = 0 and grad f of the surfaces.
