@@ -147,7 +147,7 @@ TEST_F(CliIbl, RefusesWhatIsNoEnvironmentAndWritesNothing) {
   write_exr(path("black.exr"), Image(64, 32, {"R", "G", "B"}));
   refuse({"ibl", "black.exr", "-o", "out"}, "black.exr: is not an environment: it holds no light");
   dir_.write("empty.hdr", "");
-  refuse({"ibl", "empty.hdr", "-o", "out"}, "empty.hdr: the file is no image");
+  refuse({"ibl", "empty.hdr", "-o", "out"}, "empty.hdr: the file is not a supported image");
   dir_.write("nowhere.pfm", "PF\n0 0\n-1.0\n");
   refuse({"ibl", "nowhere.pfm", "-o", "out"}, "nowhere.pfm: the file is empty");
 }

@@ -291,7 +291,8 @@ TEST_F(Lens, EnvironmentsLightAnyScene) {
             mean_of("bar.obj", {"--environment", "sunny", "--environment-rotate", "180"}));
   refuse(quick("bar.obj", {"-o", "a.png", "--environment", "studoi"}),
          "--environment studoi: expected an existing file, or studio or overcast or sunny; did you mean studio?");
-  refuse(quick("bar.obj", {"-o", "b.png", "--environment", "moves.gltf"}), "moves.gltf: the file is no image");
+  refuse(quick("bar.obj", {"-o", "b.png", "--environment", "moves.gltf"}),
+         "moves.gltf: the file is not a supported image");
 }
 
 TEST_F(Lens, PicturesForADisplayHaveManyFormats) {

@@ -131,7 +131,7 @@ TEST_F(Mpi, ErrorsAreSaidOnce) {
 TEST_F(Mpi, ALauncherOfAnotherMpiIsNoticed) {
   const Ending ending = run_shell("PMI_SIZE=4 L render tiny.pbrt -p 1 -o a.exr");
   EXPECT_EQ(ending.exit_code, 2) << ending.err;
-  EXPECT_TRUE(contains(ending.err, "PMI_SIZE says that there are 4 processes")) << ending.err;
+  EXPECT_TRUE(contains(ending.err, "PMI_SIZE indicates 4 processes")) << ending.err;
 }
 
 }  // namespace

@@ -114,7 +114,7 @@ TEST_F(CliOptions, SlipsOfTheHandAreAnsweredWithTheNearestName) {
     return Words{"render", "tiny.pbrt", "-o", "a.exr", "-i", name, "--set", set};
   };
   expect(method("probpm", "alpha=1"), "probppm");
-  refuse(method("auto", "alpha=1"), "'auto' has no parameters; -i names a method that has");
+  refuse(method("auto", "alpha=1"), "'auto' has no parameters; -i selects another method");
   expect({"list", "ptah"}, "path");
   expect(quick({"--set", "roulete-depth=3"}), "roulette-depth");
   expect(quick({"--set", "guide=photon"}), "photons");

@@ -228,8 +228,8 @@ TEST(Lens, ErrorsNameTheirPlace) {
   EXPECT_EQ(error_of(glass, "\"float focusdistance\" 0.2").substr(0, 65),
             "t.pbrt:1:1: the lens cannot focus on a distance of 0.200000 m: it");
   EXPECT_EQ(error_of("-100 1 1.5 50\n100 100 1 50\n"),
-            "t.pbrt:1:1: the lens does not gather light: it has no focal length above 0");
-  EXPECT_EQ(error_of("100 1 1.5 50\n"), "t.pbrt:1:1: behind the last element of the lens there must be air");
+            "t.pbrt:1:1: the lens is not converging: its focal length is not positive");
+  EXPECT_EQ(error_of("100 1 1.5 50\n"), "t.pbrt:1:1: the medium behind the last element of the lens must be air");
   EXPECT_EQ(error_of(glass, "\"float focusdistance\" 0"),
             "t.pbrt:1:46: parameter \"focusdistance\" of Camera \"realistic\" must be above 0");
 }

@@ -334,7 +334,7 @@ TEST_F(RadiancePicture, DamagedOnesAreErrors) {
   EXPECT_EQ(problem(line(std::string("\x05\x05\x05\x05\x01\x01\x01\x09", 8))), run_too_long);
   EXPECT_EQ(problem(line("\x01\x01\x01\x01")), run_too_long) << "nothing to repeat";
   EXPECT_EQ(problem(line(std::string("\x02\x02\0\x0a", 4))),
-            ": the file cannot be read: has a line of another length than the rest");
+            ": the file cannot be read: has a line of a different length");
   EXPECT_EQ(problem("#?RADIANCE\nFORMAT=32-bit_rle_xyze\n\n-Y 1 +X 1\n1234"),
             ": the file cannot be read: holds pixels that are not 32-bit_rle_rgbe");
   for (const char* const resolution : {"-Y 1", "-Y 1 +Y 1", "Y 1 X 1", "-Y 0 +X 1", "-Y -1 +X 1", "-Y 9999999999 +X 1",

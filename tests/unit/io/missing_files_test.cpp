@@ -127,8 +127,8 @@ TEST_F(MissingFiles, PointersOfGitLfsAreMissingFiles) {
   dir_.write("b.ply", pointer);
   const std::string mesh = "Shape \"plymesh\" \"string filename\" ";
   dir_.write("one.pbrt", "WorldBegin\n" + mesh + "\"a.ply\"\n");
-  EXPECT_TRUE(contains(error_of("one.pbrt"),
-                       place("a.ply") + ": only a pointer of Git LFS is here; git lfs pull fetches the file"))
+  EXPECT_TRUE(
+      contains(error_of("one.pbrt"), place("a.ply") + ": only a Git LFS pointer; git lfs pull fetches the file"))
       << error_of("one.pbrt");
   dir_.write("two.pbrt", "WorldBegin\n" + mesh + "\"a.ply\"\n" + mesh + "\"b.ply\"\n" + mesh + "\"no.ply\"\n");
   EXPECT_TRUE(contains(error_of("two.pbrt"), "3 files are missing")) << error_of("two.pbrt");
