@@ -18,12 +18,10 @@ namespace lanthorn::program {
 
 struct OutputSettings {
   DisplaySettings display;                ///< for all pictures but .exr
-  std::optional<bool> measures_exposure;  ///< measure the exposure of each picture; false: use the display's; nullopt:
-                                          ///< as the scene requests
+  std::optional<bool> measures_exposure;  ///< of each picture; false: use the display's; nullopt: the scene decides
   bool reproducible = false;              ///< omit times from the files
   bool denoise = false;                   ///< .exr files also get the denoised layers, all others show them
-  bool hints = true;                      ///< report the measured exposure, or suggest a better one if the picture is
-                                          ///< too dark or too bright
+  bool hints = true;                      ///< report the measured exposure, or suggest a better one
   bool force = false;  ///< replace states that hold something else, and files that are write-protected
 };
 

@@ -26,8 +26,7 @@ struct ImageErrors {
 
 struct ErrorOptions {
   double epsilon = 0.01;            ///< of relMSE, in the square of the picture's unit
-  std::optional<double> rel_clamp;  ///< upper limit of each value's relative squared error, so that a few fireflies do
-                                    ///< not dominate the mean
+  std::optional<double> rel_clamp;  ///< clamps each value's relative squared error, against fireflies
 };
 
 /// Throws `lanthorn::Error` unless both pictures have equal sizes and numbers of channels.

@@ -39,8 +39,7 @@ struct RenderOptions : ViewOptions {
   std::optional<ColorMode> color{};
   std::optional<std::uint64_t> photons{};    ///< light paths per pass
   std::optional<int> max_depth{};            ///< scattering events of a whole path, from light to eye
-  std::optional<std::uint64_t> memory{};     ///< bytes for film, photons and pixels together; default: what the machine
-                                             ///< has
+  std::optional<std::uint64_t> memory{};     ///< bytes for film, photons and pixels; default: all available
   std::map<std::string, std::string> set{};  ///< the method's parameters
 };
 

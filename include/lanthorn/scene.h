@@ -192,8 +192,7 @@ std::string reason_for_black(const Scene& scene, const ViewDescription& view);
 
 /// What is in a scene.
 struct SceneSummary {
-  std::uint64_t triangles = 0, patches = 0, quadrics = 0, curves = 0;  ///< counted once, however often they are
-                                                                       ///< instanced
+  std::uint64_t triangles = 0, patches = 0, quadrics = 0, curves = 0;  ///< counted once per object, not per instance
   std::uint64_t instances = 0, textures = 0;
   std::map<std::string, int> lights, materials;  ///< counts by kind
   Bounds bounds;                                 ///< in the coordinates of the file

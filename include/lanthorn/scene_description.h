@@ -233,8 +233,7 @@ struct DielectricMaterial {
 
   SpectrumValue eta = 1.5f;
   Roughness roughness;
-  SpectrumParameter tint{1.0f, {}};  ///< transmission factor for light that enters and leaves; each interface applies
-                                     ///< its square root
+  SpectrumParameter tint{1.0f, {}};  ///< transmission factor for entering plus leaving; its square root per interface
   std::optional<ThinFilm> film{};    ///< on the outside
 };
 struct ThinDielectricMaterial {
@@ -289,8 +288,7 @@ struct PlasticMaterial {
   SpectrumParameter specular_color{1.0f, {}};  ///< factor of the reflection at normal incidence only
   SpectrumParameter sheen_color{0.0f, {}};     ///< of fibres on the surface (glTF's sheen; see surface/cloth.h)
   FloatParameter sheen_roughness{0, {}};       ///< square root of the sheen lobe's width
-  std::optional<ThinFilm> film{};              ///< on the surface; above values give its reflectance at normal
-                                               ///< incidence
+  std::optional<ThinFilm> film{};              ///< on the surface whose reflectance at normal incidence is given above
 };
 struct CoatedPlasticMaterial {
   static constexpr const char* kind = "coatedplastic";
@@ -325,12 +323,10 @@ struct Material {
                ThinDielectricMaterial, CoatedDiffuseMaterial, CoatedConductorMaterial, HairMaterial, PlasticMaterial,
                CoatedPlasticMaterial, MeasuredMaterial, MixMaterial, InterfaceMaterial>
       node;
-  std::optional<NormalMap> normal_map;  ///< used with `displacement` only if its image has colours of normals; not of a
-                                        ///< mix
+  std::optional<NormalMap> normal_map;         ///< beside `displacement` only if it looks like normals; never of a mix
   std::optional<FloatParameter> displacement;  ///< metres along the normal; affects shading normals only
-  std::optional<Index> interior;  ///< medium inside shapes of this material (subsurface scattering); overrides that of
-                                  ///< the shape
-  std::string name;               ///< empty if anonymous
+  std::optional<Index> interior;               ///< medium inside shapes (subsurface scattering); overrides the shape's
+  std::string name;                            ///< empty if anonymous
   SourceLocation location;
 };
 
@@ -605,8 +601,7 @@ struct Film {
   std::array<float, 4> crop{0, 1, 0, 1};  ///< x0, x1, y0, y1 as fractions
   std::string filename;                   ///< output file name in the scene file, may be empty
   bool measures_exposure = false;         ///< the scene file format has no exposure: measure one for display
-  bool display_emission = false;  ///< visible emitters are shown with display colours, independent of exposure (unlit
-                                  ///< surfaces)
+  bool display_emission = false;          ///< visible emitters (unlit surfaces) have display colours, without exposure
   float imaging_ratio = 1;  ///< factor from radiance to pixel value (pbrt's iso * exposure / 100 ... = 1 by default)
   std::optional<float> white_balance;         ///< colour temperature in kelvin that becomes white
   std::optional<float> largest_component;     ///< samples are scaled down so that no CIE XYZ component exceeds this

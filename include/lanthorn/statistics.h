@@ -40,8 +40,7 @@ struct RayCounts {
   std::uint64_t walk = 0;    ///< nearest-hit rays
   std::uint64_t shadow = 0;  ///< occlusion rays
   std::uint64_t spared = 0;  ///< occlusion rays that shadow photons made unnecessary
-  PathEnds eye, light;       ///< paths from the camera and from lights; 0 for methods that choose path lengths
-                             ///< themselves
+  PathEnds eye, light;       ///< paths from the camera and from lights; 0 if the method chooses lengths
 
   RayCounts& operator+=(const RayCounts& o) {
     walk += o.walk;
@@ -62,8 +61,7 @@ struct StageSeconds {
 /// Sums over the passes of one call of `Session::render`.
 struct RenderStatistics {
   std::uint64_t passes = 0;
-  std::uint64_t passes_elsewhere = 0;               ///< included in `passes`, but not yet gathered from the processes
-                                                    ///< of a team
+  std::uint64_t passes_elsewhere = 0;               ///< included in `passes`, but not gathered from the team yet
   double seconds = 0;                               ///< wall clock, including the preparation
   double prepare_seconds = 0;                       ///< pilot passes
   std::array<double, phase_count> phase_seconds{};  ///< by Phase

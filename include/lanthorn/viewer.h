@@ -55,8 +55,7 @@ struct ViewerOptions {
   /// `run_viewer` only: returns the command line for a render, which the panel shows and copies.
   std::function<std::string(const ShownRender&)> command = [](const ShownRender&) { return std::string(); };
   std::filesystem::path scene_file;  ///< supplies folder and name of files that are saved
-  std::uint32_t frames = 0;          ///< `render_frames`: number of frames; `run_viewer`: closes after as many, 0:
-                                     ///< never
+  std::uint32_t frames = 0;          ///< of `render_frames`; `run_viewer`: closes after as many, 0: never
 };
 
 /// Duration of one stage of a frame.

@@ -168,8 +168,7 @@ class InteractiveRender::Worker {
   std::uint64_t number_ = 1;
   InteractivePhase told_ = InteractivePhase::preparing;  // the last phase counted in `number_`
   std::atomic<bool> drop_{false};                        // abandons the running pass
-  std::atomic<bool> end_{false};                         // abandons every pass, including the first coarse ones of an
-                                                         // edit
+  std::atomic<bool> end_{false};                         // abandons every pass, even the first coarse one of an edit
   std::atomic<bool> rest_{false};                        // pauses after the running pass
   std::atomic<bool> drop_denoising_{false};              // abandons the running denoising
 

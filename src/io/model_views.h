@@ -24,8 +24,7 @@ ViewFrame view_from(float azimuth, float elevation);
 /// Materials of surfaces whose back should not be shown.
 struct OneSided {
   std::set<description::Index> materials = {};
-  bool is_certain = false;  ///< true: viewers cull back faces; false: faces may be wound the wrong way, as in many
-                            ///< files
+  bool is_certain = false;  ///< viewers cull back faces; else faces may be wound wrongly
 };
 
 /// Sides of a surface that receive light.

@@ -24,8 +24,7 @@ struct StandInView {
   const char* name = "";     ///< "from the front"
   Direction up{0, 1, 0};     ///< of the model, as assumed by this view
   std::optional<Inside> inside{};
-  bool hides_lights = false;  ///< the scene's own lights, inside its meshes, illuminate nothing that is visible from
-                              ///< outside
+  bool hides_lights = false;  ///< the scene's own lights, inside meshes, light nothing visible from outside
 };
 
 /// The view that shows most of the scene's triangle meshes. Backs of materials in `one_sided` should not be shown; if

@@ -27,8 +27,7 @@ static_assert(std::endian::native == std::endian::little, "the protocol's number
 constexpr std::array<char, 4> magic{'L', 'N', 'T', 'H'};
 constexpr std::uint32_t most_json_bytes = 1U << 28;
 constexpr std::uint64_t most_data_bytes = std::uint64_t{1} << 36;
-constexpr std::size_t chunk_bytes = std::size_t{1} << 24;  // bounds the memory that a header with a false size can
-                                                           // claim
+constexpr std::size_t chunk_bytes = std::size_t{1} << 24;  // limits what a header with a false size can allocate
 
 struct Header {
   std::array<char, 4> magic{};

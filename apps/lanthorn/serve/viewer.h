@@ -111,8 +111,7 @@ class Viewer {
   InteractiveRender render_;
 
   mutable std::mutex mutex_;                         // guards all members below
-  std::map<std::string, SharedScene> surroundings_;  // by source: the first scene with each, whose image later ones
-                                                     // share
+  std::map<std::string, SharedScene> surroundings_;  // by source: the first scene with it; later ones share its image
   std::vector<NamedLight> lights_;
   Shown wanted_;
   std::map<std::uint64_t, Shown> scenes_;  // by revision, starting with that of the last frame

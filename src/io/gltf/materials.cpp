@@ -74,8 +74,7 @@ class MaterialReader {
     }
     use->channel = alpha_channel;
     use->scale = factor;
-    use->encoding = Encoding::srgb;  // as for the colours of the same image, so that it is decoded only once; alpha is
-                                     // linear anyway
+    use->encoding = Encoding::srgb;  // as for colours of the image: decoded once; alpha is linear
     use->threshold = cutoff;
     const FloatParameter alpha = add(*use);
     return has_colors_ && !cutoff ? times_vertex_alpha(alpha) : alpha;

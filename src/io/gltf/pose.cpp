@@ -66,8 +66,7 @@ struct Keys {
 
   Keys(const Accessor& times, double seconds) {
     const auto time = [&](std::size_t i) { return static_cast<double>(times.number(i, 0)); };
-    std::size_t low = 0, high = times.count();  // invariant: times before `low` are <= `seconds`, times from `high` on
-                                                // are later
+    std::size_t low = 0, high = times.count();  // times before `low` are <= `seconds`, from `high` on later
     while (low < high) {
       const std::size_t middle = low + (high - low) / 2;
       (time(middle) <= seconds ? low : high) = time(middle) <= seconds ? middle + 1 : middle;

@@ -335,8 +335,7 @@ class MaterialFile {
     ImageTexture image = *m.map_kd;
     image.channel = 3;
     image.scale = opacity;
-    return add_float(m, image, image.encoding);  // as for the colours, so that the image is decoded only once; alpha is
-                                                 // linear anyway
+    return add_float(m, image, image.encoding);  // as for colours of the image: decoded once; alpha is linear
   }
 
   void add(const Source& m) {

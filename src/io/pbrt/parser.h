@@ -17,8 +17,7 @@ namespace lanthorn::pbrt {
 /// The files being read, outermost first, and totals of what has been read.
 struct FileStack {
   std::vector<std::filesystem::path> open;
-  std::set<std::string> names;  ///< each once, however often it is included; a set keeps addresses valid, to which
-                                ///< places point
+  std::set<std::string> names;  ///< each once, however often included; a set, because places point to them
   std::size_t bytes_left = std::size_t{16} << 30;  ///< for all inclusions together
   /// Limit for repeated inclusions: a few files that each include the next twice would be read 2^64 times.
   static constexpr std::size_t most_repeated_bytes = std::size_t{1} << 30;
