@@ -38,7 +38,7 @@ AnimatedTransform framing(const description::Camera& camera, int width, int heig
   const float tangent = std::tan(to_radians(perspective->fov / 2)) / margin;
   const float distance =
       half.z + std::max(half.x / (tangent * std::max(aspect, 1.0f)), half.y / (tangent * std::max(1 / aspect, 1.0f)));
-  const Transform move = translate({centre.x, centre.y, centre.z - (distance > 0 ? distance : 1)});  // of a point: 1
+  const Transform move = translate({centre.x, centre.y, centre.z - (distance > 0 ? distance : 1)});  // 1 for a point
   const AnimatedTransform& to_world = camera.camera_to_world;
   return {to_world.start * move, to_world.end * move, to_world.start_time, to_world.end_time};
 }

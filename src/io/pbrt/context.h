@@ -34,8 +34,7 @@ struct Context {
   std::set<description::Index> lost_float_textures, lost_spectrum_textures;
   std::unordered_map<std::string, description::Index> named_materials;  ///< built so far
   std::unordered_map<std::string, description::Index> measured_brdfs;   ///< by file name
-  std::size_t spectrum_bytes_left = std::size_t{1} << 28;               ///< limit for spectrum files, reread for each
-                                                                        ///< use
+  std::size_t spectrum_bytes_left = std::size_t{1} << 28;               ///< limit for spectrum files; each use rereads
   double subdivided_triangles_left = 1 << 26;                           ///< limit for all subdivision surfaces together
 
   /// Adds the warning, or counts it in an earlier one with this `key`: one warning per kind of problem.
