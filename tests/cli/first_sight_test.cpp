@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// What a stranger meets in the first minute.
+// A new user's first minute with the program.
 #include <signal.h>
 #include <sys/stat.h>
 
@@ -51,7 +51,7 @@ TEST_F(FirstSight, ThePictureIsWrittenAtDoublingTimes) {
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
   EXPECT_EQ(child.wait().exit_code, 0);
-  // After about 0, .05, .1, .2, .4, .8 and 1.6 seconds and at the end; a busy machine misses some.
+  // Written after about 0, .05, .1, .2, .4, .8 and 1.6 seconds and at the end; a busy machine misses some.
   EXPECT_GE(writings, 2);
   EXPECT_LE(writings, 9);
 }
@@ -98,7 +98,7 @@ TEST_F(FirstSight, ModelsWithoutAnExposureGetOne) {
   EXPECT_GT(brightest(path("a.png")), 0.8f);
   const std::size_t at = said.find("a.png: --exposure ");
   ASSERT_NE(at, said.npos) << said;
-  // What is said gives the same picture again, and so does a state.
+  // The reported exposure reproduces the picture, and so does a state.
   const std::string stops = said.substr(at + 18, said.find(',', at) - at - 18);
   succeed({"merge", "a.state", "-o", "merged.png", "--reproducible"});
   succeed({"merge", "a.state", "-o", "same.png", "--reproducible", "--exposure", stops});
@@ -107,13 +107,13 @@ TEST_F(FirstSight, ModelsWithoutAnExposureGetOne) {
   EXPECT_LT(brightest(path("a.png")), 0.2f);
 }
 
-// The colour of the pixel, as a linear value of the screen.
+// The pixel's colour as a linear display value.
 std::vector<float> shown_at(const fs::path& path, int x, int y) {
   const Image image = read_image(path, ColorEncoding::srgb);
   return {image.at(x, y, 0), image.at(x, y, 1), image.at(x, y, 2)};
 }
 
-// An unlit cube beside a lamp of 54351 cd, for which the exposure is -8: its colour is meant for the screen.
+// An unlit cube beside a light of 54351 cd, for which the exposure is -8: its colour is meant for the display.
 TEST_F(FirstSight, UnlitColoursAreShownAsTheyAre) {
   const std::string model = LANTHORN_SOURCE_DIR "/tests/scenes/models/unlit-and-lamp.gltf";
   succeed({"render", model, "-i", "path", "-r", "64x48", "-p", "4", "-o", "a.png", "-o", "a.exr", "-o", "a.state"});
@@ -122,7 +122,7 @@ TEST_F(FirstSight, UnlitColoursAreShownAsTheyAre) {
   int cube = 0;
   for (int y = 0; y < 48; ++y)
     for (int x = 0; x < 64; ++x) {
-      if (std::fabs(emission.at(x, y, 0) - 0.8f) > 1e-3f) continue;  // not the cube alone
+      if (std::fabs(emission.at(x, y, 0) - 0.8f) > 1e-3f) continue;  // not only the cube
       ++cube;
       const std::vector<float> shown = shown_at(path("a.png"), x, y);
       EXPECT_NEAR(shown[0], 0.8f, 0.005f) << x << " " << y;
@@ -130,7 +130,7 @@ TEST_F(FirstSight, UnlitColoursAreShownAsTheyAre) {
       EXPECT_NEAR(shown[2], 0.05f, 0.005f) << x << " " << y;
     }
   EXPECT_GT(cube, 20);
-  // So it is by every way to a PNG, and at any exposure.
+  // The same holds for every way to a PNG, and at any exposure.
   succeed({"develop", "a.exr", "developed.png", "--exposure", "auto"});
   succeed({"merge", "a.state", "-o", "merged.png"});
   succeed({"merge", "a.state", "-o", "bright.png", "--exposure", "3", "--view-transform", "filmic"});
@@ -143,7 +143,7 @@ TEST_F(FirstSight, UnlitColoursAreShownAsTheyAre) {
     }
 }
 
-// A picture in which nothing is seen says why.
+// If a picture shows nothing, the program says why.
 TEST_F(FirstSight, BlackPicturesSayWhy) {
   const auto reason = [&](const std::string& scene, const Words& more = {}) {
     dir_.write("black.pbrt", scene);

@@ -72,7 +72,7 @@ TEST_F(CliIbl, PrintsItsReport) {
 }
 
 TEST_F(CliIbl, WritesAllFilesOrNone) {
-  // The limit (100 KB) lets sh.json and contact.png through and stops the table.
+  // The limit (100 KB) allows sh.json and contact.png, but not the table.
   const auto limited = [&] {
     const Ending ending = run_shell("ulimit -f 200; L ibl sky.exr -o out -q --maps sh,brdf --formats ktx2");
     EXPECT_EQ(ending.exit_code, 2);

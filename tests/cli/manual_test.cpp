@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The man pages and the bash completion that the program writes, against its own --help.
+// The man pages and the bash completion that the program writes agree with its --help.
 #include <cstdio>
 #include <sstream>
 
@@ -38,13 +38,13 @@ class Manual : public Cli {
     }
     return names;
   }
-  /// The pages: the program's own and one for each subcommand.
+  /// The man pages: the program's own and one per subcommand.
   Words pages() const {
     Words names{"share/man/man1/lanthorn.1"};
     for (const std::string& command : commands()) names.push_back("share/man/man1/lanthorn-" + command + ".1");
     return names;
   }
-  /// What bash offers for the last of the words.
+  /// The completions that bash offers for the last word.
   Words complete(const Words& words) const {
     const std::string script =
         "source share/bash-completion/completions/lanthorn || exit 1\n"
@@ -66,7 +66,7 @@ bool is_among(const Words& words, const std::string& word) {
   return std::find(words.begin(), words.end(), word) != words.end();
 }
 
-// As troff writes it: \fB\-\-max\-depth\fR.
+// In troff's notation: \fB\-\-max\-depth\fR.
 std::string bold(const std::string& option) {
   std::string text = "\\fB";
   for (const char c : option) text += c == '-' ? "\\-" : std::string(1, c);
@@ -90,7 +90,7 @@ TEST_F(Manual, HasAPageForEveryCommandThatNamesItsOptions) {
     EXPECT_TRUE(contains(bytes("share/man/man1/lanthorn.1"), bold(option))) << option;
 }
 
-// -h has the same options as --help, each in one line that is not long. --help and the page say more.
+// -h lists the same options as --help, each in one short line. --help and the man page have more text.
 TEST_F(Manual, TheShortHelpHasALineForEachOption) {
   constexpr std::size_t longest = 240;
   for (const std::string& command : commands()) {

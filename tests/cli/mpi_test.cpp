@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The program under mpirun, all processes on this machine.
+// The program under mpirun, with all processes on this machine.
 #include <chrono>
 #include <thread>
 
@@ -26,7 +26,7 @@ class Mpi : public Cli {
     EXPECT_EQ(ending.err, "") << "with --quiet";
     EXPECT_EQ(ending.out, "");
   }
-  // Of a state with passes from the first on, without gaps.
+  // The number of passes in a state; they must start with the first and have no gaps.
   std::uint64_t passes_of(const std::string& name) const {
     const nlohmann::json ranges = nlohmann::json::parse(succeed({"info", name, "--json"}).out)["passes"];
     EXPECT_EQ(ranges.size(), 1u) << ranges;

@@ -38,7 +38,7 @@ class Shards : public Cli {
 };
 
 TEST_F(Shards, TheScriptRendersWhatOneProcessDoes) {
-  // Names with blanks and quotes must come through the shell.
+  // Names with blanks and quotes must be quoted for the shell.
   fs::rename(path("tiny.pbrt"), path("it's tiny.pbrt"));
   const std::string script = succeed({"shards", "it's tiny.pbrt", "-i", "path", "-r", "12", "-p", "7", "--shards", "3",
                                       "-o", "all of it.state"})
@@ -61,7 +61,7 @@ TEST_F(Shards, JsonHasACommandForEachShardAndOneThatMerges) {
             "lanthorn merge --expect 0:7 all.shard-0.state all.shard-1.state all.shard-2.state -o all.exr");
 }
 
-// A stand-in for Slurm runs the jobs one after the other.
+// A replacement for Slurm that runs the jobs one after the other.
 TEST_F(Shards, TheScriptForSlurmSubmitsAnArrayAndAMerge) {
   dir_.write("all.sh", succeed(shards({"--format", "slurm"})).out);
   const Ending ending = run_shell(

@@ -28,7 +28,7 @@ inline std::string file_bytes(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
 }
 
-/// How a program ended and what it said.
+/// How a program ended, and its output.
 struct Ending {
   std::optional<int> exit_code;  ///< nothing if a signal ended it
   int signal = 0;
@@ -74,7 +74,7 @@ class ChildProcess {
 
   pid_t pid() const { return pid_; }
   void send(int signal) const { kill(pid_, signal); }
-  /// What it has written so far to standard output, and to standard error.
+  /// Its standard output or standard error so far.
   std::string out_so_far() const { return file_bytes(out_); }
   std::string err_so_far() const { return file_bytes(err_); }
   /// Whether it has ended; does not wait.

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Begins of image files that announce more than there is.
+// Beginnings of image files that announce more data than they contain.
 #pragma once
 
 #include <zlib.h>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Emitting surfaces and lights that the light tests go through, each surface with a parametrisation of its own.
+// The emitting surfaces and lights used by light tests, each surface with its own parametrisation.
 #pragma once
 
 #include <array>
@@ -91,8 +91,8 @@ inline TestSurface test_cylinder(std::string name, const Transform& t, float rad
   return {std::move(name), CylinderEmitter(t, radius, z_min, z_max, phi_max), at, !t.swaps_handedness()};
 }
 
-/// Every kind of surface under rigid, uniform, non-uniform, mirroring and shearing maps, all about the origin, of
-/// size 1.
+/// Every kind of surface under rigid, uniform, non-uniform, mirroring and shearing transforms, all around the origin
+/// and of size 1.
 inline std::vector<TestSurface> test_surfaces() {
   const Transform rigid = translate({0.2f, -0.1f, 0.3f}) * rotate(50, {1, 2, 3});
   const Transform uniform = rigid * scale({0.7f, 0.7f, 0.7f});
@@ -146,7 +146,7 @@ inline const SphericalImage& test_environment() {
   return image;
 }
 
-/// The same texels around the equator, 16 x 4, bright one and all.
+/// The same texels around the equator, 16 x 4, including the bright one.
 inline const SphericalImage& test_panorama() {
   static const SphericalImage image(SphereLayout::equirectangular, 16, 4, test_texels());
   return image;
@@ -189,7 +189,7 @@ inline const EmissionPattern& test_pattern() {
   return pattern;
 }
 
-/// The surfaces whose points can be drawn by brightness, with a pattern and a table that has nothing to do with it.
+/// The surfaces whose points can be sampled by brightness, with a pattern and an unrelated table.
 inline std::vector<std::pair<TestSurface, AreaLight>> test_screens() {
   std::vector<std::pair<TestSurface, AreaLight>> all;
   for (const TestSurface& s : test_surfaces()) {
