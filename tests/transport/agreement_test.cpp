@@ -383,8 +383,8 @@ TEST(Layers, OfOneScatteringAreDirect) {
   }
 }
 
-// The room's only delta surface is of dispersive glass, and a pass of these methods has two sets of wavelengths: light
-// of its caustics is of two hero wavelengths alone, so that the colours of all pixels lie in one plane.
+// The room's only delta surface is dispersive glass, and a pass of these methods has two sets of wavelengths: light of
+// its caustics has only two hero wavelengths, so that the colours of all pixels lie in one plane.
 TEST(Layers, DispersedCausticsOfAPassAreOfTwoColors) {
   const Scene scene = test::scene_from_text(test::varied_room);
   for (const char* integrator : {"probppm", "bdpt", "vcm", "bpm", "mlt", "mlt:over=path"}) {

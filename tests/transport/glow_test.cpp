@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Light of media that glow: against a closed form, and methods against each other.
+// Volumetric emission: against a closed form, and methods against each other.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -28,9 +28,9 @@ RenderOptions options(const std::string& integrator, std::uint64_t passes, std::
   return o;
 }
 
-// A ball that emits evenly and lets all light through lights what is outside of it as a point in its middle would:
-// irradiance is the field of gravity of an even ball (Newton's shell theorem). The camera looks down on a square metre
-// of the floor, from under the ball.
+// A ball with uniform emission and no extinction lights its outside as a point at its centre would: irradiance behaves
+// as the gravity of a uniform ball (Newton's shell theorem). The camera looks down on a square metre of the floor, from
+// below the ball.
 TEST(Glow, ThinBallLightsThePlane) {
   const double height = 2, radius = 0.2, emission = 100, reflectance = 0.6, pi_d = 3.14159265358979;
   const Scene scene = test::scene_from_text(
@@ -78,7 +78,7 @@ const std::string room = "Material \"diffuse\" \"rgb reflectance\" [0.7 0.6 0.8]
                          test::patch("-1 0 -1  1 0 -1  -1 2 -1  1 2 -1");
 const std::string camera = "LookAt 0 0.4 3  0 0.4 0  0 1 0\nCamera \"perspective\" \"float fov\" [14]\n";
 
-// A coloured ball that scatters and glows, thick, above the view. Half of it is in another one that only absorbs.
+// A thick coloured ball that scatters and emits, above the view. Half of it is inside another one that only absorbs.
 TEST(NightlyGlow, BallInARoom) {
   const Scene scene = test::scene_from_text(
       camera + film +
@@ -96,7 +96,7 @@ TEST(NightlyGlow, BallInARoom) {
       scene, {"light", "bdpt", "vcm", "bpm", "probppm", "sppm", "ppm", "photonmap", "reversephotonmap", "mlt"}, 1);
 }
 
-// A flame above a ball of glass, both above the view: its caustic on the floor, which every method can find.
+// A flame above a glass ball, both above the view: its caustic on the floor, which every method can find.
 TEST(Glow, CausticOfAFlame) {
   const Scene scene = test::scene_from_text(
       camera + film +
@@ -110,8 +110,8 @@ TEST(Glow, CausticOfAFlame) {
   expect_agreement(scene, {"light", "bdpt", "vcm", "probppm", "sppm", "photonmap"}, 2, {"color", "caustic"});
 }
 
-// Fog without end that glows is no light: eye paths find what it emits, in photon methods besides the photons of
-// others.
+// Unbounded fog that emits is not a light: eye paths find its emission, in photon methods in addition to photons from
+// other lights.
 TEST(Glow, FogWithoutEndIsFoundByEyePaths) {
   const Scene scene = test::scene_from_text(
       "MediumInterface \"\" \"fog\"\n" + camera + film +

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Metropolis light transport where its chains decide: as few and short as they can be, and their noise.
+// Metropolis light transport where the properties of chains matter: as few and short as possible, and their noise.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -31,9 +31,8 @@ Shape "sphere"
                                            side));
 }
 
-// One chain of two mutations in each pass, of the paths of a bootstrap of two: were the chain not to start in
-// proportion to the light, or a state of it or of the bootstrap not to count for what it is, one of the layers would
-// tell.
+// In each pass, one chain of two mutations, seeded from a bootstrap of two paths: if the chain did not start in
+// proportion to the light, or if a state of chain or bootstrap had a wrong weight, one of the layers would show it.
 void expect_unbiased_layers(const std::string& integrator) {
   const Scene scene = lit_sphere(2);
   RenderOptions options = test::options_for(integrator + ":chain-length=2:bootstrap=1", 2000);
@@ -52,7 +51,7 @@ TEST(NightlyMetropolis, ShortChainsAreUnbiased) {
   expect_unbiased_layers("mlt:over=path");
 }
 
-// Variance of a pixel over renders of so many passes of so many mutations.
+// Variance of a pixel over renders with this many passes and mutations.
 double variance(const std::string& integrator, std::uint64_t passes, std::uint64_t mutations) {
   const Scene scene = lit_sphere(4);
   RenderOptions options = test::options_for(integrator, passes);
@@ -72,8 +71,8 @@ TEST(Metropolis, NoiseFallsWithPassesAndChains) {
   EXPECT_TRUE(test::within(std::log2(variance(chains, 1, 64 * 32) / one), -5, 0.75));
 }
 
-// Chains that only make large steps draw independent paths; those that hardly make any stay where they are: the ratio
-// is 0.016 to 0.02.
+// Chains with only large steps draw independent paths; chains with hardly any stay where they are: the ratio is 0.016
+// to 0.02.
 TEST(Metropolis, LargeStepsForget) {
   const auto with_large_steps = [](const char* share) {
     return variance(fmt::format("mlt:chain-length=256:sigma=1e-6:large-steps={}", share), 8, 256);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The public headers alone, as an embedding program uses them.
+// Uses only the public headers, as an embedding program does.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -104,7 +104,7 @@ TEST(Api, MeshesAreReadFromPlyFiles) {
   EXPECT_THROW(lanthorn::read_mesh(dir.path() / "b.ply"), lanthorn::Error);
 }
 
-// The view of the session stays: the film of 24 x 16 pixels, and not that of the new scene.
+// The session keeps its view: the film of 24 x 16 pixels, not that of the new scene.
 TEST(Api, AnotherSceneIsSeenThroughTheSameView) {
   Session session(load(box), small());
   session.render_pass();
@@ -126,7 +126,7 @@ TEST(Api, APictureThatDoesNotFitIntoMemoryIsRefused) {
   EXPECT_THROW(Session(load(box), options), lanthorn::Error);
 }
 
-// Stops at some time into a pass: the picture is that of the passes before.
+// Stops at some time during a pass: the picture is that of the passes before.
 TEST(Api, AStoppedPassLeavesNoTrace) {
   const SharedScene scene = load(box);
   for (const char* const integrator : {"probppm", "sppm", "ppm", "vcm", "bpm", "bdpt", "path", "light", "mlt",
@@ -277,7 +277,7 @@ TEST(Api, PhotonsAreArrays) {
   for (const lanthorn::Direction& d : photons.directions) ASSERT_NEAR(glm::dot(d, d), 1, 1e-2f);
 }
 
-// A ball of one colour that glows inside: what rays meet, how it scatters, and L = E / (1 - rho).
+// A uniformly coloured ball that emits inside: ray hits, scattering, and L = E / (1 - rho).
 TEST(Api, RaysInAFurnace) {
   const lanthorn::test::TemporaryDir dir;
   const SharedScene scene =

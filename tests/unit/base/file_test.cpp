@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Files are written whole or not at all, and what they replace keeps what belongs to its name.
+// Files are written whole or not at all; a replaced file keeps its permissions and links.
 #include "lanthorn/file.h"
 
 #include <fcntl.h>

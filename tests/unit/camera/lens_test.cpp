@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Lenses made of glass: where they focus, what they let through, and that both directions agree.
+// Glass lenses: their focus, their transmission, and agreement of both directions.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -56,7 +56,7 @@ TEST(Lens, FocalLengthsAreTheLensmakers) {
   EXPECT_NEAR(LensSystem(double_gauss(5), 0.03, {}).focal_length(), 0.1, 0.001);
 }
 
-// Rays from the middle of the film near the axis meet again at the distance that the lens is focused on.
+// Rays from the middle of the film near the axis converge at the focus distance.
 TEST(Lens, FocusesWhereItIsTold) {
   for (const float distance : {0.6f, 2.0f, 30.0f}) {
     const LensSystem lens(double_gauss(distance), 0.03, {});
@@ -67,7 +67,7 @@ TEST(Lens, FocusesWhereItIsTold) {
   }
 }
 
-// All that reaches a film point comes from one small place of the plane in focus, and from wide ones of others.
+// All light on a film point comes from a small area of the plane in focus, and from large areas of other planes.
 TEST(Lens, ThePlaneInFocusIsSharp) {
   const Camera camera = camera_of(double_gauss(2), 60, 40);
   for (const Vec2& raster : {Vec2(30, 20), Vec2(20, 12), Vec2(40, 28)}) {
@@ -157,7 +157,7 @@ TEST(Lens, ExposureFallsOffAsTheFormFactorOfThePupil) {
   }
 }
 
-// Where the pupil's bounds are, nothing of the rear lens outside of them lets light through.
+// Nothing outside the pupil's bounds on the rear lens lets light through.
 TEST(Lens, PupilsHoldAllLight) {
   const LensSystem lens(double_gauss(1, 34.2f), 0.03, {});
   HashRng rng(4);
@@ -174,7 +174,7 @@ TEST(Lens, PupilsHoldAllLight) {
   EXPECT_GT(passed, 10000);
 }
 
-// The densities of the rays that leave the front integrate to the share of rays that the lens lets through.
+// The densities of the rays that leave the front integrate to the fraction of rays that the lens transmits.
 TEST(Lens, DensitiesIntegrateToWhatPasses) {
   const Camera camera = camera_of(magnifier(0.02f), 60, 40);
   const LensSystem lens(magnifier(0.02f), 0.03, {});

@@ -22,8 +22,8 @@ namespace {
 using Field = std::function<double(int x, int y)>;
 double none(int /*x*/, int /*y*/) { return 0; }
 
-// A layer of grey light: its truth, and the standard deviation of each half's noise. Pixels share noise within a square
-// of `radius`.
+// A layer of grey light: its true value, and the standard deviation of each half's noise. Pixels within `radius` share
+// noise.
 struct Layer {
   std::string name;
   Field truth, sigma = none;
@@ -147,7 +147,7 @@ TEST(Denoise, LayersAddUpToThePicture) {
   EXPECT_LT(mean_square(out, "denoised.media.", smooth), mean_square(out, "media.", smooth) / 10);
 }
 
-// No feature shows the edge of a caustic: its two sides may mix by a pixel at most.
+// No feature shows the edge of a caustic: its two sides may mix by at most a pixel.
 TEST(Denoise, KeepsTheEdgesOfCaustics) {
   const Scene scene{64, 64, {{"caustic", step, fifth}, {"direct", smooth, fifth}}};
   const Image out = denoise(picture_of(scene)).picture;
@@ -190,8 +190,8 @@ TEST(Denoise, RemovesASpikeOfOneHalf) {
   EXPECT_LT(around, 1.1 * static_cast<double>(spike) / 2);
 }
 
-// The sun on water: pixels a thousand times as bright as the picture, some of which each half has. Smoothed, each would
-// be a white spot.
+// Sun glints on water: pixels a thousand times as bright as the picture, some of them in each half. Smoothing would
+// turn each into a white spot.
 TEST(Denoise, LeavesGlintsWhereTheyAre) {
   Image noisy = picture_of({64, 64, {{"emission", smooth, fifth}}});
   const std::size_t first = *noisy.find_channel("emission.R"), noise = *noisy.find_channel("noise.emission.R");
@@ -248,7 +248,7 @@ TEST(Denoise, IsTheSameForAnyNumberOfThreads) {
   EXPECT_EQ(previews[0], previews[2]);
 }
 
-// Light of media is in other layers: it is not counted twice.
+// Media layers repeat light of other layers: it is not counted twice.
 TEST(Denoise, APreviewIsTheWholePictureWithLessNoise) {
   const auto light = [](int x, int y) { return smooth(x, y) + step(x, y); };
   const Image noisy =
@@ -260,7 +260,7 @@ TEST(Denoise, APreviewIsTheWholePictureWithLessNoise) {
   EXPECT_LT(mean_square(denoise(noisy).picture, "denoised.", light), after);
 }
 
-// What is right of a tile's border does not depend on what is far left of it.
+// Pixels right of a tile's border do not depend on those far left of it.
 TEST(Denoise, TilesHaveNoSeams) {
   const Scene scene{1100, 24, {{"direct", smooth, fifth}}};
   const Image noisy = picture_of(scene);

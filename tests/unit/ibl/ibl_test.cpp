@@ -74,7 +74,7 @@ IblSettings small() {
 
 Rgb smooth(const Direction& d) { return {1 + 0.5f * d.y + 0.3f * d.x * d.z, 1 + 0.4f * d.x, 0.8f + 0.5f * d.z * d.z}; }
 
-// Lamps of some size, noise, and a dark ground: nothing that is easy to integrate.
+// Extended lights, noise, and a dark ground: not easy to integrate.
 Rgb lively(const Direction& d) {
   const auto lamp = [&](const Vec3& towards, float width) {
     return dot(d, normalize(towards)) > std::cos(width) ? 10.0f : 0.0f;
@@ -324,7 +324,7 @@ INSTANTIATE_TEST_SUITE_P(Places, Sun,
 
 class SmallSun : public testing::TestWithParam<std::pair<int, int>> {};
 
-// A sun is as bright in a mirror as in the image, wherever its texels fall on those of the map, and never brighter.
+// A sun is as bright in a mirror as in the image, and never brighter, wherever its texels fall on those of the map.
 TEST_P(SmallSun, IsAsBrightAsInTheImage) {
   constexpr int width = 512;
   constexpr float sky = 0.2f, sun = 5000;

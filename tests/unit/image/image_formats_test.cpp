@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The formats that are written and read by hand, against OpenImageIO.
+// Our own readers and writers of image formats, against OpenImageIO.
 #include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// A rendering method that the library does not know: one class with its IntegratorInfo. All that is asked of methods
-// (layers, states, parameters, merging) comes with it.
+// A user-defined rendering method: one class with its IntegratorInfo. Layers, states, parameters and merging work
+// without further code.
 #include <gtest/gtest.h>
 
 #include <memory>

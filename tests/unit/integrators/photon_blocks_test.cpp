@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Passes whose photons come in blocks find the light that they find at once.
+// Passes that trace photons in blocks find the same light as with a single block.
 #include <gtest/gtest.h>
 
 #include <algorithm>

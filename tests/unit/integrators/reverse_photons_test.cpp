@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// What photons that look for points are made of: their radii, and the leaves of a tree that they reach.
+// The parts of photons that search for points: their radii, and the leaves of the tree that they reach.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Split-sum shading: exact under a white sky, and near path tracing without visibility where n = v = r.
+// Split-sum shading: exact under a white sky, and close to path tracing without visibility where n = v = r.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -193,8 +193,8 @@ std::array<double, 3> deviations(const std::string& sky, double alpha, const std
   return result;
 }
 
-// What n = v = r costs. The expected numbers are measured (2026-11-24) and vary by 2 % over seeds; brute force has no
-// say in them but by `path`. A change of either method that is worth a look changes them.
+// The cost of assuming n = v = r. The expected numbers were measured (2026-11-24) and vary by 2 % over seeds; they are
+// regression values, independent only through `path`. Any significant change of either method changes them.
 TEST_F(SplitSumShading, DeviatesFromPathTracingAsMeasured) {
   struct Measured {
     double alpha, straight, oblique, grazing;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Input that nobody vouches for: how much it may take, which files it may name, and what messages tell of it.
+// Untrusted input: how many resources it may use, which files it may name, and what messages reveal about them.
 #include <OpenImageIO/deepdata.h>
 #include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Environments in place of a scene's own: where they stand, and those that need no file.
+// Replacing a scene's environment: orientation, and built-in environments.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// A file with all that the other tests are about.
+// One file that combines the features of all other glTF tests.
 #include <gtest/gtest.h>
 
 #include <cmath>

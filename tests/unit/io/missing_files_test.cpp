@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Scenes whose files are not all there, in every format: all that are missing are named at once, or left out.
+// Scenes with missing files, in every format: all missing files are named at once, or skipped.
 #include <gtest/gtest.h>
 
 #include <algorithm>

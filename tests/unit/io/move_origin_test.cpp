@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// A scene far from the origin is the scene at the origin: everything that has a place moves with the camera.
+// A scene far from the origin renders as at the origin: everything with a world position moves with the camera.
 #include <gtest/gtest.h>
 
 #include <fmt/format.h>

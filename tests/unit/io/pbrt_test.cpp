@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The grammar of pbrt-v4 files: tokens, directives, state, files that include files, places of errors.
+// The grammar of pbrt-v4 files: tokens, directives, state, included files, locations of errors.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 

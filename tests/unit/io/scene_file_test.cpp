@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// A scene file that is read once for several moments.
+// A scene file that is read once for several times of its animation.
 #include <gtest/gtest.h>
 
 #include <filesystem>

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// A toy light, of which each part can be left out: without any one that its traits ask for it is no light, and could
-// not become one of those in `Light`.
+// A toy light with optional parts: without any part that its traits require it does not satisfy the concept, and could
+// not become one of the alternatives of `Light`.
 #include <gtest/gtest.h>
 
 #include <type_traits>

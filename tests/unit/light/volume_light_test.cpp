@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Media as lights: where their light paths start, and the densities that weights ask for.
+// Media as lights: where their light paths start, and the densities that weights use.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Normal maps and displacements against normals that are known in closed form.
+// Normal maps and displacements against closed-form normals.
 #include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// A toy material: what the file of a material in src/material has, and all that it needs.
+// A toy material: everything that a material's file in src/material must provide.
 #include <gtest/gtest.h>
 
 #include "material/kind.h"

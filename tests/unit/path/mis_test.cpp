@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The recursive weights of bidirectional methods against their definition: the density of a technique over the sum of
-// the densities of all techniques that make the path, by products over its vertices.
+// The recursive weights of bidirectional methods against their definition: a technique's density divided by the sum of
+// the densities of all techniques that can generate the path, computed as products over its vertices.
 #include "path/mis.h"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ namespace lanthorn::mis_test {
 namespace {
 
 // A path x_0 ... x_k from a light, to be seen by a lens. Index i: at vertex x_i; `p` towards x_{i-1}, `n` towards
-// x_{i+1} (of the last one the lens).
+// x_{i+1} (for the last one, towards the lens).
 struct RandomPath {
   Techniques techniques;
   bool can_be_hit;
@@ -87,8 +87,8 @@ bool eye_path_reaches(const RandomPath& path, int i) {
   return path.techniques.goes_on || scatterings(path, i + 1, path.last()) <= (i == 0 ? 1 : 0);
 }
 
-// Density at x_i by the light walk and by the eye walk: per area, and by those of walks that end there per volume in
-// media, per area across the walk if it only comes by.
+// Density at x_i of the light walk and of the eye walk: per area; for walks that end there in media per volume, and for
+// walks that pass by per area across the walk.
 double direction_by_light(const RandomPath& path, int i) {
   const auto u = static_cast<unsigned>(i);
   const double direction = i == 1 ? path.emission_direction : path.forward[u - 1];

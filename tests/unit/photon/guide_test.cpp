@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Guides made of known photons.
+// Guides built from known photons.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Which photons meet a vertex.
+// Tests which photons contribute at a vertex.
 #include "photon/gather/photon_hit.h"
 
 #include <gtest/gtest.h>

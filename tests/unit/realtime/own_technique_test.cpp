@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// A technique that the library does not know: one class with its TechniqueInfo. The frame, its parameters in `view` and
-// in `render`, the command of the panel and the passes of a render come with it.
+// A user-defined technique: one class with its TechniqueInfo. The frame, its parameters in `view` and `render`, the
+// panel's command and the passes of a render work without further code.
 #include <gtest/gtest.h>
 
 #include <algorithm>

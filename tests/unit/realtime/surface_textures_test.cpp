@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// What textures do to surfaces of the GPU: colours, lobes, normals, emission, opacity.
+// Effects of textures on surfaces drawn by the GPU: colours, lobes, normals, emission, opacity.
 #include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The tables of docs/viewer.md say what the techniques declare.
+// The tables of docs/viewer.md agree with the techniques' declarations.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Surfaces in voxels of nested grids, and light by cones through them.
+// Surfaces in nested voxel grids, and cone-traced light through them.
 #include "realtime/techniques/voxelcones/voxels.h"
 
 #include <gtest/gtest.h>

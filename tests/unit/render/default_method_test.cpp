@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Which method renders a scene, and what of its file's integrator reaches that method.
+// Which method renders a scene, and which of the file's integrator parameters apply to it.
 #include <gtest/gtest.h>
 
 #include <cstdint>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// What a denoiser is told of a render, and what it makes of one.
+// The data that a render gives the denoiser, and the denoised result.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// States that a render goes on from may be forged.
+// Forged states are rejected on resuming.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Renders by several processes, which are threads here.
+// Renders by several processes, simulated by threads.
 #include "lanthorn/team.h"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// An edited scene is the scene that would be built from the edited description, to the last bit.
+// An edited scene equals the scene built from the edited description, to the last bit.
 #include <gtest/gtest.h>
 
 #include <cstdint>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Where rays meet shapes, and what is known of the surface there.
+// Ray intersections with shapes, and the surface geometry there.
 #include <gtest/gtest.h>
 
 #include <array>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Lights as the scene builds them: their scales, and that surfaces and emitters agree.
+// Lights as built by the scene: their scales, and agreement of surfaces and emitters.
 #include <gtest/gtest.h>
 
 #include <array>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The triangles of a scene lie where rays meet its surfaces, and face the same way.
+// The triangles of a scene lie where rays hit its surfaces, and face the same way.
 #include <gtest/gtest.h>
 
 #include <string>

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Scenes at the end of single precision: what cannot be shown is left out with a warning, and no ray that Embree does
-// not take gets there (Debian's Embree ends the process then).
+// Scenes at the limits of single precision: what cannot be represented is omitted with a warning, and no ray that
+// Embree cannot handle reaches it (Debian's Embree would end the process).
 #include <gtest/gtest.h>
 
 #include <cmath>

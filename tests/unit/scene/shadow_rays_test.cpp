@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Shadow rays end at the lamp: nothing before it is missed, and no lamp shadows itself, whatever its size and place.
+// Shadow rays end at the lamp: they miss no occluder in front of it, and no lamp shadows itself, at any size and place.
 #include <gtest/gtest.h>
 
 #include <fmt/format.h>

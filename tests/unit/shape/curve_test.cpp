@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Hair: what rays meet is what the Bézier formula says, and nothing meets itself.
+// Hair: ray hits agree with the Bézier formula, and no hair intersects itself.
 #include <gtest/gtest.h>
 
 #include <array>
