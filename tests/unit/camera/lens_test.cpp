@@ -23,7 +23,7 @@ using description::RealisticCamera;
 
 const std::string scenes = LANTHORN_SOURCE_DIR "/tests/scenes/";
 
-// Read by the reader, so that it is tested too.
+// Uses the reader, so that it is tested too.
 RealisticCamera double_gauss(float focus_distance, float diameter = 30, float diagonal = 60) {
   const SceneDescription scene =
       read_pbrt_string("Camera \"realistic\" \"string lensfile\" \"double-gauss.dat\" \"float focusdistance\" " +
@@ -189,7 +189,7 @@ TEST(Lens, DensitiesIntegrateToWhatPasses) {
   for (int i = 0; i < samples; ++i) {
     const glm::dvec2 disk = radius * glm::dvec2(sample_concentric_disk(rng.next2()));
     const Vec3 direction = sample_uniform_cone(rng.next2(), cone);
-    // Areas are those across the axis: the point of the disk under the point of the surface along the ray.
+    // Areas are measured perpendicular to the axis: the point of the disk below the surface point along the ray.
     DVec3 at(disk, lens.front_point({0, 0}).position.z);
     const CameraPdf pdf = camera.pdf({Point(at - 1e-6 * DVec3(direction)), direction});
     const double value = static_cast<double>(pdf.position) * static_cast<double>(pdf.direction) * std::numbers::pi *

@@ -30,7 +30,7 @@ struct Layer {
   int radius = 0;
 };
 
-// Independent normal numbers, or such as are smoothed over squares, of variance 1.
+// Normal numbers of variance 1: independent, or smoothed over squares.
 std::vector<double> noise_field(int width, int height, int radius, std::mt19937& rng) {
   std::normal_distribution<double> normal;
   const int w = width + 2 * radius, side = 2 * radius + 1;
@@ -46,7 +46,7 @@ std::vector<double> noise_field(int width, int height, int radius, std::mt19937&
   return field;
 }
 
-// A picture of two halves, as `with_noise` makes them. The surface is white, but for its albedo.
+// A picture of two halves, as made by `with_noise`. The surface is white except for its albedo.
 struct Scene {
   int width, height;
   std::vector<Layer> layers;
@@ -323,7 +323,7 @@ TEST(Denoise, RefusesPicturesWithoutHalves) {
   EXPECT_THROW(preview_without_noise(single), Error);
 }
 
-// Files from which another program has left out channels.
+// Files from which another program has removed channels.
 TEST(Denoise, RefusesPicturesOfWhichLightIsMissing) {
   const Image whole = picture_of({16, 8, {{"direct", smooth, fifth}, {"caustic", smooth, fifth}}});
   const auto without = [&](const std::string& prefix) {

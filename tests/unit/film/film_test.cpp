@@ -143,8 +143,8 @@ TEST(Film, HalvesAreFilmsOfTheirPasses) {
   }
 }
 
-// Also of what is ordered by bit reversal, as wavelengths are: a half of the passes has as many in each part of the
-// range.
+// Also for quantities ordered by bit reversal, such as wavelengths: half of the passes cover each part of the range
+// equally.
 TEST(Film, HalvesHaveOneOfEachTwoPassesAndAreEven) {
   constexpr std::uint64_t passes = 64;
   constexpr std::uint32_t parts = 16;
@@ -226,12 +226,12 @@ TEST(Film, BucketsHoldMeansOverTheWavelengthsInThem) {
     const Image image = film.resolve(4);
     return image.at(x, 0, image.find_channel(channel).value());
   };
-  // A constant stays one, however the wavelengths are spread; no wavelength fell into the last bucket.
+  // A constant stays constant, however the wavelengths are distributed; no wavelength fell into the last bucket.
   EXPECT_NEAR(value(0, "S0.450,0nm"), 3, 1e-5f);
   EXPECT_NEAR(value(0, "S0.550,0nm"), 3, 1e-5f);
   EXPECT_EQ(value(0, "S0.650,0nm"), 0);
   EXPECT_EQ(value(1, "S0.450,0nm"), 0);
-  // What varies is averaged over wavelengths, however densely they were drawn: pdfs here are 1 / (nm + 1).
+  // Varying values are averaged over wavelengths, independent of their density: pdfs here are 1 / (nm + 1).
   PixelSample varying;
   varying.spectrum = radiance_at({499, 599, 699, 900}, 0);
   varying.spectrum->lambda = {499, 419, 900, 900};
@@ -239,7 +239,7 @@ TEST(Film, BucketsHoldMeansOverTheWavelengthsInThem) {
   FilmPass(film, 0).add(1, varying);
   EXPECT_NEAR(value(1, "S0.450,0nm"), (500 * 1 + 600 * 4) / (500.0f + 600), 1e-4f);
   film = Film(2, 1, 4, {.light = layers, .splats = true, .buckets = buckets});
-  // Splats count with their density, and are divided by the passes.
+  // Splats are weighted by their density and divided by the number of passes.
   FilmPass(film, 0).splat_spectrum(1, radiance_at({449, 659, 699, 900}, 2), 0.5f);
   EXPECT_NEAR(value(1, "S0.450,0nm"), 0.5f * 2 * 450 / (4 * 100) / 4, 1e-5f);
   EXPECT_NEAR(value(1, "S0.650,0nm"), 0.5f * 2 * (660 + 700) / (4 * 100) / 4, 1e-5f);
@@ -278,7 +278,7 @@ TEST(Film, TechniquesAddUpToColor) {
   EXPECT_EQ(select_layer(copy.resolve(4), "technique.splat")->pixels, layer("technique.splat").pixels);
 }
 
-// Light of wavelengths that no display shows may have a negative luminance, which is no share.
+// Light of wavelengths outside the gamut may have negative luminance, which is not a share.
 TEST(Film, SharesAreOfPositiveLight) {
   Film film(1, 1, 4, {.light = layers, .decomposition = techniques});
   PixelSample s;
@@ -475,8 +475,8 @@ TEST(Display, MapsToTheUnitInterval) {
   EXPECT_FLOAT_EQ(to_display({1e30f, 0, 0}, filmic).r, 1);
 }
 
-// What the construction says of its curve: middle grey in the middle, black 10 stops below it, white 6.5 above it, and
-// the slope 2 in the middle, over all 16.5 stops.
+// Properties of the curve by construction: middle grey is in the middle, black 10 stops below it, white 6.5 above it,
+// and the slope is 2 in the middle, over all 16.5 stops.
 TEST(Display, AgxKeepsGreysAndTakesSaturationFromBrightColours) {
   const auto grey = [](float x) { return agx({x, x, x}); };
   EXPECT_NEAR(grey(0.18f).r, 0.5f, 1e-5f);
@@ -494,12 +494,12 @@ TEST(Display, AgxKeepsGreysAndTakesSaturationFromBrightColours) {
     EXPECT_GT(c.r, before);
     before = c.r;
   }
-  // From dim to bright, red turns to white without going through another hue.
+  // From dim to bright, red becomes white without changing its hue.
   const Rgb dim = agx({0.1f, 0, 0}), bright = agx({100, 0, 0});
   EXPECT_GT(dim.r, 2 * dim.g);
   EXPECT_GT(bright.g, 0.6f * bright.r);
   EXPECT_NEAR(bright.g, bright.b, 0.02f);
-  // A colour that is white by our primaries is not changed by their inset: as many parts red, green and blue as white.
+  // The inset of the primaries leaves colours unchanged that are white: equal parts of red, green and blue.
   const DisplaySettings display{.exposure = 1, .curve = ToneCurve::agx};
   EXPECT_NEAR(to_display({0.09f, 0.09f, 0.09f}, display).r, 0.5f, 1e-5f);
   EXPECT_FLOAT_EQ(to_display({infinity, infinity, infinity}, display).r, 1);
@@ -713,7 +713,7 @@ TEST(FileSet, WritesAllFilesOrNone) {
   EXPECT_EQ(files_in(dir.path()), 2u);
 }
 
-// A grey of 4 has XYZ (3.80, 4, 4.36): all layers are scaled by 2 / 4.36, and the albedo is no light.
+// A grey of 4 has XYZ (3.80, 4, 4.36): all layers are scaled by 2 / 4.36, except the albedo, which is not light.
 TEST(Film, SamplesAreClampedAsAWhole) {
   Film film(1, 1, 10, {.light = layers, .decomposition = techniques, .splats = true});
   film.set_sensor({{}, 2.0f});

@@ -179,8 +179,8 @@ TEST(Flip, IsZeroForEqualPicturesAndSymmetric) {
   EXPECT_EQ(ldr_flip(ramps(false), ramps(true)).map, ldr_flip(ramps(true), ramps(false)).map);
 }
 
-// Uniform pictures have no features and nothing for the eye to blur, so that FLIP is the redistributed HyAB distance
-// alone: 1 for green and blue, which span its scale, and computed by hand for black and white: L* differs by 100.
+// Uniform pictures have no features and nothing for the eye to blur, so that FLIP is the redistributed HyAB distance: 1
+// for green and blue, which span its scale, and computed by hand for black and white, whose L* differs by 100.
 TEST(Flip, OfUniformPicturesIsTheColorDifference) {
   const Image green = constant(8, 8, {0, 1, 0}), blue = constant(8, 8, {0, 0, 1});
   EXPECT_NEAR(ldr_flip(green, blue).mean, 1, 1e-5);

@@ -88,7 +88,7 @@ struct Means {
   double mean = 0, largest = 0, least = 1e30;
 };
 
-// Of the red channel, by solid angle.
+// Means of the red channel, weighted by solid angle.
 Means means_of(const Image& strip) {
   const int n = strip.height;
   Means m;
@@ -250,7 +250,7 @@ TEST(Ibl, ReportedErrorsAreThoseOfTheMaps) {
   EXPECT_LT(good.irradiance_error->rms, 2e-3);
 }
 
-// Rolled by a quarter, x becomes z.
+// Rotating the image by a quarter turns x into z.
 TEST(Ibl, TurnsWithTheEnvironment) {
   const Image image = equirectangular(256, lively);
   Image rolled = image;
@@ -298,7 +298,7 @@ TEST_P(Sun, KeepsItsEnergyAndIsSmooth) {
     EXPECT_NEAR(found.mean / mean, 1, 0.01) << "alpha " << level.alpha;
     EXPECT_GE(found.least, 0.999);
     if (level.alpha == 0) continue;
-    // Every texel, not only on average: there is a single light, whose lobe is known.
+    // Checks every texel, not only the mean: there is a single light, whose lobe is known.
     const CubeMap map = cube_of(level.faces);
     const Direction sun = equirectangular_direction(x, y, width);
     const double a2 = sqr(static_cast<double>(level.alpha));
@@ -362,7 +362,7 @@ TEST(Ibl, SunsOfWideTexelsAreNotPoints) {
   const double omega = 2 * pi_d / width * (std::cos(2 * pi_d * 12 / width) - std::cos(2 * pi_d * 13 / width));
   const double mean = 1 + 9999 * omega / (4 * pi_d);
   for (const SpecularLevel& level : ibl.specular) EXPECT_NEAR(means_of(level.faces).mean / mean, 1, 0.01);
-  // A mirror shows the texel's radiance, all over the texel.
+  // A mirror shows the texel's radiance over the whole texel.
   EXPECT_NEAR(means_of(ibl.specular[0].faces).largest, 1e4, 4e3);
 }
 
@@ -446,7 +446,7 @@ TEST(SphericalHarmonics, AreOrthonormal) {
     for (std::size_t j = 0; j < 16; ++j) EXPECT_NEAR(products[i][j], i == j ? 1 : 0, 2e-3) << i << ' ' << j;
 }
 
-// Irradiance of a band is that of radiance times 1, 2/3, 1/4, 0: its projection from the cube map agrees with it.
+// A band's irradiance is its radiance times 1, 2/3, 1/4, 0: the projection of the cube map agrees.
 TEST(SphericalHarmonics, AreTheProjectionOfTheIrradianceMap) {
   IblSettings settings = small();
   settings.irradiance_size = 32;

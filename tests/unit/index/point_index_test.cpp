@@ -184,7 +184,7 @@ TYPED_TEST(KdTree, FindsInABallWhatBruteForceFinds) {
     }
 }
 
-/// The k-th smallest distances agree, each found point is there once and as far as it says.
+/// The k-th smallest distances agree; each found point occurs once, at the distance reported.
 template <class Tree>
 void expect_nearest(const Tree& tree, const std::vector<std::uint32_t>& order, const PointSet& set, const Point& q,
                     std::size_t k, float max_radius) {
@@ -216,7 +216,7 @@ TYPED_TEST(KdTree, FindsTheNearestThatBruteForceFinds) {
       const std::vector<Point> queries = queries_for(set);
       for (std::size_t i = 0; i < queries.size(); i += 3) {
         for (const std::size_t k : {0u, 1u, 7u, 50u}) expect_nearest(tree, order, set, queries[i], k, infinity);
-        // Half a unit in the last place off all distances, so that none is on the boundary.
+        // All distances are shifted by half a unit in the last place, so that none lies on the boundary.
         expect_nearest(tree, order, set, queries[i], 20, 0.3f * set.scale * 1.0001f);
       }
       expect_nearest(tree, order, set, queries[0], 4000, infinity);

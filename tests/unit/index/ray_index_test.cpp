@@ -176,8 +176,8 @@ struct Answer {
   bool on_boundary = false;  // may be found or not
 };
 
-// True if x is less than the limit; says whether it is so near to it that rounding decides. Coordinates are exact in
-// extended precision: what doubles round away is less than 10⁻¹² of the magnitudes that are added up.
+// True if x is less than the limit; reports whether it is so close that rounding decides. Extended precision is exact
+// for coordinates: rounding of doubles is below 10⁻¹² of the magnitudes added.
 bool within(long double x, long double limit, long double magnitude, bool& on_boundary) {
   if (std::fabs(x - limit) <= 1e-12L * magnitude) on_boundary = true;
   return x <= limit;
@@ -210,7 +210,7 @@ Answer exact(const Ball& ball, const RaySegment& ray) {
 Answer exact(const Beam& beam, const Point& p) {
   return exact_foot(p, beam.origin, beam.direction, 0, beam.length, beam.radius);
 }
-// By the normal equations of |o + t d - a - s e|², not by the cross products that the index uses.
+// From the normal equations of |o + t d - a - s e|², unlike the index, which uses cross products.
 Answer exact(const Beam& beam, const RaySegment& ray) {
   const Exact d(ray.direction), e(beam.direction), w = Exact(beam.origin) - Exact(ray.origin);
   const long double dd = dot(d, d), ee = dot(e, e), de = dot(d, e), dw = dot(d, w), ew = dot(e, w);
@@ -223,7 +223,7 @@ Answer exact(const Beam& beam, const RaySegment& ray) {
   const Exact gap = a.t * d - w - a.s * e;
   a.dist2 = dot(gap, gap);
   a.sin = std::sqrt(n2);
-  // Lines at a small angle magnify rounding, here by the normal equations, in doubles by the cross products.
+  // Small angles between lines amplify rounding, here in the normal equations, in the index in the cross products.
   const long double worst = far / n2, r2 = static_cast<long double>(beam.radius) * beam.radius;
   a.found = within(ray.begin, a.t, worst, a.on_boundary);
   a.found = (ray.end == infinity || within(a.t, ray.end, worst, a.on_boundary)) && a.found;

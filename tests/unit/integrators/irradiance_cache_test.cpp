@@ -128,7 +128,7 @@ TEST(IrradianceCache, FindsWhatAllRecordsTell) {
       ASSERT_EQ(found.has_value(), expected.has_value());
       if (!expected) continue;
       ++known;
-      // Floats know 1 - cos of nearly equal normals to 1e-7, and its square root, which weights are made of, to 3e-4.
+      // Single precision gives 1 - cos of nearly equal normals to 1e-7, and its square root, used in weights, to 3e-4.
       ASSERT_NEAR(static_cast<double>((*found)[channel]), *expected, 3e-4) << q;
     }
   }
@@ -174,7 +174,7 @@ TEST(IrradianceCache, SkipsRecordsBeforeThePoint) {
   EXPECT_FALSE(cache.find({1.51f, 0.5f, 0.5f}, up));
 }
 
-// A floor with a step that only one record is near enough to have noticed; on the other side of a wall nobody cares.
+// A floor with a step that only one record is near enough to detect; across a wall it has no effect.
 TEST(IrradianceCache, NeighboursClampDistances) {
   for (const bool small_first : {true, false}) {
     IrradianceCache cache(unit_box, 0.2f);
@@ -195,7 +195,7 @@ TEST(IrradianceCache, NeighboursClampDistances) {
   }
 }
 
-// The octree's way of finding neighbours leaves none out.
+// The octree's search for neighbours omits none.
 TEST(IrradianceCache, NoDistanceIsLongerThanANeighboursAndTheWayThere) {
   HashRng rng(5);
   IrradianceCache cache(unit_box, 0.2f);
@@ -259,8 +259,8 @@ TEST(HemisphereGrid, HasTheCellsAskedForAndCosineDensity) {
   EXPECT_NEAR(mean.y, 0, 5e-3f);
 }
 
-// Half the sky is bright: of the lune between its border and the horizon, E = π/2 (1 + sin δ), δ being the inclination
-// towards the bright half.
+// Half the sky is bright: for the lune between its border and the horizon, E = π/2 (1 + sin δ), where δ is the
+// inclination towards the bright half.
 TEST(IrradianceGradients, OfRotationUnderHalfASky) {
   const Frame frame(normalize(Vec3(0.3f, -0.2f, 0.9f)));
   const Direction bright = frame.to_world(normalize(Vec3(2, 1, 0)));
@@ -284,8 +284,8 @@ TEST(IrradianceGradients, OfRotationUnderHalfASky) {
   EXPECT_NEAR(record.at(Point(0), inclined)[0], pi / 2 * (1 + std::sin(tilt)), 0.01f);
 }
 
-// A bright half of a ceiling, at height h beyond x = e: E(x) = π/2 (1 - s / √(h² + s²)), s = e - x. What is dark is the
-// other half, or lies far behind: the edge that moves is that of the nearer.
+// A bright half of a ceiling, at height h beyond x = e: E(x) = π/2 (1 - s / √(h² + s²)), s = e - x. The dark part is
+// the other half of the ceiling, or far behind it: the edge that moves belongs to the nearer surface.
 TEST(IrradianceGradients, OfTranslationUnderHalfACeiling) {
   constexpr float h = 0.7f;
   for (const float behind : {1.0f, 10.0f})
@@ -323,7 +323,7 @@ TEST(IrradianceGradients, DistanceIsTheHarmonicMeanAndLimitedByTheGradient) {
   EXPECT_NEAR(ceiling(0).distance, h, 0.06f);  // E / |dE/dx|
 }
 
-// Where R counts for more than it is, the gradient must not take away more light.
+// If clamping has enlarged R, the gradient must not remove more light.
 TEST(IrradianceGradients, AreFlattenedWhereDistancesAreTooShort) {
   IrradianceRecord record;
   record.irradiance = Spectrum(1);

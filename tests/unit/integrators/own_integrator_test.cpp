@@ -20,8 +20,8 @@
 namespace lanthorn::own_integrator_test {
 namespace {
 
-// Ambient occlusion: the share of a cosine-weighted hemisphere that is free up to a distance, where something is seen,
-// and 1 where nothing is; the second in a layer of its own.
+// Ambient occlusion: the unoccluded fraction of a cosine-weighted hemisphere up to a distance, for pixels that see a
+// surface, and 1 for others, which go into a separate layer.
 class AmbientOcclusion final : public Integrator {
  public:
   explicit AmbientOcclusion(const Parameters& parameters)
@@ -63,7 +63,7 @@ class AmbientOcclusion final : public Integrator {
   float reach_;
 };
 
-// Its passes from the third on need more memory than there is.
+// From the third on, its passes need more memory than available.
 class Insatiable final : public Integrator {
  public:
   PassReport render_pass(const RenderJob& /*any*/, std::uint32_t pass, const FilmPass& film,
@@ -116,7 +116,7 @@ TEST(OwnIntegrator, HasItsLayersAndTheyAddUpToColor) {
   }
   EXPECT_GT(free, 0);
   EXPECT_GT(sky, 0);
-  // Nothing is in the way of rays of no length.
+  // Rays of length 0 are never occluded.
   const Image open = *select_layer(test::render_image(scene, test::options_for("toy:reach=1e-6", 8)), "color");
   for (const float value : open.pixels) EXPECT_FLOAT_EQ(value, 1);
 }

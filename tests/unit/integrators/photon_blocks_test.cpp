@@ -53,7 +53,7 @@ Outcome run(const Scene& scene, const std::string& method, std::uint64_t block, 
   return result;
 }
 
-// The largest difference of a value of the pictures, over the largest value of its channel; and the mean difference.
+// The largest difference of the pictures, relative to the largest value of its channel; and the mean difference.
 struct Difference {
   double largest = 0, mean = 0;
 };
@@ -76,7 +76,7 @@ Difference difference(const RenderState& a, const RenderState& b) {
 
 class PhotonBlocks : public testing::TestWithParam<const char*> {};
 
-// Photon maps store the lengths of flights in steps that depend on the longest one; else only sums are rounded.
+// Photon maps quantise the lengths of flights by the longest one; otherwise only sums are rounded differently.
 TEST_P(PhotonBlocks, FindTheLightThatOneBlockFinds) {
   for (const ColorMode color : {ColorMode::rgb, ColorMode::spectral}) {
     const Outcome whole = run(still_room(), GetParam(), at_once, {0, 2}, 2, color);
@@ -106,7 +106,7 @@ TEST_P(PhotonBlocks, BytesDoNotDependOnThreadsOrShards) {
   }
 }
 
-// Eye paths take the time of the light path that they are connected to, whose block is not there yet or no more.
+// Eye paths use the time of the light path that they connect to, even if its block is not in memory.
 TEST_P(PhotonBlocks, MeetWhatMovesAtTheSameTimes) {
   const Scene moving = room(true);
   const RenderState whole = run(moving, GetParam(), at_once, {0, 16}).state;

@@ -19,7 +19,7 @@ namespace {
 
 const std::string white_sky = "LightSource \"infinite\" \"rgb L\" [1 1 1]\n";
 
-// A wide plane, seen from above at an angle from the zenith by parallel rays: every pixel sees the same.
+// A wide plane, seen from above at this angle from the zenith by parallel rays: all pixels see the same.
 std::string plane(double degrees, const std::string& sky, const std::string& material) {
   const double angle = degrees * 0.017453292519943295;
   return fmt::format(
@@ -77,7 +77,7 @@ TEST_F(SplitSumShading, IsExactUnderAWhiteSky) {
     for (const double alpha : {0.05, 0.4, 1.0}) {
       const std::string scene = plane(degrees, white_sky, metal(alpha));
       const Rgb found = mean_of(scene, "splitsum", 1), truth = mean_of(scene, "path", 64);
-      // Schlick's term is not the metal's own.
+      // Schlick's approximation differs from the metal's exact Fresnel term.
       EXPECT_NEAR(found.r, truth.r, 0.02f) << degrees << ' ' << alpha;
       EXPECT_NEAR(found.b, truth.b, 0.04f) << degrees << ' ' << alpha;
     }
@@ -99,7 +99,7 @@ TEST_F(SplitSumShading, OfDiffuseSurfacesIsPathTracings) {
   EXPECT_NEAR(found.b / truth.b, 1, 0.01f);
 }
 
-// A sun of 2 x 2 texels of a fine image, turned: its light is neither missed nor counted twice.
+// A sun of 2 x 2 texels of a fine image, rotated: its light is neither missed nor counted twice.
 TEST_F(SplitSumShading, SeesSmallSuns) {
   constexpr int size = 1024;
   const double irradiance = 4 * 4 * 3.14159265 / (size * size) * 1e5 / 3.14159265;
@@ -117,7 +117,7 @@ TEST_F(SplitSumShading, SeesSmallSuns) {
   }
 }
 
-// What remains is the Fresnel term, which the separated sum takes for independent of the light.
+// The remaining error is the Fresnel term, which the split sum assumes independent of the light.
 TEST_F(SplitSumShading, IsNearPathTracingWhereNormalViewAndReflectionAreOne) {
   const auto expect_near = [&](double alpha, float limit) {
     const std::string scene = plane(0, uneven_sky(), metal(alpha));
@@ -132,8 +132,8 @@ TEST_F(SplitSumShading, IsNearPathTracingWhereNormalViewAndReflectionAreOne) {
   for (const double alpha : {0.05, 0.17}) expect_near(alpha, 0.045f);
 }
 
-// A metal whose Fresnel term is 1 has no other error there than that of the maps: the filter's and, in the last levels
-// of 16 and 4 texels across, that of interpolation between texels.
+// For a metal whose Fresnel term is 1, only the maps have errors there: those of the filter and, in the last levels of
+// 16 and 4 texels across, of interpolation between texels.
 TEST_F(SplitSumShading, EqualsPathTracingWhereNormalViewAndReflectionAreOne) {
   struct Level {
     int k;

@@ -145,7 +145,7 @@ TEST(GltfContainer, TextBinaryAndFilesBesideAreTheSame) {
   EXPECT_EQ(read_scene(dir.path() / "beside.gltf").files.count("a%20b.bin"), 1u);
 }
 
-// Models come from the web with the escapes of their URIs as parts of file names.
+// Downloaded models may have file names that contain the escapes of their URIs.
 TEST(GltfContainer, NamesOfFilesMayBeEscapedThemselves) {
   const test::TemporaryDir dir;
   const GltfWriter file = one_mesh();
@@ -260,7 +260,7 @@ TEST(GltfCamera, PerspectiveAndOrthographic) {
   EXPECT_NEAR(view.camera.sample_ray({1280, 0}, {0.5f, 0.5f}, 0).ray.origin.y, 2, 1e-5f);
 }
 
-// A camera that sees nothing shows a black picture, whatever the exporter meant.
+// A camera that sees nothing would show a black picture, whatever the exporter intended.
 TEST(GltfCamera, OneThatSeesNothingIsReplaced) {
   const auto is_replaced = [](const nlohmann::json& camera, const Vec3& at) {
     GltfWriter file = one_mesh();  // in the plane z = 0, from 0 to 1 in x and y
@@ -301,7 +301,7 @@ TEST(Gltf, FilesThatRequireVariantsAreRead) {
   for (const Warning& warning : scene.warnings) EXPECT_EQ(warning.message.find("extension"), std::string::npos);
 }
 
-// A parser that looked at all elements of an array after each took 55 seconds.
+// A parser that visited all elements of an array again after each element took 55 seconds.
 TEST(Gltf, LongArraysTakeTimeInProportionToTheirLength) {
   constexpr int nodes = 200000;
   std::string text = R"({"asset":{"version":"2.0"},"scenes":[{"nodes":[0]}],"nodes":[)";

@@ -58,7 +58,7 @@ TEST_F(MissingFiles, OfPbrtScenes) {
   expect_named(scene, {"part.pbrt", "lamp.spd", "eta.spd", "no.ply"});
 }
 
-// Without the lens the picture has about its brightness, focus and blur, since another lens is behind the same
+// Without the lens file, brightness, focus and blur stay similar, since another lens is placed behind the same
 // aperture.
 TEST_F(MissingFiles, LensesMediaAndMeasuredMaterialsHaveStandIns) {
   dir_.write("a.pbrt",
@@ -94,7 +94,7 @@ TEST_F(MissingFiles, OfLongNamesTheEndIsShown) {
       << error_of("a.pbrt");
 }
 
-// A single one is the error of whoever reads it, with its place, and says how to go on.
+// A single missing file causes the specific error of the code that reads it, with its location and advice.
 TEST_F(MissingFiles, ASingleOneHasItsOwnError) {
   const std::string skip = ": no such file; --missing skip renders without it";
   dir_.write("a.pbrt", "WorldBegin\nMaterial \"conductor\" \"spectrum eta\" \"eta.spd\"\n");
@@ -111,7 +111,7 @@ TEST_F(MissingFiles, ASingleOneHasItsOwnError) {
   EXPECT_EQ(error_of("d.pbrt"), place("d.pbrt") + ":2:1: " + place("no.ply") + skip);
 }
 
-// What the missing file would have defined is not the problem to report.
+// Definitions missing because of a missing file are not the error to report.
 TEST_F(MissingFiles, ComeBeforeErrorsThatTheyMayCause) {
   dir_.write("a.pbrt", "WorldBegin\nInclude \"materials.pbrt\"\nNamedMaterial \"gold\"\nShape \"sphere\"\n");
   EXPECT_EQ(error_of("a.pbrt"),
@@ -292,7 +292,7 @@ TEST_F(MissingFiles, AreLookedForByCaseAndByTheirLastPart) {
     })) << name;
     EXPECT_TRUE(contains(all_messages(scene), "lib.mtl\" is read")) << all_messages(scene);
   }
-  // A relative name is right but for case: the same name elsewhere is another file.
+  // A relative name may only differ in case: the same name elsewhere is another file.
   EXPECT_TRUE(contains(all_messages(image_of("images/Bark.png")), "is missing"));
   dir_.write("b.pbrt",
              "WorldBegin\nTexture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"TEXTURES/wood.png\"\n");

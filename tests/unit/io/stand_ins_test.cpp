@@ -138,8 +138,8 @@ Bounds seen_box(const SceneDescription& scene, const Point& centre, float half) 
   return box;
 }
 
-// A ball on a plain that is far larger is framed as if the plain were not there; on one that is not much larger, both
-// are framed. The plain is an instance, or a backdrop behind or before the ball.
+// A ball on a much larger plane is framed as if the plane did not exist; on a slightly larger one, both are framed. The
+// plane is an instance, or a backdrop behind or in front of the ball.
 TEST(StandIns, ThingsOnALargePlainAreFramed) {
   const Vec3 x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
   const auto width = [](const SceneDescription& scene) { return seen_box(scene, Point(0), 1).extent().x; };
@@ -166,14 +166,14 @@ TEST(StandIns, ThingsOnALargePlainAreFramed) {
   EXPECT_NEAR(width(instanced), alone, 0.1f * alone);
   EXPECT_EQ(instanced.instances.size(), 1u);
   EXPECT_NE(instanced.warnings.back().message.find("a view of all but the ground "), std::string::npos);
-  // Walls of a room are no grounds, however small the things in it.
+  // Walls of a room are not grounds, however small the objects in it.
   const SceneDescription in_room = seen(room({9, 9, 9}, {sphere({0, -8.8f, 0}, 0.2f)}, 3), {{}, false});
   EXPECT_EQ(in_room.warnings.back().message.find("ground"), std::string::npos);
   const SceneDescription layers =
       seen({square({0, 1, 0}, 50.0f * x, 50.0f * z), square({0, -1, 0}, 50.0f * x, 50.0f * z), sphere(Point(0), 0.5f)},
            {{}, false});
   EXPECT_EQ(layers.warnings.back().message.find("ground"), std::string::npos);
-  // A plain alone, and one with thin poles of its own size, are no grounds.
+  // A plane alone, and one with thin poles of its own size, are not grounds.
   EXPECT_LT(seen_box(seen({square(Point(0), 50.0f * x, -50.0f * z)}), Point(0), 1).extent().x, 0.1f);
   EXPECT_LT(width(seen({square(Point(0), 50.0f * x, -50.0f * z), sphere(Point(0), 1),
                         square({0, 40, 0}, 0.1f * x, 40.0f * y)})),
@@ -212,7 +212,7 @@ TEST(StandIns, RoomsAreSeenFromInsideByALampInThem) {
   EXPECT_TRUE(lit.area_lights.empty());
 }
 
-// The user's environment takes the place of the studio alone: camera and lamp are as without it.
+// The user's environment replaces only the studio: camera and lamp are as without it.
 TEST(StandIns, TheUsersEnvironmentMovesNoCamera) {
   const Vec3 half(4, 1.5f, 3);
   for (const bool is_room : {true, false}) {
@@ -295,7 +295,7 @@ TEST(StandIns, WhatFacesInwardsIsSeenFromInside) {
   std::vector<Shape> sky = inwards({sphere({0, 0, 0}, 9)});
   sky.push_back(sphere({0, -2, 0}, 2));
   EXPECT_TRUE(is_inside(seen(sky, certain), Vec3(9)));
-  // A hull that hides a ball: from between the two, mostly the ball's front is seen; in the ball, its back.
+  // A hull that hides a ball: from between the two, mostly the ball's front is visible; inside the ball, its back.
   std::vector<Shape> hull = inwards({sphere({0, 0, 0}, 2.1f)});
   hull.push_back(sphere({0, 0, 0}, 2));
   EXPECT_FALSE(is_inside(seen(hull, certain), Vec3(2.1f)));
@@ -417,8 +417,8 @@ int count_seen(const SceneDescription& description, const std::vector<Point>& pl
   }));
 }
 
-// Of a room with three cards, open towards -x, all cards are seen; of a box with z up, open towards -y, the block, the
-// back wall and the floor, and the picture is upright.
+// In a room with three cards, open towards -x, all cards are visible; in a box with z up, open towards -y, the block,
+// the back wall and the floor, and the picture is upright.
 TEST(StandInRooms, AreSeenThroughTheirOpenSide) {
   const SceneDescription room = read_scene(models + "room-open-x.obj");
   EXPECT_LT(eye_of(room).x, -3);
@@ -483,7 +483,7 @@ TEST(StandInRooms, WithZUpAreLitFromThere) {
   }
 }
 
-// A house without a floor, as many models are, is seen from outside: from below nothing more is seen.
+// A house without a floor, as many models are, is viewed from outside: from below nothing more is visible.
 TEST(StandInRooms, HousesWithoutAFloorAreNotSeenFromBelow) {
   std::vector<Shape> house = room({2, 1, 1.5f}, {});
   house.erase(house.begin() + 3);

@@ -296,7 +296,7 @@ TEST(Upgrade, ErrorsHavePlaces) {
             "t.pbrt:3:1: Shape \"heightfield\" needs \"nu\" and \"nv\" from 2 to 32768 and nu * nv numbers \"Pz\"");
 }
 
-// What is only approximated is named once, with the first place and the number of places.
+// Each approximation is reported once, with its first place and the number of places.
 TEST(Upgrade, NotesAreCounted) {
   const std::vector<std::string> warnings =
       warnings_of(v3_head +
@@ -357,7 +357,7 @@ TEST(Upgrade, LampsWithoutAMaterialEmit) {
   EXPECT_TRUE(std::holds_alternative<description::InterfaceMaterial>(material_of(scene, 1).node));
 }
 
-// Colours as textures have float twins where numbers are needed.
+// Colour textures get a float twin where numbers are needed.
 TEST(Upgrade, TexturesAsAmounts) {
   const SceneDescription scene =
       read(v3_head +
@@ -407,7 +407,7 @@ TEST(Upgrade, WritesTheTranslation) {
                 ": Film \"rgb\" in line 4 belongs to pbrt-v4: there is nothing to convert");
 }
 
-// What pbrt-v2 has of its own is translated, or left out with a warning; the rest is as in pbrt-v3.
+// Features of pbrt-v2 only are translated, or skipped with a warning; the rest is as in pbrt-v3.
 TEST(Upgrade, FilesOfPbrtV2AreRead) {
   const std::string world =
       "WorldBegin\nAttributeBegin\nAreaLightSource \"area\" \"color L\" [3 2 1] \"integer nsamples\" 4\nShape "

@@ -225,8 +225,8 @@ TEST(Emitter, SphereConeIsRightNearAndFar) {
   EXPECT_TRUE(sphere.sample_towards({1.1f, 2, 3}, {0.5f, 0.5f}));
 }
 
-// Rounded, points of the sphere lie inside or outside. From each, the directions to the inside fill a hemisphere: the
-// irradiance is π times the radiance.
+// After rounding, points on the sphere lie inside or outside. From each, the directions to the inside fill a
+// hemisphere: the irradiance is π times the radiance.
 TEST(Emitter, SpheresLightTheirOwnInside) {
   HashRng rng(21);
   for (const float radius : {1.0f, 100.0f, 3e5f}) {
@@ -314,7 +314,7 @@ TEST(Light, EmissionAgreesWithItsDensities) {
     }
 }
 
-// Sampled again, the numbers that are found for a ray give that ray.
+// Sampling again with the numbers found for a ray reproduces that ray.
 TEST(Light, EmissionIsInverted) {
   HashRng rng(14);
   for (const NamedLight& l : test_lights())
@@ -365,7 +365,7 @@ TEST(Light, PhotonsCarryEqualFluxWhoseMeanIsThePower) {
   }
 }
 
-// At 10^-20 m from a light without green its irradiance has no number, and its green would be infinity times 0.
+// At 10^-20 m from a light without green its irradiance overflows, and its green would be infinity times 0.
 TEST(Light, PointsAreNotSeenFromWhereTheirLightIsInfinite) {
   const PointLight light{{}, SpectrumCurve::illuminant({1, 0, 1})};
   const auto near = light.sample_direct({1e-15f, 0, 0}, {}, Wavelengths::rgb(0.5f));
@@ -657,7 +657,7 @@ TEST(PhotonAllocation, IsSafeAtItsEnds) {
   EXPECT_THROW(emission_probabilities(one, &of_other_scene), std::invalid_argument);
 }
 
-// A density that is asked for up to a bound is exact below it, and between the bound and the truth above.
+// A density requested up to a bound is exact below it, and between the bound and the exact value above.
 TEST(GuidedDensity, NeedNotBeExactAboveWhatIsEnough) {
   const BoundingSphere scene{{0, 0, 0}, 10};
   const Light light = UniformInfiniteLight{test_colour(), scene};
@@ -736,7 +736,7 @@ TEST(LightBvh, NeverMissesALightThatContributes) {
 }
 
 TEST(LightBvh, DescendsDeepTreesAndCoincidentLights) {
-  // Distances that double make the split by cost peel off one light after another.
+  // Doubling distances make the split by cost separate one light after another.
   std::vector<Light> lights;
   for (int i = 0; i < 100; ++i) lights.emplace_back(PointLight{{std::ldexp(1.0f, i - 60), 0, 0}, test_colour()});
   for (int i = 0; i < 100; ++i) lights.emplace_back(PointLight{{5, 5, 5}, test_colour()});
@@ -748,8 +748,8 @@ TEST(LightBvh, DescendsDeepTreesAndCoincidentLights) {
   EXPECT_FALSE(LightBvh(std::span<const Light>()).sample({}, {}, 0.5f));
 }
 
-// At each split the half around the point has about nine times the importance of the other, whose centre is three times
-// as far away as the radius: of n lights, .9^log2(n) is left for the nearest and its neighbour.
+// At each split, the half around the point has about nine times the importance of the other, whose centre is three
+// times as far away as its radius: of n lights, .9^log2(n) remains for the nearest and its neighbour.
 TEST(LightBvh, PrefersNearLights) {
   for (const auto& [count, nearest] : {std::pair(64, 0.4f), std::pair(20'000, 0.15f)}) {
     std::vector<Light> lights;
@@ -760,11 +760,10 @@ TEST(LightBvh, PrefersNearLights) {
   }
 }
 
-// A split is chosen by a sample of a large node's lights. Those that come first are all of the near cluster: by them
-// alone no split would be seen, and halves by number would mix the clusters, whose first half has less than half of the
-// near one's lights. The near cluster has 2112 lights at a distance of 1, the far one 1984 of 479 times the power at
-// 30, which is half of its importance. Halves whose lights are mixed seem as near as half their size: (15/30)² would
-// make the far lights count four times as much.
+// A split is chosen from a sample of a large node's lights. The first lights all belong to the near cluster: with these
+// alone no split would be found, and splitting by number would mix the clusters. The near cluster has 2112 lights at a
+// distance of 1, the far one 1984 of 479 times the power at 30, which is half of its importance. Mixed halves seem as
+// near as half their size: (15/30)² would give the far lights four times their weight.
 TEST(LightBvh, SplitsByLightsOfAllParts) {
   std::vector<Light> lights;
   const Vec3 centre(0, -1, 0);

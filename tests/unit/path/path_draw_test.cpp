@@ -140,7 +140,7 @@ TEST(WavelengthsOfPass, HeroesAreSpread) {
 }
 
 // The film's halves measure noise by their difference, so their colours must differ as much as their mean is wrong.
-// When halves shared a sequence, they differed by up to ten times as much. In spectral mode passes have two parts.
+// When halves shared a sequence, they differed by up to ten times as much. In spectral mode, passes have two parts.
 TEST(WavelengthsOfPass, HalvesDifferAsMuchAsTheirMeanIsWrong) {
   for (const auto& [mode, parts] : {std::pair{ColorMode::rgb, 1u}, {ColorMode::spectral, 2u}})
     for (const std::uint32_t passes : {16u, 64u}) {
@@ -161,8 +161,8 @@ TEST(WavelengthsOfPass, HalvesDifferAsMuchAsTheirMeanIsWrong) {
     }
 }
 
-// Light that moves and disperses, in 32 passes of two parts: each quarter of the shutter interval has each of the eight
-// offsets, of one half or the other, and each quarter of the heroes.
+// Moving and dispersed light, in 32 passes of two parts: each quarter of the shutter interval gets each of the eight
+// offsets, from either half, and each quarter of the heroes.
 TEST(WavelengthsOfPass, ColoursDoNotFollowTime) {
   constexpr std::uint32_t parts = 2;
   std::set<std::pair<int, int>> met, heroes;

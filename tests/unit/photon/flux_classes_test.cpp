@@ -37,7 +37,7 @@ TEST(FluxClasses, HaveAreasThatGrowWithTheRootOfTheFlux) {
   EXPECT_FLOAT_EQ(classes.area_factor(1), 1);
 }
 
-// Of a dispersed path the first wavelength counts alone, whatever the others carry.
+// For a dispersed path only the first wavelength counts, whatever the others carry.
 TEST(FluxClasses, CountWhatDispersionLeaves) {
   const Wavelengths w = Wavelengths::spectral(0.3f);
   EXPECT_FLOAT_EQ(flux_of({1, 2, 3, 4}, false, w), 10);

@@ -77,7 +77,7 @@ TEST(Incidence, FacetsAlongTheLightDoNotFlash) {
   }
 }
 
-// Of a beam that grazes a facet few photons land on it, and each of them brings more.
+// A beam at a grazing angle deposits few photons on a facet, and each of them carries more.
 TEST(Incidence, MapsKeepWhatGrazingPhotonsBring) {
   const Direction wi(0, std::sqrt(1 - 0.02f * 0.02f), 0.02f);
   const std::vector<Photon> photons{{Spectrum(3), {0, 0, 0}, wi, {0, 0, 1}, {}}};

@@ -71,7 +71,8 @@ TEST_P(KernelLadders, FindWhatEachKernelFinds) {
   EXPECT_EQ(sums.back(), 0);
 }
 
-// By t² / (t² + near²), with the distance t along the eye's path to where the ray passes the photon, or to the vertex.
+// Weighted by t² / (t² + near²), with the distance t along the eye path to the point where the ray passes the photon,
+// or to the vertex.
 TEST_P(KernelLadders, CountLessNearTheEye) {
   const OnePhoton photon(GetParam());
   const auto all = photon.compared(1, 0);

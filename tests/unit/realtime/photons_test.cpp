@@ -107,7 +107,7 @@ bool has_stage(Renderer& renderer, const std::string& stage) {
   return std::any_of(stages.begin(), stages.end(), [&](const gl::StageTime& s) { return s.stage == stage; });
 }
 
-// Software drivers end long loops of shaders without a word.
+// Software drivers silently end long loops in shaders.
 TEST_F(Photons, TilesLoseNoneOfVeryManyPhotons) {
   const Scene scene = test::scene_from_text(box(point_light));
   ViewOptions options;
@@ -154,8 +154,8 @@ TEST_F(Photons, BuffersThatShadersCannotSeeAreErrors) {
   }
 }
 
-// What lights see is drawn once while only the eye moves, and the picture is that of a renderer that draws all.
-// Mirrors, whose light the CPU gathers, show the same photons.
+// Light maps are drawn only once while only the eye moves, and the picture equals that of a renderer that redraws
+// everything. Mirrors, whose light the CPU gathers, show the same photons.
 TEST_F(Photons, AreKeptWhileOnlyTheEyeMoves) {
   const Scene scene = test::scene_from_text(box(point_light, mirror));
   const View view = make_view(scene.description().view);

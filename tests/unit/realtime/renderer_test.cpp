@@ -131,7 +131,7 @@ Rotate 15 0 1 0
 Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [.02 0 -4  4 0 -4  4 0 4  .02 0 4]
 )";
 
-// How saw-toothed a straight edge of a shadow is: root mean square of its second differences from row to row, pixels.
+// Jaggedness of a straight shadow edge: root mean square of its second differences from row to row, pixels.
 double roughness_of_edge(const Scene& scene, FrameSettings settings) {
   const View view = make_view(scene.description().view);
   Renderer renderer(scene);
@@ -153,8 +153,8 @@ double roughness_of_edge(const Scene& scene, FrameSettings settings) {
   return std::sqrt(sum / static_cast<double>(edges.size()));
 }
 
-// A texel is five pixels wide. By single texels the edge is a saw; the mean of four would keep 0.24 of its teeth, that
-// of nine keeps 0.13 (both by a simulation of the filters, too).
+// A texel is five pixels wide. Single texels give a saw-toothed edge; the mean of four would keep 0.24 of its teeth,
+// that of nine keeps 0.13 (both confirmed by simulating the filters).
 TEST_F(RendererTest, SoftEdgesHaveNoTeeth) {
   const Scene scene = test::scene_from_text(floor_and_blade);
   double ratios = 0;
@@ -328,7 +328,7 @@ TEST_F(RendererTest, LostContextIsAnError) {
   EXPECT_NO_THROW(renderer.draw(view, {}));
 }
 
-// A driver's remarks, such as NVIDIA's on shaders that it compiles again, must not end a frame.
+// Driver remarks, such as NVIDIA's about recompiled shaders, must not end a frame.
 TEST_F(RendererTest, RemarksOfDriversAreNoErrors) {
   const gl::DebugLog log;
   const auto say = [](GLenum type) {

@@ -43,8 +43,8 @@ std::array<double, 3> mean_of_grey(const Scene& scene, const RenderOptions& opti
   return mean;
 }
 
-// Passes, and the parts of a pass, differ in brightness by their noise, which keeps some of their tints: .8 % (standard
-// deviation). mlt estimates its brightness in each part: its noise is larger.
+// Passes, and the parts of a pass, differ in brightness by their noise, which preserves some of their tints: .8 %
+// (standard deviation). mlt estimates its brightness in each part: its noise is larger.
 TEST(ColourBalance, TheMeanIsGreyAfterAnyNumberOfPasses) {
   const Scene scene = test::scene_from_text(grey_corner);
   for (const char* const method : methods)
@@ -54,7 +54,7 @@ TEST(ColourBalance, TheMeanIsGreyAfterAnyNumberOfPasses) {
     }
 }
 
-// Of 64 seeds, that whose first pass has the strongest tint without the balance: red is 6 % below blue.
+// Among 64 seeds, the one whose first pass has the strongest tint without the balance: red is 6 % below blue.
 TEST(ColourBalance, PicturesAreBalanced) {
   const Scene scene = test::scene_from_text(grey_corner);
   const auto red_over_blue = [&](std::uint64_t seed) {
@@ -197,8 +197,8 @@ TEST(ColourBalance, SpectralPassesHaveTwoParts) {
   EXPECT_EQ(settings("path", ColorMode::spectral).parts, 1u);
 }
 
-// All of mlt's light is splatted. Its mean has a standard deviation of some percent here; counted twice, it would be
-// twice as bright.
+// All of mlt's light is splatted. Its mean has a standard deviation of a few percent here; if counted twice, it would
+// be twice as bright.
 TEST(ColourBalance, SplatsOfAllPartsTogetherAreOnePass) {
   const Scene scene = test::scene_from_text(grey_corner);
   const auto mean = [&](ColorMode color) {

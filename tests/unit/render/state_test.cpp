@@ -175,7 +175,7 @@ void repair_checksum(Bytes& bytes) {
   std::memcpy(&bytes[bytes.size() - sizeof(crc)], &crc, sizeof(crc));
 }
 
-// What a forger can do, who makes the checksum right: no damage may do worse than an Error.
+// A forger can correct the checksum: no damage may do worse than cause an Error.
 TEST(State, DamageBehindARightChecksumNeverDoesHarm) {
   const Bytes bytes = encode_state(shard(0, 3));
   std::mt19937 rng(11);

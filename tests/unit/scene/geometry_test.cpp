@@ -318,7 +318,7 @@ TEST(SceneInstances, AreTheSameAsBakedShapes) {
   EXPECT_GT(hits, 800);
 }
 
-// What a ray of a time sees is what it would see of the scene standing still at that time.
+// A ray at a given time sees what it would see of the scene standing still at that time.
 TEST(SceneMotion, EqualsStillScenesAtEveryTime) {
   const AnimatedTransform path(rotate(20, {0, 1, 0}) * scale({1, 1.2f, 0.8f}),
                                translate({0.5f, 0.3f, -0.2f}) * rotate(130, {1, 1, 0}) * scale({0.7f, 1, 1.1f}), 0, 1);
@@ -380,8 +380,8 @@ TEST(SceneMotion, MotionAgreesWithAnimatedTransform) {
   }
 }
 
-// A closed torus: no ray from inside gets out, not even if aimed at its edges. Embree's test of rays that are aimed at
-// a vertex itself can miss all triangles around it, which is left a few of a thousand; no random ray is that exact.
+// A closed torus: no ray from inside gets out, even if aimed at edges. Embree's test can miss all triangles around a
+// vertex for rays aimed exactly at the vertex, which is tolerated for a few of a thousand; no random ray is that exact.
 TEST(SceneRobustness, ClosedMeshesAreWatertight) {
   constexpr int n = 48;
   const auto torus = [](int i, int j) {
@@ -420,8 +420,8 @@ TEST(SceneRobustness, ClosedMeshesAreWatertight) {
   }
 }
 
-// Rays that leave a convex body outwards from its surface must not find it again, and rays into it must, at all scales
-// and far from the origin.
+// Rays that leave a convex body from its surface must not hit it again, and rays into it must, at all scales and far
+// from the origin.
 struct Body {
   const char* name;
   std::string directives;

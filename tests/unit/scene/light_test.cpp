@@ -80,8 +80,8 @@ TEST(SceneLights, EmittersAreTheSurfacesThatRaysFind) {
     }
 }
 
-// What textures make of a point must not depend on whether it was drawn or met by a ray: all shapes' parametrisations,
-// in the world and in instances.
+// Texture results at a point must not depend on whether it was sampled or hit by a ray: for all shapes'
+// parametrisations, in the world and in instances.
 TEST(SceneLights, TexturedEmissionIsWhatRaysSee) {
   const std::string lamp =
       "Texture \"l\" \"spectrum\" \"bilerp\" \"rgb v00\" [1 2 3] \"rgb v10\" [5 1 2] \"rgb v01\" [2 7 1] \"rgb v11\" "
@@ -360,7 +360,7 @@ TEST(SceneLights, ScalesFollowPbrt) {
   EXPECT_NEAR(lamp.largest_radiance(), 7 / (2 * pi * 16 * pi), 0.02f);
 }
 
-// The film's range follows what lights without extent are near to, however large the world is.
+// The film's range depends on the distance of surfaces to point-like lights, however large the world is.
 TEST(SceneLights, TheLargestRadianceIsThatOfTheNearestSurface) {
   const auto largest_of = [](const std::string& light, const std::string& height, const std::string& size) {
     const std::string corners = "-" + size + " 0 -" + size + "  " + size + " 0 -" + size + "  " + size + " 0 " + size +
@@ -374,7 +374,7 @@ TEST(SceneLights, TheLargestRadianceIsThatOfTheNearestSurface) {
     EXPECT_NEAR(largest_of(light, "10", "1e5") / largest_of(light, "10", "1e3"), 1, 1e-3) << light;
     EXPECT_NEAR(largest_of(light, "10", "1e5") / largest_of(light, "20", "1e5"), 4, 1e-2) << light;
   }
-  // One that touches something does not push the range beyond what the landscape's other end needs.
+  // A light that touches a surface does not increase the range beyond what the landscape's other end needs.
   const float far = largest_of(point, "10", "1e3") * sqr(10 / 1.4142136e5f);
   EXPECT_LT(largest_of(point, "1e-9", "1e5") / far, std::exp2(33));
 }

@@ -144,7 +144,7 @@ TEST(Robustness, NormalsOfAnyLengthAreNormalised) {
   }
 }
 
-// Tracking takes a step for each mean free path of the densest part, wherever the flight goes.
+// Tracking takes one step per mean free path of the densest part, wherever the flight goes.
 TEST(Robustness, MediaOfTooManyMeanFreePathsAreRefused) {
   const auto load = [](const std::string& transform, const std::string& parameters) {
     return world(transform + "\nMakeNamedMedium \"m\" " + parameters + "\n");

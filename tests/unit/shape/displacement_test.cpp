@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Displaced meshes: fine enough, without cracks, where the height says.
+// Displaced meshes are fine enough, without cracks, and at the given height.
 #include "shape/displacement.h"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Loop subdivision against what is known of its limit.
+// Loop subdivision against known properties of its limit surface.
 #include <gtest/gtest.h>
 
 #include <array>

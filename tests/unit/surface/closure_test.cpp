@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// A toy closure, of which each part can be left out: without any one of them it is no closure, and could not become one
-// of those in `Bsdf`.
+// A toy closure with optional parts: without any of them it does not satisfy the concept, and could not become one of
+// the alternatives of `Bsdf`.
 #include <gtest/gtest.h>
 
 #include <type_traits>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// A table made from a GGX conductor must behave as the conductor that it was made from.
+// A table made from a GGX conductor must behave like that conductor.
 #include "surface/measured.h"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The render that shows offline what the window shows.
+// The offline render that corresponds to the window's content.
 #include "viewer/offline_command.h"
 
 #include <gtest/gtest.h>

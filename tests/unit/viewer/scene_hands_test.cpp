@@ -56,8 +56,8 @@ TEST(Picking, ATriangleIsHitFromBothSidesAndMissedBesideIt) {
   EXPECT_FALSE(hit_triangle({0.2f, 0.2f, 3}, {0, 0, 1}, a, b, c)) << "behind the origin";
 }
 
-// Two corners as far apart as rounding puts those at the pole of a sphere: the ray through the pole meets it nowhere
-// else.
+// Two corners that differ only by rounding, as at the pole of a sphere: the ray through the pole hits the triangle
+// nowhere else.
 TEST(Picking, TrianglesWithoutAreaAreNotHit) {
   const Point pole(-1, -1, 2.5f);
   for (int i = 0; i < 64; ++i) {
@@ -256,7 +256,7 @@ TEST(Interaction, ClicksSelectAndDragsOrbit) {
   EXPECT_FALSE(change.scene);
 }
 
-// Between two slow frames the pointer comes from afar, and a button is pressed.
+// Between two slow frames the pointer moves far, and a button is pressed.
 TEST(Interaction, AClickIsAClickHoweverFarThePointerCame) {
   Hand hand;
   const Vec2 lamp = hand.pixel_of({1.5f, -0.5f, 0.1f});
@@ -274,7 +274,8 @@ TEST(Interaction, AClickIsAClickHoweverFarThePointerCame) {
   EXPECT_EQ(hand.panel.selected_light, 3u);
 }
 
-// Pressed over a thing, and moved on before the frame: it is dragged from where the button was pressed.
+// The button is pressed over an object, and the pointer moves on before the frame: dragging starts where the button was
+// pressed.
 TEST(Interaction, ADragBeginsWhereTheButtonWasPressed) {
   Hand hand;
   const Vec2 at = hand.pixel_of({2, 1, 1}), way(40, -20);
