@@ -40,7 +40,7 @@ Chunks split_container(std::string_view bytes, const std::string& name) {
   const auto fail = [&](const std::string& message) { return Error(SourceLocation{name}, message); };
   if (bytes.size() < 12) throw fail("the file ends inside its header");
   if (const std::uint32_t version = little_endian_32(bytes, 4); version != 2)
-    throw fail("is version " + std::to_string(version) + " of glTF's binary container": only version 2 is supported");
+    throw fail("is version " + std::to_string(version) + " of glTF's binary container: only version 2 is supported");
   if (const std::uint32_t length = little_endian_32(bytes, 8); length > bytes.size())
     throw fail("the file has " + std::to_string(bytes.size()) + " bytes, but its header says " +
                std::to_string(length));
@@ -49,14 +49,14 @@ Chunks split_container(std::string_view bytes, const std::string& name) {
   Chunks chunks;
   bool has_text = false;
   for (std::size_t at = 12; at < bytes.size();) {
-      if (bytes.size() - at < 8) throw fail("the file ends inside a chunk's header");
-      const std::uint32_t length = little_endian_32(bytes, at), type = little_endian_32(bytes, at + 4);
-      at += 8;
-      if (length > bytes.size() - at) throw fail("the file ends inside a chunk");
-      constexpr std::uint32_t json_type = 0x4E4F534A, binary_type = 0x004E4942;
-      if (type == json_type && !std::exchange(has_text, true)) chunks.text = bytes.substr(at, length);
-      if (type == binary_type && !chunks.binary) chunks.binary = bytes.substr(at, length);
-      at += length;
+    if (bytes.size() - at < 8) throw fail("the file ends inside a chunk's header");
+    const std::uint32_t length = little_endian_32(bytes, at), type = little_endian_32(bytes, at + 4);
+    at += 8;
+    if (length > bytes.size() - at) throw fail("the file ends inside a chunk");
+    constexpr std::uint32_t json_type = 0x4E4F534A, binary_type = 0x004E4942;
+    if (type == json_type && !std::exchange(has_text, true)) chunks.text = bytes.substr(at, length);
+    if (type == binary_type && !chunks.binary) chunks.binary = bytes.substr(at, length);
+    at += length;
   }
   if (!has_text) throw fail("the file has no JSON chunk");
   return chunks;

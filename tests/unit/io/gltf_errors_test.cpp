@@ -32,7 +32,7 @@ TEST(GltfErrors, Container) {
             "t.gltf: the file has 40 bytes, but its header says " + std::to_string(file.size()));
   std::string other = file;
   other[4] = 1;
-  EXPECT_EQ(gltf_error(other), "t.gltf: is version 1 of glTF's binary container": only version 2 is supported");
+  EXPECT_EQ(gltf_error(other), "t.gltf: is version 1 of glTF's binary container: only version 2 is supported");
   other = file;
   other[15] = '\x7f';
   EXPECT_EQ(gltf_error(other), "t.gltf: the file ends inside a chunk");
