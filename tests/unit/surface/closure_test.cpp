@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// A toy closure with optional parts: without any of them it does not satisfy the concept, and could not become one of
-// the alternatives of `Bsdf`.
+// A toy closure with the optional members. If one of them were missing, it would not satisfy the concept, and could not
+// become an alternative of `Bsdf`.
 #include <gtest/gtest.h>
 
 #include <type_traits>
