@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Time per call of each closure's eval, pdf and sample, through the variant, for directions that differ at every call.
+// Time per call of each closure's eval, pdf and sample, through the variant, with different directions in every call.
 #include <benchmark/benchmark.h>
 
 #include <array>

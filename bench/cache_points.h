@@ -22,8 +22,8 @@ inline std::vector<Point> uniform_points(std::size_t count, std::uint64_t seed) 
   return points;
 }
 
-/// A room of side 2 with two balls in it, turned about an oblique axis unless `aligned`, so that no surface is parallel
-/// to the axes.
+/// A room of side 2 with two balls in it, rotated about an oblique axis unless `aligned`, so that no surface is
+/// parallel to the axes.
 class Room {
  public:
   explicit Room(bool aligned) {
@@ -33,7 +33,7 @@ class Room {
     x_ = s, y_ = cross(n, s), z_ = n;
   }
 
-  /// A point on one of the surfaces, uniform by area, each ball with eight times its share (caustics gather there).
+  /// A point on one of the surfaces, uniform by area, but with eight times the density on the balls (as for caustics).
   Point sample(HashRng& rng) const {
     constexpr float ball_area = 8 * 4 * pi * radius * radius;
     float u = rng.next() * (24 + 2 * ball_area);
@@ -44,7 +44,7 @@ class Room {
     return to_world(p);
   }
 
-  /// What the camera in the middle of one wall sees through pixel (x, y) of a square image.
+  /// The point that a camera in the middle of one wall sees through pixel (x, y) of a square image.
   Point seen(float x, float y) const {
     const Point eye{0, 0, -0.999f};
     const Vec3 d = normalize(Vec3(2 * x - 1, 2 * y - 1, 1.0f));

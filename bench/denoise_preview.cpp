@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 // Usage: bench_denoise_preview PICTURE.exr [REFERENCE.exr]
-// The preview that `serve` and `view` show beside the denoised picture in full quality: seconds of processor time, and
+// Compares the preview of `serve` and `view` with the picture denoised at full quality: seconds of processor time, and
 // relMSE as bench/denoise measures it.
 #include <fmt/format.h>
 
@@ -37,7 +37,7 @@ void print(const char* name, double seconds, const Image& color, const std::opti
   fmt::print("\n");
 }
 
-// Runs `make` and returns what it makes; `seconds`: of all threads.
+// Runs `make` and returns its result; `seconds`: processor time of all threads.
 template <class Make>
 auto timed(double& seconds, Make&& make) {
   const std::clock_t start = std::clock();

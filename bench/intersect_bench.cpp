@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// What Scene::intersect and the tracing of photons cost beside the ray queries themselves, with raw Embree on the same
-// geometry as the yardstick: incoherent rays inside a scene of triangles and patches, and the rays of the photons.
+// Overhead of Scene::intersect and of tracing photons over the ray queries themselves, relative to raw Embree on the
+// same geometry: incoherent rays inside a scene of triangles and patches, and the rays of the photons.
 //   bench_intersect tests/conformance/scenes/c02-cornell.pbrt
 #include <algorithm>
 #include <cstdio>
@@ -80,14 +80,14 @@ template <class Body>
 double best_seconds(Body&& body) {
   double best = 1e30;
   for (int round = 0; round < rounds; ++round) {
-    const std::clock_t start = std::clock();  // processor time: less disturbed by other programs
+    const std::clock_t start = std::clock();  // processor time: less affected by other programs
     body();
     best = std::min(best, static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC);
   }
   return best;
 }
 
-// The still meshes of the file alone in an Embree scene with the flags that Geometry sets.
+// Only the file's static meshes, in an Embree scene with the flags that Geometry sets.
 struct RawScene {
   std::vector<std::unique_ptr<ShapeStore>> shapes;
   RTCDevice device = rtcNewDevice(nullptr);

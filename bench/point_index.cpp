@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The point indices against nanoflann: build, 50 nearest and all in a ball, on points in a cube and on surfaces.
-// Arguments: number of points, 0 = cube or 1 = surfaces, and for builds the number of threads. Queries are random
-// points of the set, slightly moved, in random order, one thread.
+// The point indices against nanoflann: building, the 50 nearest points, and all points in a ball, for points in a cube
+// and on surfaces. Arguments: number of points, 0 = cube or 1 = surfaces, and for builds the number of threads. Queries
+// are random points of the set, slightly displaced, in random order, on one thread.
 #include <benchmark/benchmark.h>
 
 #include <nanoflann.hpp>

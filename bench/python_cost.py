@@ -1,11 +1,11 @@
 # SPDX-FileCopyrightText: 2026 The Lanthorn authors
 # SPDX-License-Identifier: Apache-2.0
-"""What Python costs: PYTHONPATH=build/release/lib/python python3 bench/python_cost.py build/release/bin/lanthorn [METHOD...]
+"""The overhead of Python: PYTHONPATH=build/release/lib/python python3 bench/python_cost.py build/release/bin/lanthorn [METHOD...]
 
-Prints the seconds from the start of `import lanthorn` to the array of a picture of 64 x 64 pixels, each in a process of its
-own. Then the processor milliseconds of a pass of 256 x 256 pixels by the program, by Session.render, and by Session.passes,
-which makes a picture after each: the difference of 80 and 16 passes, so that start and files do not count; the least of
-several runs, in turns.
+Prints the seconds from the start of `import lanthorn` to the array of a picture of 64 x 64 pixels, each in a separate
+process. Then prints the processor milliseconds of a pass of 256 x 256 pixels by the program, by Session.render, and by
+Session.passes, which makes a picture after each pass: from the difference between 80 and 16 passes, so that start-up and
+files cancel; the least of several alternating runs.
 """
 
 import pathlib
@@ -42,7 +42,7 @@ def processor_seconds(command):
 
 
 def commands(program, method, count, folder):
-    """{name: command} of so many passes."""
+    """{name: command} for this many passes."""
     render = [program, "render", SCENE, "-r", "256x256", "-p", str(count), "-i", method, "-q", "--checkpoint", "none"]
     all_ways = {"program": [*render, "-o", f"{folder}/a.exr"]}
     for name, loop in LOOPS.items():

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The indices of balls and beams: building, and queries by position and by ray, against brute force. Arguments: number
-// of items; kind of set. All items have one radius, with which a query finds about ten of them. Beams and balls lie in
-// the unit cube, which rays cross from the middle of one face. One thread but for builds, whose last argument says how
-// many.
+// The indices of balls and beams against brute force: building, and queries by position and by ray. Arguments: number
+// of items; kind of set. All items have the same radius, chosen so that a query finds about ten of them. Beams and
+// balls lie in the unit cube, which rays cross from the middle of one face. Queries use one thread; for builds, the
+// last argument is the number of threads.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -48,9 +48,9 @@ std::vector<Point> positions() {
   return result;
 }
 
-/// 0: from one point of the ceiling to the floor and the walls. 1: of light scattered many times: from all points in
-/// all directions, a quarter of the cube long in the mean. 2: half of each, and a tenth of the first through a lens, to
-/// a point in the middle.
+/// 0: from one point of the ceiling to the floor and the walls. 1: like multiply scattered light: from all points in
+/// all directions, with a mean length of a quarter of the cube. 2: half of each, with a tenth of the first half focused
+/// by a lens to a point in the middle.
 std::vector<Beam> beams(std::size_t count, std::int64_t kind) {
   HashRng rng(1);
   std::vector<Beam> result(count);
@@ -84,7 +84,7 @@ std::vector<Ball> balls(std::size_t count, std::int64_t kind) {
   return result;
 }
 
-// What is found, so that nothing is optimised away.
+// Results, so that queries are not optimised away.
 struct Found {
   std::size_t count = 0;
   float sum = 0;
@@ -96,7 +96,7 @@ struct Found {
 
 struct RayAtBalls {
   using Index = BallBvh;
-  static constexpr double power = 2;  // of the radius, which hits are proportional to
+  static constexpr double power = 2;  // hits are proportional to the radius to this power
   static auto items(const benchmark::State& s) { return balls(static_cast<std::size_t>(s.range(0)), s.range(1)); }
   static auto queries() { return rays(); }
   static void ask(const BallBvh& index, const RaySegment& ray, Found& found) { index.for_each_along(ray, found); }
@@ -133,7 +133,7 @@ struct PositionInBeams : RayAtBeams {
   }
 };
 
-/// Items with a radius with which a query finds `wanted_hits` in the mean.
+/// Items whose radius makes a query find `wanted_hits` of them on average.
 template <class Case>
 auto items_for(const benchmark::State& state) {
   auto items = Case::items(state);

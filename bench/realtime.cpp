@@ -28,10 +28,10 @@ constexpr std::uint32_t warm_up = 2, measured = 8;
 struct Result {
   double milliseconds = 0, processor_milliseconds = 0;  // of a frame, of all threads
   FrameReport last;
-  std::uint64_t vertices = 0, fragments = 0, computations = 0;  // of the last frame: runs of shaders
+  std::uint64_t vertices = 0, fragments = 0, computations = 0;  // shader invocations of the last frame
 };
 
-/// Counts what shaders run between its construction and the call of `count`; 0 if the driver cannot say.
+/// Counts shader invocations between its construction and the call of `count`; 0 if the driver does not support it.
 class InvocationQuery {
  public:
   explicit InvocationQuery(GLenum kind) : kind_(kind) {
@@ -103,17 +103,17 @@ int run(int argc, char** argv) {
   if (counts.empty()) counts = {5000, 20000, 50000, 200000};
   const gl::Context context = gl::Context::headless();
   fmt::print("{} by {}\n", context.driver().renderer, context.driver().platform);
-  if (context.driver().software) fmt::print("*** SOFTWARE: the CPU drew this. These are no times of a GPU. ***\n");
+  if (context.driver().software) fmt::print("*** SOFTWARE: the CPU drew this. These are not GPU times. ***\n");
   Renderer renderer(*scene);
   const View view = make_view(scene->description().view, options);
   fmt::print("{} triangles, {} x {}\n", renderer.gpu_scene().triangles(), view.window.width(), view.window.height());
   FrameSettings settings;
-  for (const float share : {0.05f, 0.02f}) {  // the viewer's radius, and one after some frames at rest
+  for (const float share : {0.05f, 0.02f}) {  // the viewer's initial radius, and that after some frames at rest
     const float radius = share * scene->bounding_sphere().radius;
     fmt::print("radius {:.3g} m, {:.0f} % of the scene's\n", radius, 100 * share);
     for (const std::uint32_t count : counts)
       for (const auto& [name, gather] : {std::pair{"splats", "splat"}, {"tiles", "tiles"}}) {
-        // A radius that stays from frame to frame.
+        // A radius that does not change from frame to frame.
         settings.technique =
             TechniqueChoice("ispm", {{"radius", fmt::format("{}", radius)}, {"gather", gather}, {"alpha", "1"}});
         settings.photons = count;

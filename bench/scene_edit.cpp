@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Time of edits of a scene of a million triangles beside that of building it.
+// Time of edits of a scene of a million triangles, compared with the time to build it.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -49,7 +49,7 @@ double milliseconds(Work&& work) {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
 
-// The least of several, after a first one.
+// Prints the first time, and the least of several later ones.
 template <class Work>
 void report(const char* name, Work&& work) {
   const double first = milliseconds(work);

@@ -72,7 +72,7 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
     record = "".join(_record(file, data) for file, data in contents.items()) + f"{info}/RECORD,,\n"
     with zipfile.ZipFile(pathlib.Path(wheel_directory) / name, "w", zipfile.ZIP_DEFLATED) as wheel:
         for file, data in {**contents, f"{info}/RECORD": record.encode()}.items():
-            wheel.writestr(zipfile.ZipInfo(file), data, zipfile.ZIP_DEFLATED)  # no times: same input, same bytes
+            wheel.writestr(zipfile.ZipInfo(file), data, zipfile.ZIP_DEFLATED)  # no time stamps: same input, same bytes
     return name
 
 
@@ -87,10 +87,10 @@ def prepare_metadata_for_build_wheel(metadata_directory, config_settings=None):
 
 
 def get_requires_for_build_wheel(config_settings=None):
-    """Nothing that pip could bring."""
+    """None: the build needs nothing from PyPI."""
     return []
 
 
 def build_sdist(sdist_directory, config_settings=None):
-    """There is none: the source is the repository."""
+    """Not supported: Lanthorn is built from a clone of the repository."""
     raise NotImplementedError("lanthorn has no source distribution; install from a clone")

@@ -16,7 +16,7 @@ namespace {
 
 using Words = std::vector<std::string>;
 
-// Completes a command line from the three tables that stand before it in the script.
+// Completes a command line, using the three tables printed before it in the script.
 constexpr const char* engine = R"bash(
 _lanthorn() {
   local current=${COMP_WORDS[COMP_CWORD]} previous='' before='' command='' integrator='' type='' candidates='' word
@@ -76,7 +76,7 @@ std::string words(const CLI::App& program) {
   return case_of({"''"}, fmt::format("{}", fmt::join(first, " "))) + cases;
 }
 
-// A type of several words is those words: rgb|spectral.
+// A type that lists words, such as rgb|spectral, completes to these words.
 std::string completed_type(const CLI::Option& option) {
   std::string type = value_type(option);
   if (type != "INTEGRATOR") return type;
@@ -117,12 +117,12 @@ std::string parameters() {
 
 std::string bash_completion(const CLI::App& program) {
   return fmt::format("# Bash completion for lanthorn {}, written by the program itself.\n", version) +
-         function("What may stand after the subcommand $1; with none, the subcommands and the program's options.",
+         function("Words that can follow subcommand $1; without it, the subcommands and the program's options.",
                   "_lanthorn_words", "$1", words(program)) +
-         function("The type of the value of option $2 of subcommand $1; with no option, that of its other arguments.",
+         function("Value type of option $2 of subcommand $1; without an option, the type of its positional arguments.",
                   "_lanthorn_type", "\"$1 $2\"", types(program)) +
-         function("The parameters of integrator $1; with none, those of all.", "_lanthorn_parameters", "$1",
-                  parameters()) +
+         function("The parameters of integrator $1; without it, those of all integrators.", "_lanthorn_parameters",
+                  "$1", parameters()) +
          engine;
 }
 

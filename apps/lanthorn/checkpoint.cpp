@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// True if replacing the file with a later state of the same render loses nothing.
+// True if replacing the file by a later state of the same render loses nothing.
 bool may_be_replaced(const fs::path& path, const RenderState& state) try {
   std::error_code ignored;
   if (fs::is_directory(path, ignored)) return false;
@@ -59,7 +59,7 @@ bool Checkpoints::save_if_due(const RenderState& state, double seconds_since_las
 void Checkpoints::save(const RenderState& state) try {
   save_state(state, path_);
   saved_ = true;
-} catch (const std::exception& problem) {  // a full disk may be emptied again: the render goes on
+} catch (const std::exception& problem) {  // the render continues: the user may free disk space
   progress_.finish();
   warn("no checkpoint: {}", problem.what());
 }

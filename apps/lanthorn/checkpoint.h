@@ -12,10 +12,10 @@
 
 namespace lanthorn::program {
 
-/// Shorter renders have no checkpoints unless the user asks for them.
+/// Shorter renders get no automatic checkpoints.
 inline constexpr double automatic_checkpoint_seconds = 600;
 
-/// The file for checkpoints that the user asked for: the first output's name with the extension ".state".
+/// The file for checkpoints that the user requested: the first output's name with the extension ".state".
 std::filesystem::path checkpoint_path(const std::vector<std::filesystem::path>& outputs);
 
 /// The file for automatic checkpoints: "a.exr.checkpoint.state" for the first output "a.exr". The name gets a number if
@@ -23,17 +23,17 @@ std::filesystem::path checkpoint_path(const std::vector<std::filesystem::path>& 
 std::filesystem::path automatic_checkpoint_path(const std::vector<std::filesystem::path>& outputs,
                                                 const std::filesystem::path& resumed, const RenderState& state);
 
-/// Saves a state from time to time.
+/// Saves a state at regular intervals.
 class Checkpoints {
  public:
-  /// Automatic ones are removed when they are no longer needed.
+  /// Automatic checkpoints are removed when they are no longer needed.
   Checkpoints(std::filesystem::path path, double interval_seconds, bool automatic, ProgressDisplay& progress);
 
   const std::filesystem::path& path() const { return path_; }
   double interval() const { return interval_; }
   bool automatic() const { return automatic_; }
-  /// Saves the state if the interval since the last checkpoint has passed; returns true if the next call can wait for
-  /// another interval. Warns if the state cannot be saved.
+  /// Saves the state if the interval since the last checkpoint has passed; returns true if it did, so that the caller
+  /// restarts its clock. Warns if the state cannot be saved.
   bool save_if_due(const RenderState& state, double seconds_since_last);
   /// Call when all outputs are written. `interrupted`: a signal ended the render, which may be resumed from the last
   /// checkpoint; if there is one, it is updated.

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// One function for each subcommand, which registers it, its options and its help with the program. The subcommand's
+// One function per subcommand; it registers the subcommand, its options and its help with the program. The subcommand's
 // callback does the work. It throws `lanthorn::Error` on bad input and `CLI::RuntimeError(1)` to exit with 1.
 #pragma once
 

@@ -54,10 +54,10 @@ struct CompareResult {
   std::optional<Comparison> welch;
 };
 
-// 1 % false alarms over the whole picture.
+// Rate of false alarms over the whole picture.
 constexpr double significance = 0.01;
 
-/// 8-bit formats hold what a screen shows, so that no exposure has to be guessed.
+/// 8-bit formats hold display values, so FLIP needs no exposure (LDR-FLIP).
 bool is_display_format(const fs::path& path) {
   constexpr std::array extensions{".png", ".jpg", ".jpeg", ".bmp", ".tga", ".gif"};
   return std::find(extensions.begin(), extensions.end(), lower_extension(path)) != extensions.end();
@@ -104,7 +104,7 @@ CompareResult compare(const CompareOptions& o) {
     const auto reference_runs = read_runs(o.reference, o.reference_runs, o, reference, o.reference);
     result.welch = welch_tile_test(runs, reference_runs);
   }
-  // FLIP compares colours: it applies to every layer of colours, but not to normals or depths.
+  // FLIP compares colours: it applies to every colour layer, but not to normals or depths.
   if (o.layer != "normal" && image.channel_count() == 3) {
     image.channels = reference.channels = {"R", "G", "B"};
     result.flip_is_hdr = !(is_display_format(o.image) && is_display_format(o.reference));
@@ -124,7 +124,7 @@ void print_table(const CompareOptions& o, const CompareResult& r) {
   if (r.flip)
     print("  FLIP            {:.6f}   ({}, {:.1f} pixels per degree)\n", r.flip->mean, r.flip_is_hdr ? "HDR" : "LDR",
           o.flip.pixels_per_degree);
-  if (r.errors.non_finite > 0) print("  NaN or infinite {}   (values left out of the above)\n", r.errors.non_finite);
+  if (r.errors.non_finite > 0) print("  NaN or infinite {}   (values excluded from the above)\n", r.errors.non_finite);
   if (r.agreement)
     print(
         "  z-test          {}: mean {:+.2f} % (standard error {:.2f} %), {:.1f} % of tiles beyond |z| = 4, "
@@ -165,7 +165,7 @@ nlohmann::json report(const CompareOptions& o, const CompareResult& r) {
   return json;
 }
 
-/// FLIP where there is one; else the largest channel's difference over the picture's largest.
+/// FLIP if available; otherwise each pixel's largest channel difference relative to the picture's largest.
 FlipResult difference_map(const CompareOptions& o, const CompareResult& r) {
   if (r.flip) return *r.flip;
   const Image image = read_layer(o.image, o.layer, o.max_pixels),
@@ -180,7 +180,7 @@ FlipResult difference_map(const CompareOptions& o, const CompareResult& r) {
   return map;
 }
 
-/// Prints each limit that is exceeded; false if one is.
+/// Prints each limit that is exceeded; returns false if there is one.
 bool within_limits(const CompareOptions& o, const CompareResult& r) {
   bool good = true;
   const auto check = [&](const char* name, const std::optional<double>& limit, double value) {
@@ -221,7 +221,7 @@ void run(const CompareOptions& o) {
     throw Error("--require-agreement needs --sem, or --runs and --reference-runs");
   check_files(o);
   const CompareResult result = compare(o);
-  // A report on standard output is read by a program: nothing else is printed there.
+  // Programs parse a report on standard output: print nothing else there.
   const std::string text = report_text(report(o, result));
   std::vector<Output> outputs{{"standard output", OutputKind::report, [&] {
                                  if (o.json == "-") return print_text(text);

@@ -25,7 +25,7 @@ namespace {
 
 bool is_mute = false;
 
-// The error number, if the text cannot be written.
+// Returns the error number if the text cannot be written.
 std::optional<int> write_output(std::string_view text) {
   errno = 0;
   if (std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0) return {};
@@ -37,7 +37,7 @@ std::optional<int> write_output(std::string_view text) {
 }  // namespace
 
 void open_console() {
-  // The lowest free number is taken. Standard output cannot be written through a descriptor for reading.
+  // open() returns the lowest free descriptor. Standard output is opened read-only, so that writing to it still fails.
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
     if (::fcntl(stream, F_GETFD) < 0) ::open("/dev/null", stream == STDERR_FILENO ? O_WRONLY : O_RDONLY);
   spdlog::set_default_logger(spdlog::stderr_color_mt("lanthorn"));

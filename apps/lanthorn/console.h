@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 // Output to the terminal. Standard output carries a command's results (tables, reports): if it cannot be written, the
-// command has failed. Standard error carries messages: if it cannot be written, the work goes on without them.
+// command has failed. Standard error carries messages: if it cannot be written, the work continues without them.
 //
-// Text may come from a file of a stranger. The functions that take a format therefore escape each text among the values
-// (`printable`). Those that take a whole text write it as it is.
+// Text may come from an untrusted file. Functions that take a format string therefore escape (`printable`) each text
+// argument. Functions that take a complete text write it unchanged.
 #pragma once
 
 #include <fmt/format.h>
@@ -17,7 +17,7 @@
 
 namespace lanthorn::program {
 
-/// Text becomes printable, all else stays.
+/// Escapes text; returns all other values unchanged.
 template <class Value>
 decltype(auto) printable_value(const Value& value) {
   if constexpr (std::is_convertible_v<const Value&, std::string_view>)
@@ -33,21 +33,21 @@ std::string format_printable(fmt::format_string<Values...> format, const Values&
   return formatted(printable_value(values)...);
 }
 
-/// Call first in `main`. Opens standard streams that are closed on /dev/null: otherwise a file opened later would get
-/// their number, and with it the messages. Writing to a closed standard output is still an error.
+/// Call first in `main`. Opens closed standard streams on /dev/null: otherwise the next file opened would get the
+/// stream's descriptor and receive its messages. Writing to a closed standard output is still an error.
 void open_console();
 
-/// From now on messages, warnings and reports are not written: another process writes the same.
+/// Suppresses messages, warnings and reports from now on, because another process writes the same ones.
 void mute();
 
-/// Writes a message to standard error, if that can be done.
+/// Writes a message to standard error; ignores failures.
 void say_text(std::string_view text);
 template <class... Values>
 void say(fmt::format_string<Values...> format, const Values&... values) {
   say_text(format_printable<Values...>(format, values...));
 }
 
-/// Writes a warning to standard error, after the word "warning".
+/// Writes "warning: " and the text to standard error.
 void warn_text(std::string_view text);
 template <class... Values>
 void warn(fmt::format_string<Values...> format, const Values&... values) {
@@ -61,14 +61,14 @@ void print(fmt::format_string<Values...> format, const Values&... values) {
   print_text(format_printable<Values...>(format, values...));
 }
 
-/// Reports on standard output what was done. Warns if it cannot be written: the files already are.
+/// Reports on standard output what was done. Only warns if it cannot be written: the files already are.
 void announce_text(std::string_view text);
 template <class... Values>
 void announce(fmt::format_string<Values...> format, const Values&... values) {
   announce_text(format_printable<Values...>(format, values...));
 }
 
-/// Flushes standard output, help included. Throws Error if it cannot be written.
+/// Flushes standard output, including help. Throws Error if it cannot be written.
 void finish_output();
 
 }  // namespace lanthorn::program

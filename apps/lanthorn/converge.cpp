@@ -64,7 +64,7 @@ nlohmann::json report(const Convergence& c, const ConvergeCommand& a) {
           {"bias_slope", optional(c.bias_slope)}};
 }
 
-// A log-log plot.
+// Log-log plot of the curves as SVG.
 class Plot {
  public:
   explicit Plot(const Convergence& c) : points_(c.points) {
@@ -145,7 +145,7 @@ void check_files(const ConvergeCommand& a, const SceneDescription& description) 
   check_outputs(read, written);
 }
 
-// Ends early at a signal.
+// Stops early at a signal.
 Convergence measure(const Scene& scene, const RenderOptions& options, const ConvergeCommand& a,
                     const std::optional<Image>& reference) {
   ConvergenceSettings settings = a.settings;
@@ -181,7 +181,7 @@ void run(const ConvergeCommand& a) {
     say("lanthorn: {} of {} renders complete: too early for a table\n", c.runs, a.settings.runs);
     end_by_signal();
   }
-  if (c.runs < a.settings.runs) say("lanthorn: {} of {} renders are complete\n", c.runs, a.settings.runs);
+  if (c.runs < a.settings.runs) say("lanthorn: {} of {} renders complete\n", c.runs, a.settings.runs);
   set_stage(Stage::saving);
   const auto write = [](const std::string& file, const std::string& text) {
     write_file(file, std::as_bytes(std::span(text)));

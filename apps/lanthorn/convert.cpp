@@ -54,8 +54,8 @@ OptionTable convert_options(ConvertCommand& a) {
 void add_convert(CLI::App& app) {
   const auto a = std::make_shared<ConvertCommand>();
   constexpr const char* footer =
-      "Other commands read pbrt-v3 files as they are; this one is for editing the scene, and for other programs. A\n"
-      "warning names each kind of thing that is only approximated. Included files become part of the output; meshes\n"
+      "Other commands read pbrt-v3 files directly; use convert to edit the scene or for other programs. A\n"
+      "warning names each feature that is only approximated. Included files become part of the output; meshes\n"
       "and images stay where they are. Comments are lost. Images of infinite lights stay equirectangular, as Lanthorn\n"
       "reads them; pbrt-v4 itself needs its imgtool makeequiarea for them.\n\nExample:\n  lanthorn convert old.pbrt "
       "new.pbrt";

@@ -95,9 +95,10 @@ OptionTable denoise_options(DenoiseCommand& a) {
 void add_denoise(CLI::App& app) {
   const auto a = std::make_shared<DenoiseCommand>();
   constexpr const char* footer =
-      "Does what render --denoise does, afterwards. Each layer of light is denoised by itself; the layer denoised is "
+      "Applies render's --denoise to a finished picture. Each light layer is denoised separately; the layer denoised "
+      "is "
       "their\n"
-      "sum. It takes two passes or more: the noise is the difference of passes.\n\n"
+      "sum. It needs at least two passes, whose difference is the noise.\n\n"
       "Examples:\n"
       "  lanthorn denoise picture.exr -o clean.exr\n"
       "  lanthorn denoise render.state -o clean.png";

@@ -24,7 +24,7 @@ struct DevelopCommand {
   OutputSettings settings;
 };
 
-// Of the layer color all layers, since the exposure is measured by them.
+// For the layer color, reads all layers, which measuring the exposure needs.
 Image picture_of(const DevelopCommand& a) {
   if (a.layer == "color") return read_image(a.picture, ColorEncoding::automatic, a.max_pixels);
   Image image = read_layer(a.picture, a.layer, a.max_pixels);
@@ -68,7 +68,7 @@ OptionTable develop_options(DevelopCommand& a) {
 void add_develop(CLI::App& app) {
   const auto a = std::make_shared<DevelopCommand>();
   constexpr const char* footer =
-      "The picture is that which render writes with the same options. Settings that the picture holds are kept.\n\n"
+      "Writes the same picture as render with these options. Metadata of the input are kept.\n\n"
       "Examples:\n"
       "  lanthorn develop picture.exr picture.png --exposure auto --view-transform agx\n"
       "  lanthorn develop picture.exr caustic.png --layer caustic --exposure 2";

@@ -12,7 +12,7 @@ namespace lanthorn::program {
 
 namespace {
 
-// With the number, in as many digits at least, in the place of the last row of "#".
+// Replaces the last run of "#" by the number, padded with zeros to the run's length.
 std::string numbered(const std::string& name, std::uint64_t number) {
   const std::size_t end = name.rfind('#') + 1;
   std::size_t begin = end;

@@ -87,7 +87,7 @@ json report_json(const IblCommand& a, const std::optional<Ibl>& ibl, const std::
   report["environment"] = {{"files", std::move(files)},   {"layout", layout_name(ibl->layout)},
                            {"width", ibl->width},         {"height", ibl->height},
                            {"mean", rgb_json(ibl->mean)}, {"unusable_values", ibl->unusable_values}};
-  report["suns"] = {{"treatment", "what of a texel exceeds the threshold is integrated exactly, for each direction"},
+  report["suns"] = {{"treatment", "a texel's excess over the threshold is integrated exactly for each direction"},
                     {"texels", ibl->sun_texels},
                     {"threshold", ibl->sun_threshold},
                     {"share_of_flux", rgb_json(ibl->sun_share)}};
@@ -117,7 +117,7 @@ json sh_json(const ShMaps& sh) {
           {"window", sh.window}};
 }
 
-// "lanthornMap", as KTX names its keys, is the attribute "lanthorn:map" in EXR files.
+// KTX keys such as "lanthornMap" become EXR attributes such as "lanthorn:map".
 json attributes_of(const std::map<std::string, std::string>& key_values) {
   constexpr std::string_view prefix = "lanthorn";
   json attributes = json::object();
@@ -129,7 +129,7 @@ json attributes_of(const std::map<std::string, std::string>& key_values) {
   return attributes;
 }
 
-/// A folder that is made if it is not there, and taken away again if nothing is kept in it.
+/// Creates a folder if it does not exist, and removes it again if nothing is kept in it.
 class OutputFolder {
  public:
   explicit OutputFolder(fs::path path) : path_(std::move(path)) {
@@ -152,7 +152,7 @@ class OutputFolder {
   bool made_ = false;
 };
 
-/// The files of the set, which get their names when all of them are on the disk.
+/// The output files, which get their final names once all of them are written to disk.
 class Files {
  public:
   explicit Files(const IblCommand& a) : a_(a), folder_(a.output) {}
@@ -223,7 +223,7 @@ void add_maps(const Ibl& ibl, const IblCommand& a, Files& files) {
   files.add("contact.png", encode_png(sheet, {.exposure = measured_exposure(sheet), .curve = ToneCurve::filmic}));
 }
 
-// Before anything is written: the folder's files are inputs of nobody.
+// Call before anything is written: the folder must not hold input files.
 void check_folder(const IblCommand& a) {
   std::error_code code;
   if (fs::exists(a.output, code) && !fs::is_directory(a.output, code))

@@ -32,7 +32,7 @@ std::string list_counts(const std::map<std::string, int>& counts) {
 
 std::string mebibytes(std::uint64_t bytes) { return fmt::format("{:.1f} MiB", static_cast<double>(bytes) / (1 << 20)); }
 
-// Memory of a triangle, if there are enough of them to tell.
+// Bytes per triangle, if there are enough triangles for a meaningful figure.
 std::string per_triangle(const SceneSummary& s) {
   if (s.triangles < 1000) return {};
   return fmt::format(" ({:.0f} bytes a triangle)",
@@ -71,9 +71,9 @@ void print_table(const Scene& scene, const SceneSummary& s) {
 
 void show_scene(const std::string& file, const ReadOptions& reading, bool as_json) {
   const SharedScene scene = build_scene(read_scene(file, reading, [&](const ExpectedMeshes& meshes) {
-    constexpr double large = 1e9;  // bytes; less is loaded in seconds
+    constexpr double large = 1e9;  // bytes; smaller scenes load within seconds
     if (meshes.bytes >= large)
-      say("{}: {} meshes with {:.0f} faces are going to take {:.1f} GiB of memory\n", file, meshes.files, meshes.faces,
+      say("{}: {} meshes with {:.0f} faces will take {:.1f} GiB of memory\n", file, meshes.files, meshes.faces,
           meshes.bytes / (1 << 30));
   }));
   const SceneSummary summary = summarize(*scene);

@@ -37,10 +37,10 @@ ValueType<Orbit> orbit_type() {
           [](const Orbit& orbit) { return fmt::format("{},{}", orbit.yaw, orbit.pitch); }};
 }
 
-// What the axes of a camera are in the world, when the shutter opens.
+// A camera's axes in world space when the shutter opens.
 struct CameraAxes {
-  Vec3 right, up, forward;  ///< unit
-  float scale;              ///< metres in the world of a unit in the camera's space
+  Vec3 right, up, forward;  ///< unit length
+  float scale;              ///< metres in world space per unit of camera space
 
   explicit CameraAxes(const Camera& camera) {
     const Transform& to_world = camera.camera_to_world.start;
@@ -50,19 +50,19 @@ struct CameraAxes {
     right = glm::normalize(to_world.vector({1, 0, 0}));
     up = glm::normalize(to_world.vector({0, 1, 0}));
   }
-  // The axis of the world that is upwards.
+  // The world's up axis.
   Vec3 upwards() const {
     const Vec3 axis = std::fabs(up.z) > std::fabs(up.y) ? Vec3(0, 0, 1) : Vec3(0, 1, 0);
     return glm::dot(axis, up) < 0 ? -axis : axis;
   }
 };
 
-// The rotation about an axis that moves what stands in direction `from` towards `to`.
+// The rotation about `axis` that moves objects in direction `from` towards `to`.
 Transform turn_towards(float degrees, const Vec3& axis, const Vec3& from, const Vec3& to) {
   return rotate(glm::dot(glm::cross(axis, from), to) < 0 ? -degrees : degrees, axis);
 }
 
-// Of a camera around its pivot; not quite up to the poles.
+// Rotation of a camera around its pivot; stops short of the poles.
 Transform rotation(const CameraAxes& axes, const Orbit& orbit) {
   constexpr float steepest = 89;
   const Vec3 upwards = axes.upwards(), back = -axes.forward;
@@ -72,7 +72,7 @@ Transform rotation(const CameraAxes& axes, const Orbit& orbit) {
   return turn_towards(orbit.yaw, upwards, back, axes.right) * tilt;
 }
 
-// The point of the camera's axis that is nearest to the middle of the scene.
+// The point on the camera's axis that is nearest to the centre of the scene.
 Point pivot_of(const Camera& camera, const CameraAxes& axes, const Scene& scene) {
   const Point eye = camera.camera_to_world.start.point(Point(0));
   const Bounds bounds = summarize(scene).bounds;
@@ -86,8 +86,8 @@ void rotate_camera(Camera& camera, const Transform& rotation, const Point& pivot
   to_world = {map * to_world.start, map * to_world.end, to_world.start_time, to_world.end_time};
 }
 
-// What a camera frames, in the space that `from_world` maps to: points in its box. Grounds are larger than that, and
-// not framed.
+// Box around the points that a camera frames, in the space that `from_world` maps to. Excludes points outside the
+// camera's subject, such as those of large ground planes.
 Bounds framed_by(const Camera& camera, const SceneModel& model, const Transform& from_world) {
   constexpr float slack = 1e-3f;
   const Transform to_camera = camera.camera_to_world.start.inverted();
@@ -118,12 +118,11 @@ PerspectiveCamera& perspective(Camera& camera, const char* option) {
   auto* const lens = std::get_if<PerspectiveCamera>(&camera.node);
   if (lens == nullptr)
     throw Error(camera.location,
-                fmt::format("{}: the scene's camera is no perspective camera, which this is about", option));
+                fmt::format("{}: the scene's camera is not a perspective camera, which this option needs", option));
   return *lens;
 }
 
-// A film whose shorter side is 24 mm, as that of 35 mm film: the focal length, in metres, follows from the angle of
-// view.
+// Focal length, in metres, from the angle of view, for a film whose shorter side is 24 mm, as for 35 mm film.
 float focal_length_of(const PerspectiveCamera& lens) {
   constexpr float half_film = 0.012f;
   return half_film / std::tan(0.5f * lens.fov * degree);
@@ -134,7 +133,7 @@ void set_aperture(Camera& camera, const LensChanges::Aperture& f_number) {
   lens.lens_radius = f_number ? focal_length_of(lens) / (2 * *f_number) / CameraAxes(camera).scale : 0;
 }
 
-// Whose place does not follow from what it frames.
+// The view with a fixed camera position instead of a framed subject.
 ViewDescription placed(const ViewDescription& view, const ViewOptions& options) {
   ViewDescription result = view;
   result.camera.camera_to_world = AnimatedTransform(camera_placement(view, options));
@@ -142,7 +141,7 @@ ViewDescription placed(const ViewDescription& view, const ViewOptions& options) 
   return result;
 }
 
-// In units of the camera's space. Where nothing is seen, what the camera turns around is sharp.
+// In units of camera space. If the pixel sees no surface, focuses on the camera's pivot.
 float depth_of_focus(const ViewDescription& view, const LensChanges::Focus& focus, const Scene& scene,
                      const ViewOptions& options) {
   const ViewDescription standing = placed(view, options);
@@ -160,8 +159,7 @@ void focus(ViewDescription& view, const LensChanges& lens, const Scene& scene, c
   if (!lens.focus && !opens_aperture) return;
   Camera& camera = view.camera;
   const auto set = [&](float radius, float& distance) {
-    if (!(radius > 0))
-      throw Error("--focus: the camera has no aperture, so that all is sharp; expected --aperture, too");
+    if (!(radius > 0)) throw Error("--focus: the camera has no aperture, so everything is in focus; add --aperture");
     distance = depth_of_focus(view, lens.focus.value_or(LensChanges::Focus()), scene, options);
   };
   if (auto* const thin = std::get_if<PerspectiveCamera>(&camera.node))
@@ -209,7 +207,7 @@ std::vector<ViewDescription> turntable(const ViewDescription& view, const Scene&
     rotate_camera(views[i].camera, rotation(axes, {yaw, 0}), view.camera.subject ? Point(0) : pivot);
   }
   if (!view.camera.subject) return views;
-  // One box for all places, around the middle of what is framed.
+  // One common box for all views, around the centre of what is framed.
   const SceneModel model = model_of(scene);
   const Point centre = framed_by(view.camera, model, {}).centre();
   Vec3 half(0);

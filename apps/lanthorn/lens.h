@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// What the command line changes of a scene's camera: where it stands around what it looks at, and its lens.
+// Changes of a scene's camera from the command line: its position around what it looks at, and its lens.
 #pragma once
 
 #include <cstddef>
@@ -12,15 +12,15 @@
 
 namespace lanthorn::program {
 
-/// Degrees around what the camera looks at: to the right in the picture, and upwards.
+/// Rotation around what the camera looks at, in degrees: to the right in the picture, and upwards.
 struct Orbit {
   float yaw = 0, pitch = 0;
   friend bool operator==(const Orbit&, const Orbit&) = default;
 };
 
 struct LensChanges {
-  using Aperture = std::optional<float>;  ///< f-number; none: a pinhole
-  using Focus = std::optional<float>;     ///< metres; none: what the middle of the picture sees
+  using Aperture = std::optional<float>;  ///< f-number; nullopt: a pinhole
+  using Focus = std::optional<float>;     ///< metres; nullopt: the surface at the centre of the picture
   std::optional<Orbit> orbit{};
   std::optional<float> fov{};  ///< degrees over the shorter side of the picture
   std::optional<Aperture> aperture{};
@@ -34,26 +34,26 @@ ValueType<LensChanges::Focus> focus_type();
 /// --orbit, --fov, --aperture and --focus.
 OptionTable lens_options(LensChanges& lens);
 
-/// The axis, +y or +z, to which the camera's direction upwards is nearer, is upwards in the world. The camera turns
-/// around the point of its axis that is nearest to the middle of the scene. One that frames a subject frames it from
-/// there. Throws Error for cameras that cannot be changed so.
+/// The world's up axis is +y or +z, whichever is nearer to the camera's up vector. The camera turns around the point of
+/// its axis that is nearest to the centre of the scene. A camera that frames a subject frames it from the new
+/// direction. Throws Error for cameras that do not support the change.
 void change_lens(ViewDescription& view, const LensChanges& lens, const Scene& scene, const ViewOptions& options);
 
-/// The numbers of a view's lens. Cameras that have no such number leave it empty.
+/// Lens parameters of a view; empty where the camera has no such parameter.
 struct LensNumbers {
-  std::optional<float> fov{};       ///< degrees; none: the camera is not perspective
-  std::optional<float> aperture{};  ///< f-number; none: a pinhole, or not perspective
-  std::optional<float> focus{};     ///< metres; none: all is sharp
+  std::optional<float> fov{};       ///< degrees; nullopt: the camera is not perspective
+  std::optional<float> aperture{};  ///< f-number; nullopt: a pinhole, or not perspective
+  std::optional<float> focus{};     ///< metres; nullopt: everything is in focus
 };
 LensNumbers lens_of(const ViewDescription& view);
-/// How far away the surface in a pixel of the whole picture is, m, along the camera's axis. Throws Error if
-/// there is none.
+/// Distance, in metres along the camera's axis, of the surface in a pixel of the whole picture. Throws Error if the
+/// pixel sees no surface.
 float focus_at(const ViewDescription& view, const Scene& scene, const ViewOptions& options, const Vec2& pixel);
 
-/// The view from so many places in equal steps around what the camera looks at, from the view itself to the right. All
-/// are equally far away.
+/// The view from `count` positions at equal distance and equal angles around what the camera looks at, starting with
+/// the view itself and turning to the right.
 std::vector<ViewDescription> turntable(const ViewDescription& view, const Scene& scene, std::size_t count);
-/// Focuses again: after `turntable`.
+/// Applies --focus again after `turntable`.
 void focus(ViewDescription& view, const LensChanges& lens, const Scene& scene, const ViewOptions& options);
 
 }  // namespace lanthorn::program

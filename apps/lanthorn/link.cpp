@@ -23,8 +23,8 @@ struct LinkCommand {
   unsigned threads = 0;
 };
 
-// Returns the pipe to the client, and sends everything else that the program prints to standard error, so that it does
-// not mix with the answers.
+// Returns the pipe to the client, and redirects everything else that the program prints to standard error, so that it
+// does not mix with the answers.
 int take_standard_output() {
   const int file = ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
   if (file < 0 || ::dup2(STDERR_FILENO, STDOUT_FILENO) < 0) throw Error("link: cannot use standard output");

@@ -4,7 +4,7 @@
 
 namespace lanthorn::program {
 
-/// Prints what the machine is and what this process may use of it, for `info --machine`.
+/// Prints the machine's hardware and the resources that this process may use, for `info --machine`.
 void show_machine(bool as_json);
 
 }  // namespace lanthorn::program

@@ -40,12 +40,12 @@ std::vector<std::string> completed(std::vector<std::string> words) {
 int run_command(CLI::App& app, int argc, char** argv) {
   try {
     std::vector<std::string> words = completed({argv + 1, argv + argc});
-    std::reverse(words.begin(), words.end());  // as CLI11 wants them
+    std::reverse(words.begin(), words.end());  // the order that CLI11 expects
     app.parse(std::move(words));
     return 0;
   } catch (const CLI::RuntimeError& e) {
     return e.get_exit_code();
-  } catch (const CLI::ParseError& e) {  // help is one of them
+  } catch (const CLI::ParseError& e) {  // a request for help is also a ParseError
     return app.exit(e) == 0 ? 0 : 2;
   }
 }
@@ -81,7 +81,7 @@ int run(int argc, char** argv) {
   add_list(app);
   add_manual(app);
   try {
-    const ThreadLimit all_cores(0);  // or the threads that there are, for commands without --threads too
+    const ThreadLimit all_cores(0);  // limits commands without --threads, too, to the available threads
     const int code = run_command(app, argc, argv);
     finish_output();
     return code;

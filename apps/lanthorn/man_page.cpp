@@ -15,7 +15,7 @@ namespace lanthorn::program {
 
 namespace {
 
-// Troff's names for the characters that it would typeset as others: groff_char(7).
+// Troff's names for characters that it would otherwise typeset as different ones: see groff_char(7).
 std::string_view troff_name(char c) {
   switch (c) {
     case '\\':
@@ -52,7 +52,7 @@ std::string page_name(const CLI::App& program, const CLI::App& command) {
   return &program == &command ? program.get_name() : program.get_name() + "-" + command.get_name();
 }
 
-// Lines that are indented, such as commands, stay lines; others are filled.
+// Indented lines, such as commands, stay separate lines; others are filled.
 std::string paragraphs(const std::string& text) {
   std::istringstream lines(text);
   std::string out, line;
@@ -91,7 +91,7 @@ std::string synopsis(const CLI::App& program, const CLI::App& command) {
   return line + "\n";
 }
 
-// What --help adds to the text in a notation of its own, in words.
+// Conditions that --help expresses in its own notation, as sentences.
 std::string conditions(const CLI::Option& option) {
   std::string text;
   if (option.get_required()) text += " Required.";
@@ -149,7 +149,7 @@ std::string man_page(const CLI::App& program, const CLI::App& command) {
   const Footer footer = split_footer(command.get_footer());
   std::string title = name;
   std::transform(name.begin(), name.end(), title.begin(), [](unsigned char c) { return std::toupper(c); });
-  // Lines are not justified and words not hyphenated: commands must be as they are typed.
+  // Lines are neither justified nor hyphenated, because commands must appear exactly as they are typed.
   std::string page =
       fmt::format(".TH {} 1 \"\" \"Lanthorn {}\" \"Lanthorn manual\"\n.ad l\n.nh\n.nr HY 0\n", troff(title), version);
   const auto section = [&page](const char* heading, const std::string& text) {

@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 
 void write_text(const fs::path& path, const std::string& text) {
-  std::error_code ignored;  // write_file says what is wrong
+  std::error_code ignored;  // write_file reports the problem
   fs::create_directories(path.parent_path(), ignored);
   write_file(path, std::as_bytes(std::span(text)));
 }
@@ -54,11 +54,11 @@ void add_manual(CLI::App& app) {
   const auto folder = std::make_shared<std::string>();
   const OptionTable options{{.names = "folder",
                              .value = into(*folder, text_type("DIR")),
-                             .brief = "Where man/man1 and bash-completion/completions are made",
+                             .brief = "Folder for man/man1 and bash-completion/completions",
                              .required = true}};
   add_command(app, {"manual", "Write the man pages and the bash completion into a folder", options, "",
                     [&app, folder] { write_manual(app, *folder); }})
-      .group("");  // not in --help: the build calls it
+      .group("");  // hidden from --help: only the build calls it
 }
 
 }  // namespace lanthorn::program

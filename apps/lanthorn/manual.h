@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Man pages and bash completion, made from what the tables of options (options.h) have registered with CLI11.
+// Man pages and bash completion, generated from what the option tables (options.h) have registered with CLI11.
 #pragma once
 
 #include <string>
@@ -13,19 +13,19 @@ class Option;
 
 namespace lanthorn::program {
 
-/// The subcommands that --help names, in its order.
+/// The subcommands that --help lists, in its order.
 std::vector<const CLI::App*> visible_commands(const CLI::App& program);
 
 /// The names of an option as they are typed: {"-i", "--integrator"}.
 std::vector<std::string> option_names(const CLI::Option& option);
 
-/// What kind of value an option takes, such as FILE, COUNT or rgb|spectral; empty for flags. Completion goes by it.
+/// The type of an option's value, such as FILE, COUNT or rgb|spectral; empty for flags. Completion depends on it.
 std::string value_type(const CLI::Option& option);
 
-/// The page of `command` in troff: of one of the program's subcommands, or of `program` itself.
+/// The man page of `command` in troff; `command` is a subcommand of `program` or `program` itself.
 std::string man_page(const CLI::App& program, const CLI::App& command);
 
-/// A script that bash sources.
+/// A completion script for bash to source.
 std::string bash_completion(const CLI::App& program);
 
 }  // namespace lanthorn::program

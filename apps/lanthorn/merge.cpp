@@ -28,7 +28,7 @@ struct MergeCommand {
   OutputSettings settings;
 };
 
-// Adds one state after the other. Memory has the sum and some blocks of pixels.
+// Adds states one by one. Memory holds only the sum and a few blocks of pixels.
 class Merger {
  public:
   void add(const std::string& input) {
@@ -45,7 +45,7 @@ class Merger {
       throw Error({input}, e.message);
     }
   }
-  /// Of all states of this render, those that are in several too.
+  /// Passes of all states of this render; passes that several states hold appear several times.
   const std::vector<PassRange>& passes() const { return passes_; }
   std::shared_ptr<RenderState> sum() const { return sum_; }
 
@@ -60,7 +60,7 @@ std::shared_ptr<RenderState> merge_all(const MergeCommand& o) {
   return merger.sum();
 }
 
-// Names all that is wrong, and what to render again.
+// Reports all problems, and the passes to render again.
 std::shared_ptr<RenderState> merge_expected(const MergeCommand& o) {
   Merger merger;
   std::size_t refused = 0;
@@ -73,12 +73,12 @@ std::shared_ptr<RenderState> merge_expected(const MergeCommand& o) {
     }
   }
   const PassCheck check = check_passes(*o.expected, merger.passes());
-  if (!check.doubled.empty()) say("lanthorn: in several states: passes {}\n", ranges_text(check.doubled));
+  if (!check.doubled.empty()) say("lanthorn: several states hold passes {}\n", ranges_text(check.doubled));
   for (const PassRange& missing : check.missing)
     say("lanthorn: missing: render again with --pass-range {}:{}\n", missing.begin, missing.end);
   if (!check.missing.empty() || refused > 0)
     throw Error(
-        fmt::format("--expect {}:{}: {} of {} states cannot be merged, {} ranges of passes are missing: "
+        fmt::format("--expect {}:{}: {} of {} states cannot be merged, {} ranges of passes missing: "
                     "nothing is written",
                     o.expected->begin, o.expected->end, refused, o.inputs.size(), check.missing.size()));
   const std::vector<PassRange> passes = summarize(*merger.sum()).passes;

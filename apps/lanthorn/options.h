@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The table of options. An entry has all that there is to an option: names, help, type and variable. The parser,
-// --help, man pages, completion, messages and the printing of command lines follow from it.
+// The table of options. One entry defines everything about an option: names, help, type and variable. The parser,
+// --help, man pages, completion, messages and printed command lines are derived from it.
 #pragma once
 
 #include <cstdint>
@@ -27,38 +27,37 @@ enum class Arity : std::uint8_t {
   several    ///< several values one after the other
 };
 
-/// A variable that an option sets, and its type. The variable must outlive it. Its value when this is made is the
-/// default.
+/// A variable that an option sets, and its type. The variable must outlive this object. Its value at construction is
+/// the default.
 struct OptionValue {
   Arity arity = Arity::one;
   std::string type{};  ///< name of the type; empty for flags
-  /// Sets the variable from a word. Throws CLI::ValidationError, which names the option, for text that is not of the
-  /// type.
+  /// Sets the variable from a word. Throws CLI::ValidationError, naming the option, if the text is not of the type.
   std::function<void(const std::string& option, const std::string& word)> read;
-  /// The words from which `read` would make the variable's value of now. None if it is the default; an empty one for a
-  /// flag.
+  /// The words from which `read` would restore the variable's current value. No words if it is the default; one empty
+  /// word for a flag.
   std::function<std::vector<std::string>()> print;
 };
 
 struct Option {
-  std::string names;  ///< "-n,--photons"; of an argument without a name, what help calls it
+  std::string names;  ///< "-n,--photons"; for a positional argument, its name in the help
   OptionValue value;
   std::string brief;        ///< what it is or does, in one line, for --help
   std::string details{};    ///< more sentences, for --help --all and the man page
   std::string otherwise{};  ///< the default, where there is one to tell
   bool required = false;
-  std::string excludes{};  ///< a name of another option, which cannot be given as well
+  std::string excludes{};  ///< name of another option that cannot be given at the same time
 
   bool is_argument() const { return !names.starts_with('-'); }
   /// The longest name: "--photons".
   std::string long_name() const { return names.substr(names.rfind(',') + 1); }
   /// The shortest name: "-n".
   std::string short_name() const { return names.substr(0, names.find(',')); }
-  /// The help: all of it, or in short.
+  /// The help text; `in_short`: without the details.
   std::string description(bool in_short) const;
 };
 
-/// The text with a full stop.
+/// The text, ended by a full stop.
 std::string sentence(const std::string& text);
 
 using OptionTable = std::vector<Option>;
@@ -67,24 +66,24 @@ OptionTable joined(OptionTable table, OptionTable more);
 /// The table without the option of this name.
 OptionTable without(OptionTable table, const std::string& name);
 
-/// What a user types, and what it does.
+/// A subcommand: its name, options, help and action.
 struct Command {
   std::string name;
   std::string summary;
   OptionTable options;
-  std::string footer;  ///< of the help: text, then "Example:" or "Examples:" and lines that are indented
+  std::string footer;  ///< of the help: text, then "Example:" or "Examples:" and indented lines
   std::function<void()> run;
 };
 
 /// Registers a subcommand with the program.
 CLI::App& add_command(CLI::App& program, Command command);
 
-/// The words of a command line that sets the variables of the table's options as they are now, without those that have
-/// their defaults; quoted for a shell.
+/// A command line, quoted for a shell, that sets the variables of the table's options to their current values; omits
+/// options that have their defaults.
 std::string command_line(const std::string& command, const OptionTable& table);
 
 std::vector<std::string> joined(std::vector<std::string> words, const std::vector<std::string>& more);
-/// Ends the parsing with a message.
+/// Rejects a value: ends parsing with a message.
 [[noreturn]] void refuse_value(const std::string& option, const std::string& text, const std::string& expected,
                                const std::vector<std::string>& known);
 
@@ -95,7 +94,7 @@ Value parse_value(const ValueType<Value>& type, const std::string& option, const
   return *std::move(value);
 }
 
-/// A value that is read into and printed from what these functions set and get; `get` returns nothing for the default.
+/// An option whose value is accessed through `set` and `get`; `get` returns nullopt for the default.
 template <class Value>
 OptionValue through(const ValueType<Value>& type, std::function<void(Value)> set,
                     std::function<std::optional<Value>()> get) {
@@ -109,7 +108,7 @@ OptionValue through(const ValueType<Value>& type, std::function<void(Value)> set
           }};
 }
 
-/// For a variable: a value, or an optional of one.
+/// For a variable that holds a value, or an optional value.
 template <class Variable, class Value>
 OptionValue into(Variable& variable, const ValueType<Value>& type) {
   return through<Value>(
@@ -129,7 +128,7 @@ OptionValue into(Variable& variable, const ValueType<Value>& type) {
       });
 }
 
-/// A flag that gives a variable this value.
+/// A flag that sets a variable to `value`.
 template <class Variable>
 OptionValue flag(Variable& variable, Variable value) {
   return {Arity::flag, "", [&variable, value](const std::string&, const std::string&) { variable = value; },
@@ -139,7 +138,7 @@ OptionValue flag(Variable& variable, Variable value) {
 }
 inline OptionValue flag(bool& variable) { return flag(variable, true); }
 
-/// For a vector or map, whose values are given one by one.
+/// For a vector or map to which each value is added.
 template <class Variable, class Value>
 OptionValue each_into(Variable& variable, const ValueType<Value>& type, Arity arity = Arity::repeated) {
   return {arity, type.name,

@@ -57,8 +57,8 @@ double share_above(float level, const std::vector<float>& values) {
   return static_cast<double>(above) / static_cast<double>(std::max<std::size_t>(1, values.size()));
 }
 
-// A hundredth of the pixels may be brighter than white: lamps are. If no more than that can be seen in eight bits,
-// although there is light, the picture looks black.
+// Up to 1 % of the pixels may be brighter than white, because visible lights are. If no more than that fraction of the
+// pixels differs from black in eight bits, although there is light, the picture looks black.
 void warn_of_exposure(const fs::path& path, const Image& image, const DisplaySettings& display) {
   constexpr double few = 0.01;
   constexpr float nearly_black = 1.0f / 256, most_stops_of_gloom = 6;
@@ -104,7 +104,7 @@ ValueType<OcioView> ocio_type() {
 }  // namespace
 
 OptionTable display_options(OutputSettings& settings, const std::string& default_exposure) {
-  using Stops = std::optional<float>;  // none: measured
+  using Stops = std::optional<float>;  // nullopt: measured
   const auto set = [&settings](Stops stops) {
     settings.measures_exposure = !stops;
     settings.display.exposure = stops.value_or(0);
@@ -183,14 +183,14 @@ Option outputs_option(std::vector<std::string>& outputs, const std::string& what
 
 namespace {
 
-// Metadata of EXR files come back as text.
+// Metadata of EXR files are read back as text.
 bool displays_emission(const std::string& metadata) {
   const nlohmann::json members = metadata.empty() ? nlohmann::json::object() : nlohmann::json::parse(metadata);
   const auto found = members.find("display_emission");
   return found != members.end() && (*found == true || *found == "true");
 }
 
-// Returns how the picture is shown unless it is an .exr.
+// Returns the display settings that apply unless the file is an .exr.
 DisplaySettings write(const fs::path& path, const Image& image, const OutputSettings& settings, bool measures_exposure,
                       const std::string& metadata) {
   DisplaySettings display = settings.display;
@@ -206,7 +206,7 @@ StatePicture::StatePicture(const RenderState& state, const std::vector<fs::path>
                            const RenderStatistics& statistics, bool is_denoised)
     : state_(state), summary_(summarize(state)), is_denoised_(is_denoised && summary_.pass_count > 1) {
   if (is_denoised && !is_denoised_)
-    warn("a picture of a single pass is not denoised: the noise is the difference of passes");
+    warn("a picture of a single pass is not denoised: the noise is measured from differences between passes");
   needs_all_layers_ = is_denoised_ || std::any_of(files.begin(), files.end(), has_layers);
   if (statistics.error_passes == summary_.pass_count) error_ = statistics.error;
 }

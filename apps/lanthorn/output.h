@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Writing a render to the files that the user asked for: the same for `render` and `merge`.
+// Writes a render to the files that the user requested, for both `render` and `merge`.
 #pragma once
 
 #include <filesystem>
@@ -17,15 +17,15 @@
 namespace lanthorn::program {
 
 struct OutputSettings {
-  DisplaySettings display;                ///< of all pictures but .exr
-  std::optional<bool> measures_exposure;  ///< from each of them, instead of the display's; none: as the scene wants it
-  bool reproducible = false;              ///< no times in the files
-  bool denoise = false;                   ///< .exr files have the denoised layers, too, all others show them
-  bool hints = true;                      ///< says the measured exposure, or a better one if it is too bright
+  DisplaySettings display;                ///< for all pictures but .exr
+  std::optional<bool> measures_exposure;  ///< of each picture; false: use the display's; nullopt: the scene decides
+  bool reproducible = false;              ///< omit times from the files
+  bool denoise = false;                   ///< .exr files also get the denoised layers, all others show them
+  bool hints = true;                      ///< report the measured exposure, or suggest a better one
   bool force = false;  ///< replace states that hold something else, and files that are write-protected
 };
 
-/// The default of --exposure, for the help, where it depends on the scene's file.
+/// Default of --exposure, for the help, if it depends on the scene's file.
 inline constexpr const char* exposure_of_scene =
     "auto for glTF and OBJ files with lights, since they have no exposure; else 0";
 ValueType<ToneCurve> view_transform_type();
@@ -33,43 +33,44 @@ ValueType<ToneCurve> view_transform_type();
 Option view_transform_option(DisplaySettings& display);
 /// --exposure, --view-transform and --ocio. `default_exposure`: for the help.
 OptionTable display_options(OutputSettings& settings, const std::string& default_exposure);
-/// The settings of a picture that is shown like this. `film_measures`: without --exposure, the exposure is measured.
+/// The settings that correspond to a displayed picture. `film_measures`: measure the exposure if --exposure is not
+/// given.
 OutputSettings shown_as(const DisplaySettings& display, bool measures_exposure, bool film_measures);
 /// --force. `files`: what it replaces besides write-protected files.
 Option force_option(bool& force, const std::string& files);
 /// --denoise. `brief`: for the help.
 Option denoise_option(bool& denoise, const std::string& brief);
-/// These, --denoise and --reproducible.
+/// `display_options`, --denoise, --reproducible and --force.
 OptionTable output_options(OutputSettings& settings);
 /// -o, which may be given several times. `what`, `otherwise`: for the help.
 Option outputs_option(std::vector<std::string>& outputs, const std::string& what, const std::string& otherwise);
 
-/// What `write_output` writes, by extension.
+/// Extensions of the files that `write_output` writes.
 inline const std::vector<std::string> output_extensions = [] {
   std::vector<std::string> extensions = picture_extensions();
   extensions.emplace_back(".state");
   return extensions;
 }();
 
-/// What an image file says of the render that it shows. `statistics` may be null. `reproducible`: without them and
-/// times.
+/// An image file's metadata about its render. `statistics` may be null. `reproducible`: omits statistics and times.
 nlohmann::json metadata_of(const StateSummary& state, const ErrorEstimate& error, bool reproducible,
                            const nlohmann::json& statistics);
 
-/// The picture of a state and its error, for the files of a command: each is made once, when a file needs it.
+/// Picture and error of a state, for all output files of a command: each is computed once, when a file needs it.
 class StatePicture {
  public:
-  /// `statistics`: of the render, which may have measured the error. An .exr among `files` has all layers, and those
-  /// that a denoiser needs. `is_denoised`: .exr files have the denoised layers, too, all others show them.
+  /// `statistics`: of the render, if it has measured the error already. If there is an .exr among `files`, the picture
+  /// has all layers, including those that a denoiser needs. `is_denoised`: .exr files also get the denoised layers, all
+  /// others show them.
   StatePicture(const RenderState& state, const std::vector<std::filesystem::path>& files,
                const RenderStatistics& statistics = {}, bool is_denoised = false);
 
   const RenderState& state() const { return state_; }
   const StateSummary& summary() const { return summary_; }
   const Image& image_for(const std::filesystem::path& file);
-  /// Of the picture before it is denoised.
+  /// Error of the picture before denoising.
   const ErrorEstimate& error();
-  /// Nothing if it is not denoised.
+  /// nullopt if the picture is not denoised.
   const std::optional<ErrorEstimate>& denoised_error();
 
  private:
@@ -82,21 +83,21 @@ class StatePicture {
   std::optional<ErrorEstimate> error_, denoised_error_;
 };
 
-/// The layers of a picture that are written to this file: all of them to an .exr; to others light, without its noise if
-/// it was denoised.
+/// The layers of a picture that this file stores: all layers for an .exr; for others only light, denoised if the
+/// picture was denoised.
 Image picture_for(const std::filesystem::path& file, const Image& image);
 
-/// Writes the picture of a running render. Throws Error.
+/// Writes the picture of a render in progress. Throws Error.
 void write_preview(const std::filesystem::path& path, StatePicture& picture, const OutputSettings& settings);
 
-/// Writes a picture. Says the measured exposure unless it is an .exr, and warns if many of its pixels are brighter than
-/// white or nearly all are black, if the settings say so. `measures_exposure`: unless the settings say whether. Throws
-/// Error.
+/// Writes a picture. If the settings ask for hints, reports the measured exposure unless the file is an .exr, and warns
+/// if many pixels are brighter than white or nearly all are black. `measures_exposure` applies if the settings leave it
+/// open. Throws Error.
 void write_picture(const std::filesystem::path& path, const Image& image, const OutputSettings& settings,
                    bool measures_exposure, const std::string& metadata);
 
-/// Writes the picture as `write_picture`, or the state itself, by the extension of `path`. `statistics`: of the render,
-/// for an image's metadata; may be null. Throws Error.
+/// Writes the picture (as `write_picture`) or the state itself, depending on the extension of `path`. `statistics`: of
+/// the render, for an image's metadata; may be null. Throws Error.
 void write_output(const std::filesystem::path& path, StatePicture& picture, const OutputSettings& settings,
                   const nlohmann::json& statistics = nullptr);
 

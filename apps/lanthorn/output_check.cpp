@@ -27,15 +27,15 @@ constexpr mode_t any_write = 0222;
 
 std::string named(const OutputFile& output) { return fmt::format("{} {}", output.option, output.path.string()); }
 
-/// Identifies a file, whatever it is called.
+/// Identifies a file independently of its name.
 struct Identity {
   dev_t device = 0;
   ino_t inode = 0;
-  fs::path name;  ///< of a file that is not there yet: its true folder and its name
+  fs::path name;  ///< for a file that does not exist yet: its real folder and its name
   friend bool operator==(const Identity&, const Identity&) = default;
 };
 
-/// Empty for devices, pipes and sockets: they hold nothing that could be lost.
+/// nullopt for devices, pipes and sockets: they hold nothing that could be lost.
 std::optional<Identity> identity(const fs::path& path) {
   struct stat status {};
   if (::stat(path.c_str(), &status) == 0) {
@@ -48,7 +48,7 @@ std::optional<Identity> identity(const fs::path& path) {
   return Identity{0, 0, folder / target.filename()};
 }
 
-// A device by its name: standard output may be a file, and stands for what is printed all the same.
+// True for a device name: even if standard output is redirected to a file, it means what is printed.
 bool is_stream(const fs::path& path) {
   const std::string name = fs::absolute(path).lexically_normal().string();
   return name == "/dev/stdout" || name == "/dev/stderr" || name.starts_with("/dev/fd/") ||
@@ -74,7 +74,7 @@ void check_extension(const OutputFile& output) {
     throw Error(fmt::format("{}: expected a name that ends in {}", named(output), list(known)));
 }
 
-// Asks the system for a nameless file: permissions alone do not tell of read-only file systems, or of the superuser.
+// Creates an unnamed file: permission bits alone do not reveal read-only file systems, or what the superuser may do.
 bool can_write_to(const fs::path& folder) {
   const int file = ::open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0600);
   if (file >= 0) {
@@ -82,7 +82,7 @@ bool can_write_to(const fs::path& folder) {
     return true;
   }
   if (errno == EACCES || errno == EPERM || errno == EROFS) return false;
-  // Some file systems have no nameless files.
+  // Some file systems do not support unnamed files.
   const fs::path probe = folder / fmt::format(".lanthorn.{}.tmp", ::getpid());
   const int named_file = ::open(probe.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0600);
   if (named_file < 0) return errno == EEXIST;
@@ -95,7 +95,7 @@ void check_place(const OutputFile& output, bool force) {
   struct stat status {};
   const bool exists = ::stat(output.path.c_str(), &status) == 0;
   if (exists && S_ISDIR(status.st_mode))
-    throw Error(fmt::format("{}: is a folder; give the name of a file", named(output)));
+    throw Error(fmt::format("{}: is a folder; expected the name of a file", named(output)));
   if (exists && !S_ISREG(status.st_mode)) return;
   const fs::path target = follow_links(output.path);
   const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
@@ -103,7 +103,7 @@ void check_place(const OutputFile& output, bool force) {
   if (!fs::is_directory(folder, ignored))
     throw Error(fmt::format("{}: there is no folder {}", named(output), folder.string()));
   if (exists && (status.st_mode & any_write) == 0 && !force)
-    throw Error(fmt::format("{}: is there and write-protected; choose another name", named(output)));
+    throw Error(fmt::format("{}: exists and is write-protected; choose another name", named(output)));
   if (!can_write_to(folder))
     throw Error(fmt::format("{}: the folder {} is not writable", named(output), folder.string()));
 }
@@ -174,7 +174,7 @@ void check_replaced_state(const fs::path& path, const RenderState& state, const 
   try {
     there = open_state(path);
   } catch (const Error& error) {
-    throw Error({path.string()}, fmt::format("is there and cannot be read ({}); {}", error.message, advice));
+    throw Error({path.string()}, fmt::format("exists and cannot be read ({}); {}", error.message, advice));
   }
   if (const auto difference = identity_difference(*there, state))
     throw Error({path.string()}, fmt::format("holds another render: it differs in {}; {}", *difference, advice));

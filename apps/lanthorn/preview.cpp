@@ -28,7 +28,7 @@ void Previews::write_if_due(const RenderState& state, const RenderStatistics& st
   StatePicture picture(state, pictures_, statistics);
   for (const fs::path& path : pictures_) write_preview(path, picture, settings_);
   next_ = std::max(2 * statistics.seconds, statistics.seconds + interval_);
-} catch (const std::exception& problem) {  // the last writing may succeed
+} catch (const std::exception& problem) {  // the final write may still succeed
   next_ = std::numeric_limits<double>::infinity();
   progress_.finish();
   warn("no more previews: {}", problem.what());

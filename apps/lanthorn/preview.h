@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The outputs, while the render runs.
+// Updates the output pictures while the render runs.
 #pragma once
 
 #include <filesystem>
@@ -12,14 +12,14 @@
 
 namespace lanthorn::program {
 
-/// Writes the pictures after the first pass, and again whenever the time since the start has doubled.
+/// Writes the pictures after the first pass, and again each time the elapsed time has doubled.
 class Previews {
  public:
-  /// `interval`: the least time between two writings, seconds. `plan`: the last pass needs no preview.
+  /// `interval`: minimum time between two writes, seconds. `plan`: the last pass needs no preview.
   Previews(std::vector<std::filesystem::path> pictures, const OutputSettings& settings, double interval,
            const StopRule& plan, ProgressDisplay& progress);
 
-  /// Call after every pass. Warns once if a picture cannot be written; the render goes on.
+  /// Call after every pass. Warns once if a picture cannot be written; the render continues.
   void write_if_due(const RenderState& state, const RenderStatistics& statistics);
 
  private:
@@ -28,7 +28,7 @@ class Previews {
   double interval_;
   std::uint64_t last_pass_;
   ProgressDisplay& progress_;
-  double next_ = 0;  // seconds into the render
+  double next_ = 0;  // seconds since the render's start
 };
 
 }  // namespace lanthorn::program

@@ -26,14 +26,14 @@ std::string bar(double fraction) {
          std::string(static_cast<std::size_t>(width - filled), '.');
 }
 
-// Of the terminal; without limit where it does not say.
+// Width of the terminal; unlimited if it does not report one.
 std::size_t columns() {
   winsize size{};
   const bool is_known = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
   return is_known ? size.ws_col : std::string::npos;
 }
 
-// A line that wraps could not be drawn over. The bar is left out first, then the end.
+// A line that wraps could not be redrawn. Drops the bar first, then the end of the text.
 std::string fitted(double fraction, const std::string& text) {
   const std::string bare = fmt::format("{:3.0f} %  {}", 100 * fraction, text);
   const std::string whole = fmt::format("[{}] {}", bar(fraction), bare);

@@ -9,7 +9,7 @@
 
 namespace lanthorn::program {
 
-/// Progress on standard error: one line that is redrawn on a terminal, a plain line every ten seconds elsewhere.
+/// Progress on standard error: one redrawn line on a terminal, otherwise a plain line every ten seconds.
 class ProgressLine {
  public:
   explicit ProgressLine(bool quiet);
@@ -23,14 +23,14 @@ class ProgressLine {
   bool quiet_;
   bool terminal_;
   bool line_open_ = false;
-  double shown_at_ = -1;  // seconds into the work
+  double shown_at_ = -1;  // seconds since the work began
   double shown_fraction_ = 0;
 };
 
 /// The progress of a render.
 class ProgressDisplay {
  public:
-  /// `stop` is the work to do. `quiet` shows nothing.
+  /// `stop` defines the total work. `quiet` shows nothing.
   ProgressDisplay(const StopRule& stop, bool quiet);
 
   void update(const RenderState& state, const RenderStatistics& statistics);
@@ -41,7 +41,7 @@ class ProgressDisplay {
   ProgressLine line_;
 };
 
-/// Time left if `fraction` of the work took `seconds`.
+/// Estimated remaining seconds if `fraction` of the work took `seconds`.
 double seconds_left(double fraction, double seconds);
 /// A count with a decimal prefix: "1.25 M".
 std::string format_count(double count);

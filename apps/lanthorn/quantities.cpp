@@ -21,7 +21,7 @@ constexpr Unit share_units[]{{"", 1}, {"%", 0.01}};
 constexpr Unit time_units[]{{"", 1}, {"s", 1}, {"m", 60}, {"min", 60}, {"h", 3600}};
 constexpr Unit byte_units[]{{"", 1}, {"k", 0x1p10}, {"K", 0x1p10}, {"M", 0x1p20}, {"G", 0x1p30}, {"T", 0x1p40}};
 
-// A number and its unit; nothing unless the text is just that and the product finite.
+// A number with its unit; nullopt unless the text is exactly that and the product is finite.
 std::optional<double> scaled(std::string_view text, std::span<const Unit> units) {
   double value = 0;
   if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
@@ -33,7 +33,7 @@ std::optional<double> scaled(std::string_view text, std::span<const Unit> units)
   return value * unit->factor;
 }
 
-// Digits alone are read as they are: a double has not room for all of them.
+// Numbers without fraction, exponent or unit are parsed as integers: a double cannot represent all of them.
 std::optional<std::uint64_t> whole(std::string_view text, std::span<const Unit> units) {
   std::uint64_t count = 0;
   const char* const end = text.data() + text.size();

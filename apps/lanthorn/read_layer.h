@@ -10,7 +10,8 @@
 
 namespace lanthorn::program {
 
-/// The layer of a picture file. Throws Error as `read_image`, and if the file has no such layer, with those it has.
+/// Reads a layer of a picture file. Throws Error as `read_image` does, and, naming the existing layers, if the file
+/// lacks this one.
 Image read_layer(const std::string& file, const std::string& layer, std::uint64_t max_pixels);
 
 /// --layer. `what`: for the help.

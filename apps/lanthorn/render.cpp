@@ -49,7 +49,7 @@ void announce_checkpoints(const Checkpoints& checkpoints) {
       checkpoints.automatic() ? " (--checkpoint none: no file)" : "");
 }
 
-// Says what the scene decided, where the user did not.
+// Reports a choice that the scene made because the user did not.
 void announce_color(const RenderCommand& a, const RenderState& state, SaidLines& said) {
   if (a.quiet || a.options.color) return;
   const std::string color = nlohmann::json::parse(summarize(state).settings)["identity"]["color"];
@@ -58,7 +58,7 @@ void announce_color(const RenderCommand& a, const RenderState& state, SaidLines&
            said);
 }
 
-// Asked for, or somebody sits before the terminal.
+// Previews are written if requested, or if a user sits at the terminal.
 std::optional<Previews> plan_previews(const RenderCommand& a, const std::vector<fs::path>& outputs,
                                       const StopRule& plan, ProgressDisplay& progress) {
   constexpr double automatic_interval = 2;  // seconds
@@ -67,7 +67,7 @@ std::optional<Previews> plan_previews(const RenderCommand& a, const std::vector<
   return Previews(outputs, a.output, a.preview_seconds.value_or(automatic_interval), plan, progress);
 }
 
-// What shows or keeps the picture while it is rendered.
+// Everything that shows or saves the picture while it is rendered.
 struct Onlookers {
   ProgressDisplay progress;
   std::optional<Checkpoints> checkpoints{};
@@ -75,12 +75,12 @@ struct Onlookers {
   std::optional<TevLink> tev{};
 };
 
-// Throws Error if --tev is no host and port.
+// Throws Error if the value of --tev is not a host and port.
 std::optional<HostPort> viewer_of(const RenderCommand& a) {
   return a.tev.empty() ? std::nullopt : std::optional(parse_host_port(a.tev, "--tev"));
 }
 
-// What auto expects of each choice, with that of the whole picture as one.
+// The predictions of `auto` for each choice, including that for the whole picture as one region.
 void print_efforts(const StateSummary& state) {
   const nlohmann::json settings = nlohmann::json::parse(state.settings);
   const auto findings = settings.find("findings");
@@ -120,7 +120,7 @@ Observer make_observer(const RenderCommand& a, Onlookers& onlookers) {
   return observer;
 }
 
-// A picture in which nothing is seen says nothing of what is wrong.
+// An entirely black picture does not show its cause: explain it.
 void explain_black(const RenderCommand& a, const Scene& scene, const ViewDescription& view, const fs::path& output,
                    const Session& session) {
   if (a.quiet) return;
@@ -129,13 +129,13 @@ void explain_black(const RenderCommand& a, const Scene& scene, const ViewDescrip
   warn("{}: the picture is black: {}", output.string(), reason_for_black(scene, view));
 }
 
-// How the frames of a film are alike: all have the exposure that was measured from the first one, and where the file
-// has no camera that sees anything, that of the frame before. What was said of one is not said again.
+// Shared state of the frames of a film: all use the exposure measured from the first frame and, where the file has no
+// camera that sees anything, the previous frame's. No message is repeated for a later frame.
 struct Film {
   SaidLines said{};
   std::optional<float> exposure{};
   std::optional<description::Camera> camera{};
-  DVec3 origin{0.0};  ///< of the camera's space
+  DVec3 origin{0.0};  ///< of camera space
 
   void keep_exposure(OutputSettings& settings) const {
     if (!exposure) return;
@@ -162,13 +162,13 @@ std::optional<float> exposure_measured(const RenderCommand& a, const Session& se
   return measured_exposure(picture_without_error(session.state()));
 }
 
-// What is checked before the render, and read for it once.
+// What is checked and read once before the render.
 struct Prepared {
   SharedScene scene;  // without --light
   std::vector<fs::path> outputs;
 };
 
-// `like`: the scene of another moment, or null.
+// `like`: the scene at another time, or null.
 Prepared prepare(const RenderCommand& a, const Team* team, SceneDescription description, Film& film,
                  const SharedScene& like = {}) {
   film.keep_camera(description);
@@ -178,7 +178,7 @@ Prepared prepare(const RenderCommand& a, const Team* team, SceneDescription desc
   return {build_scene(std::move(description), like), std::move(outputs)};
 }
 
-// Of rank 0: when it needs the sums of the others.
+// For rank 0: when it needs the sums of the other processes.
 void plan_gathering(const Onlookers& onlookers, const RenderCommand& a, Team& team) {
   constexpr double automatic_interval = 2;  // seconds
   team.gather_seconds.reset();
@@ -187,7 +187,7 @@ void plan_gathering(const Onlookers& onlookers, const RenderCommand& a, Team& te
   if (onlookers.previews || onlookers.tev) team.preview_seconds = a.preview_seconds.value_or(automatic_interval);
 }
 
-// A process that leaves files and messages to another one.
+// For a process that leaves files and messages to another one.
 void help_to_render(Session& session, Team& team) {
   StopRule stop = session.plan();
   stop.team = &team;
@@ -201,7 +201,7 @@ void save_view(const RenderCommand& a, const std::vector<fs::path>& outputs, con
   explain_black(a, scene, view, outputs.front(), session);
   if (statistics.out_of_memory)
     throw Error(
-        fmt::format("not enough memory for a pass: the pictures have the {} passes before it; fewer --photons "
+        fmt::format("not enough memory for a pass: the pictures hold the {} passes before it; fewer --photons "
                     "need less",
                     session.pass_count()));
 }
@@ -245,7 +245,7 @@ void render_view(const RenderCommand& a, Team* team, const Prepared& prepared, c
 
 ViewDescription first_view(const RenderCommand& a, const Scene& scene) { return view_of(scene, a.changes, a.options); }
 
-// The scene is read and built once: the camera alone moves.
+// The scene is read and built once: only the camera moves.
 void render_turntable(const RenderCommand& a, Team* team) {
   const FrameRange frames = frames_of(a);
   const RenderCommand first = of_frame(a, frames.begin);
@@ -263,7 +263,7 @@ void render_turntable(const RenderCommand& a, Team* team) {
   }
 }
 
-// The file is read once, and images are shared from moment to moment: what moves is built anew.
+// The file is read once and its frames share images; moving geometry is rebuilt.
 void render_animation(const RenderCommand& a, Team* team) {
   SceneFile file(a.scene, a.reading);
   SharedScene last;

@@ -130,7 +130,7 @@ OptionTable render_options(RenderArguments& a) {
       {.names = "--color",
        .value = into(o.color, choice_type<ColorMode>({{"rgb", ColorMode::rgb}, {"spectral", ColorMode::spectral}})),
        .brief = "Colour mode",
-       .otherwise = "spectral if glass disperses light or spectra other than metals' are measured, else rgb"},
+       .otherwise = "spectral if glass disperses light or the scene has measured spectra other than metals', else rgb"},
       {.names = "-r,--resolution",
        .value = into(o.resolution, resolution_type()),
        .brief = "Size of the picture: 1000x600, or 1000 (width alone)",

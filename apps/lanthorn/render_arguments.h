@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The options of all commands that render: what decides the picture.
+// The options of all commands that render: everything that determines the picture.
 #pragma once
 
 #include <cstdint>
@@ -19,16 +19,16 @@ struct RenderArguments {
   ReadOptions reading;
 };
 
-/// The scene and the options that go with it. `passes` is left to the command.
+/// The scene and its options. Each command adds `passes` itself.
 OptionTable render_options(RenderArguments& arguments);
-/// How a scene is read: --sandbox, --missing ...
+/// How a scene is read: --sandbox, --missing, ...
 OptionTable read_options(ReadOptions& options);
-/// Of --environment-rotate and --environment-scale.
+/// Types of the values of --environment-rotate and --environment-scale.
 ValueType<float> environment_rotation_type();
 ValueType<float> environment_scale_type();
-/// --max-pixels: of each picture that is read.
+/// --max-pixels: limit for each picture that is read.
 Option max_pixels_option(std::uint64_t& max_pixels);
-/// --threads. `what`: the picture, the files.
+/// --threads. `what`: what does not depend on it, such as the picture or the files.
 Option threads_option(unsigned& threads, const std::string& what);
 
 }  // namespace lanthorn::program

@@ -88,7 +88,7 @@ OptionTable render_command_options(RenderCommand& a) {
 }
 
 std::string render_command_line(const RenderCommand& arguments) {
-  RenderCommand printed;  // at first with the defaults, which the table remembers
+  RenderCommand printed;  // starts with the defaults, which the table remembers
   const OptionTable table = render_command_options(printed);
   printed = arguments;
   return command_line("lanthorn render", table);

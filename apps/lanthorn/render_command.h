@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The command line of `render`, which `serve` and `view` print for the picture that they show.
+// The command line of `render`, which `serve` and `view` also print for the picture that they show.
 #pragma once
 
 #include <cstdint>

@@ -26,7 +26,7 @@ namespace {
 
 using nlohmann::json;
 
-// A value from a file, of bounded length.
+// A value from a file, shortened to a bounded length.
 std::string text_of(const json& value) {
   constexpr std::size_t longest = 200;
   const std::string text =
@@ -34,7 +34,7 @@ std::string text_of(const json& value) {
   return text.substr(0, longest) + (text.size() > longest ? " ..." : "");
 }
 
-// Empty if so little that nobody sees it.
+// Empty if the share is too small to matter.
 std::string limit_text(double cut_share) {
   constexpr double least = 1e-4;
   if (cut_share < least) return {};
@@ -95,7 +95,7 @@ json settings_of(const StateSummary& state) {
   return settings;
 }
 
-// Anybody may have written a picture.
+// Validates untrusted metadata: anybody may have written the picture.
 bool is_error(const json& error) {
   constexpr std::array<const char*, 4> numbers{"noise", "bias", "error", "bound"};
   return error.is_object() && error.contains("doubt") && error["doubt"].is_string() &&
@@ -131,7 +131,7 @@ json state_json(const StateSummary& state, const ErrorEstimate& error, const std
           {"non_finite", state.report.non_finite}};
 }
 
-// Pictures hold lists and objects as JSON text, PNG files numbers too; anybody may have written them.
+// Lists and objects are JSON text in pictures, and so are numbers in PNG files; the content is untrusted.
 json picture_settings(const std::string& file) {
   constexpr int deepest = 8;
   const auto limit_depth = [](int depth, json::parse_event_t, const json&) { return depth <= deepest; };
@@ -165,7 +165,7 @@ FileKind kind_of_file(const std::string& file) {
 }
 
 void show_state(const std::string& file, bool as_json) {
-  const std::shared_ptr<RenderState> sums = open_state(file);  // checks its checksum and every number
+  const std::shared_ptr<RenderState> sums = open_state(file);  // verifies the checksum and every number
   const StateSummary state = summarize(*sums);
   const auto [picture, error] = measured_picture_of(*sums);
   const std::vector<std::string> layers = layer_names(picture);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// States and pictures, for `info`.
+// Reports on states and pictures, for `info`.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 namespace lanthorn::program {
 
 enum class FileKind : std::uint8_t { state, picture, other };
-/// By the name's extension.
+/// Decided by the name's extension.
 FileKind kind_of_file(const std::string& file);
 
 /// Print what the file holds, as a table or as JSON. Throw Error if it is damaged, cannot be read, or is a picture of

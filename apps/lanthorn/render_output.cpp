@@ -28,7 +28,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Refuses to replace a state on disk that has passes which `passes` lack; the one that the render goes on from may be.
+// Refuses to replace a state on disk that has passes which `passes` lack, unless the render resumes it.
 void check_state(const RenderFiles& a, const fs::path& path, const RenderState& state,
                  const std::vector<PassRange>& passes) {
   if (path.extension() != ".state" || a.output.force || (!a.resume.empty() && same_file(path, a.resume))) return;
@@ -77,14 +77,14 @@ nlohmann::json describe(const FilmReport& report) {
 
 nlohmann::json describe(const PathEnds& ends) { return {{"paths", ends.paths}, {"cut_share", ends.share()}}; }
 
-// What of the paths of the passes rendered now ended at the limit.
+// How much throughput the paths of this render's passes had left when they reached the limit.
 nlohmann::json describe_limit(const nlohmann::json& settings, const RayCounts& rays) {
   return {{"max_depth", settings.at("identity").at("max_depth")},
           {"eye", describe(rays.eye)},
           {"light", describe(rays.light)}};
 }
 
-// The share is that of the whole picture: what is a fifth of the light of a glass of milk can be a hundredth of it.
+// Uses the share in the whole picture: a fifth of the light of a glass of milk can be 1 % of the picture's.
 void warn_of_limit(const StateSummary& state) {
   constexpr double much = 0.002;
   if (state.cut_share < much) return;
@@ -125,7 +125,7 @@ std::vector<fs::path> choose_outputs(const RenderFiles& a, const std::string& sc
 
 void check_files(const RenderFiles& a, const std::string& scene_file, const SceneDescription& scene,
                  const std::vector<fs::path>& outputs) {
-  // A configuration of colours that cannot be used is found before the render.
+  // Detects an unusable colour configuration before the render.
   if (a.output.display.ocio) displayed(Image(1, 1, {"R", "G", "B"}), a.output.display);
   std::vector<InputFile> read = files_of(scene.files, scene_file);
   if (!a.resume.empty()) read.push_back({a.resume, "the state of --resume"});
@@ -180,14 +180,14 @@ void save_render(const RenderFiles& a, const RenderOptions& options, const std::
   outputs.reserve(paths.size() + 1);
   for (const fs::path& path : paths)
     outputs.push_back({path, path.extension() == ".state" ? OutputKind::state : OutputKind::picture, [&] {
-                         check_state(a, path, state, summary.passes);  // fewer than expected, after a signal
+                         check_state(a, path, state, summary.passes);  // fewer passes than expected, after a signal
                          write_output(path, picture, settings, described);
                        }});
   if (!a.json.empty())
     outputs.push_back({a.json, OutputKind::report, [&] { write_report(a.json, scene, picture, statistics); }});
   write_outputs(outputs, state);
   report_film(summary.report);
-  if (!options.max_depth) warn_of_limit(summary);  // else the user has chosen it
+  if (!options.max_depth) warn_of_limit(summary);  // otherwise the user chose the limit
   if (a.quiet) return;
   for (const fs::path& path : paths)
     announce("{}: {} passes by {} in {}, error {}{}\n", path.string(), summary.pass_count, summary.integrator,

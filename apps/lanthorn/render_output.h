@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The files that a render leaves: the same for `render` and `serve`.
+// The files that a render writes, for both `render` and `serve`.
 #pragma once
 
 #include <filesystem>
@@ -15,7 +15,7 @@
 
 namespace lanthorn::program {
 
-/// What the command line says about files.
+/// Options about files.
 struct RenderFiles {
   std::vector<std::string> outputs;  ///< -o
   std::string json, resume;
@@ -24,17 +24,17 @@ struct RenderFiles {
   bool quiet = false, verbose = false;
 };
 
-/// The files asked for: those of -o, or else the scene's own name with .exr, in the working folder.
+/// The requested files: those of -o, or else the scene's own name with .exr, in the working folder.
 std::vector<std::filesystem::path> choose_outputs(const RenderFiles& files, const std::string& scene_file,
                                                   const SceneDescription& scene);
 
-/// Refuses (`Error`) before the render what could not be written after it, and what would be lost by it.
+/// Throws Error before the render for files that could not be written after it, or that would be lost by it.
 void check_files(const RenderFiles& files, const std::string& scene_file, const SceneDescription& scene,
                  const std::vector<std::filesystem::path>& outputs);
-/// Refuses to replace states that hold passes which `session` is not going to render.
+/// Throws Error if a state to be replaced holds passes that `session` will not render.
 void check_states(const RenderFiles& files, const std::vector<std::filesystem::path>& outputs, const Session& session);
 
-/// What the pictures of one command have said: no line is said twice.
+/// Messages that a command has written, so that none is repeated.
 class SaidLines {
  public:
   bool is_new(const std::string& line) { return said_.insert(line).second; }
@@ -42,14 +42,14 @@ class SaidLines {
  private:
   std::set<std::string> said_;
 };
-/// A message to standard error.
+/// Writes a message to standard error, unless `said` contains it.
 void say_once(const std::string& line, SaidLines& said);
-/// Says which method takes the place of the one that the scene's file names, if the options name none.
+/// If the options name no method, reports which method replaces the one that the scene's file names.
 void announce_method(const Scene& scene, const RenderOptions& options, SaidLines& said);
-/// Warnings of the scene and of the method, to standard error.
+/// Writes warnings of the scene and of the method to standard error.
 void report_warnings(const std::vector<description::Warning>& warnings, SaidLines& said);
 
-/// Writes pictures, states and the report; says what it wrote. Throws Error if something could not be written.
+/// Writes pictures, states and the report, and lists them. Throws Error if something could not be written.
 void save_render(const RenderFiles& files, const RenderOptions& options,
                  const std::vector<std::filesystem::path>& outputs, const Scene& scene, const RenderState& state,
                  const RenderStatistics& statistics);

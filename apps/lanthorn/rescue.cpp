@@ -28,7 +28,7 @@ namespace fs = std::filesystem;
 
 constexpr auto retry_interval = std::chrono::seconds(10);
 
-// The user's folder for program states (XDG Base Directory Specification). Empty if the user has no home.
+// The user's folder for program states (XDG Base Directory Specification). nullopt if the user has no home.
 std::optional<fs::path> state_folder() {
   if (const char* const folder = std::getenv("XDG_STATE_HOME"); folder && fs::path(folder).is_absolute())
     return fs::path(folder) / "lanthorn";
@@ -48,7 +48,7 @@ fs::path make_state_folder() {
   return *folder;
 }
 
-// Any failure, lack of memory included, is a reason to try something else.
+// Returns the error message; any failure, including lack of memory, is a reason to try something else.
 std::optional<std::string> problem_of(const std::function<void()>& work) try {
   work();
   return {};
@@ -68,7 +68,7 @@ std::optional<fs::path> rescue(const RenderState& state, const fs::path& output)
   return saved;
 }
 
-// Waits, unless a signal comes.
+// Waits, unless a signal arrives.
 bool wait_to_retry() {
   const auto end = std::chrono::steady_clock::now() + retry_interval;
   while (std::chrono::steady_clock::now() < end && !waiting_ended())
@@ -86,12 +86,12 @@ std::string without_last_newline(std::string text) {
   return text;
 }
 
-/// Outputs on their way to the disk.
+/// Outputs that are not all written yet.
 class Saving {
  public:
   Saving(const std::vector<Output>& outputs, const RenderState& state) : left_(outputs), state_(state) {}
 
-  /// True if all are written.
+  /// Returns true once all are written.
   bool write() {
     problems_.clear();
     std::erase_if(left_, [&](const Output& output) {
@@ -109,12 +109,12 @@ class Saving {
     return std::all_of(left_.begin(), left_.end(),
                        [](const Output& output) { return output.kind == OutputKind::report; });
   }
-  /// Where the state is, after a failure.
+  /// Where the state was saved after a failure.
   const std::optional<fs::path>& save_state_somewhere() {
     if (!saved_) saved_ = rescue(state_, left_.front().path);
     return saved_;
   }
-  /// The errors, a line for each file.
+  /// The errors, one line per file.
   const std::string& problems() const { return problems_; }
 
  private:
@@ -139,13 +139,14 @@ void write_outputs(const std::vector<Output>& outputs, const RenderState& state)
   for (bool waited = false; !saving.write(); waited = true) {
     if (saving.only_reports_are_left()) throw OutputError(without_last_newline(saving.problems()));
     if (const auto& saved = saving.save_state_somewhere())
-      throw OutputError(fmt::format("{}The render is saved in {}: go on from it with --resume", saving.problems(),
+      throw OutputError(fmt::format("{}The render is saved in {}: continue it with --resume", saving.problems(),
                                     printable(saved->string())));
     set_stage(Stage::waiting);
     if (!waited)
-      say_text(fmt::format("lanthorn: {}The render is in memory alone; trying again every {} s (Ctrl-C gives it up)\n",
+      say_text(fmt::format("lanthorn: {}The render exists only in memory; retrying every {} s (Ctrl-C discards it)\n",
                            saving.problems(), retry_interval.count()));
-    if (!wait_to_retry()) throw OutputError(saving.problems() + "The render is given up as asked: it is not saved");
+    if (!wait_to_retry())
+      throw OutputError(saving.problems() + "The render is discarded as requested: it is not saved");
     set_stage(Stage::saving);
   }
 }

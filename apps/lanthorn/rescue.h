@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Writes what was rendered, whatever fails.
+// Saves what was rendered, whatever fails.
 #pragma once
 
 #include <filesystem>
@@ -12,27 +12,27 @@
 
 namespace lanthorn::program {
 
-/// Some files could not be written: a line for each.
+/// Some files could not be written; the message has one line for each.
 struct OutputError : Error {
   using Error::Error;
 };
 
 enum class OutputKind { picture, state, report };
 
-/// A file to be written: `write` throws if it cannot.
+/// A file to be written; `write` throws on failure.
 struct Output {
   std::filesystem::path path;
   OutputKind kind = OutputKind::picture;
   std::function<void()> write;
 };
 
-/// Writes all outputs, those after one that fails too; then `OutputError` names all that failed.
+/// Writes all outputs, continuing after failures; then throws an `OutputError` that names all that failed.
 void write_all(const std::vector<Output>& outputs);
 
-/// As `write_all`, for a render, which must not be lost. If a picture or the state cannot be written and no other
-/// output is the state, saves the state under a name that nobody can guess, beside the failed output or else in the
-/// user's folder for program states; the OutputError says where. If that fails too, says so and tries everything again
-/// every ten seconds, until it succeeds or a signal comes.
+/// As `write_all`, for a render that must not be lost. If a picture or the state cannot be written and no other output
+/// is the state, saves the state under an unpredictable name, beside the failed output or else in the user's folder for
+/// program states; the OutputError says where. If that fails too, reports it and retries everything every ten seconds
+/// until it succeeds or a signal arrives.
 void write_outputs(const std::vector<Output>& outputs, const RenderState& state);
 
 }  // namespace lanthorn::program

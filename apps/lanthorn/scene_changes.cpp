@@ -49,7 +49,7 @@ ValueType<LookAt> look_at_type() {
 
 bool is_finite(const DVec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
-// FNV-1a (Fowler, Noll & Vo), continued from the hash of the scene's file.
+// FNV-1a (Fowler, Noll & Vo), seeded with the hash of the scene's file.
 std::uint64_t hash_of(std::uint64_t scene, std::string_view text) {
   std::uint64_t hash = scene ^ 0xcbf29ce484222325ull;
   for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ull;
@@ -77,7 +77,7 @@ void check(const LookAt& look) {
                         glm::length(look.eye) < farthest && length < farthest && up < farthest;
   if (!is_known || !(length > 0) || !(up > 0) || !(glm::length(glm::cross(view / length, look.up / up)) > least_sine))
     throw Error(
-        "--look-at: the camera's place, the point that it looks at and the direction upwards must not lie on "
+        "--look-at: the camera's place, the point that it looks at and the up direction must not lie on "
         "one line");
 }
 

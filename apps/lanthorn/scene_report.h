@@ -8,7 +8,7 @@
 
 namespace lanthorn::program {
 
-/// For `info --json` and reports of renders.
+/// Summary for `info --json` and for reports of renders.
 nlohmann::json scene_report(const SceneSummary& scene);
 
 }  // namespace lanthorn::program

@@ -79,11 +79,12 @@ void announce_address(const ServeCommand& a, std::uint16_t port, const std::stri
   print("http://{}:{}/{}/\n", host, port, token);
   finish_output();
   if (a.quiet) return;
-  say("Open this address in a browser; whoever knows it can look and steer. Ctrl-C ends the server.\n");
-  if (!is_loopback(a.address)) say("lanthorn: the connection is not encrypted: others in the network can read along\n");
+  say("Open this address in a browser; anyone who knows it can watch and control the render. Ctrl-C ends the "
+      "server.\n");
+  if (!is_loopback(a.address)) say("lanthorn: the connection is not encrypted: others on the network can read it\n");
 }
 
-// Until a signal comes, whose handler can only set a flag.
+// Runs until a signal arrives; the signal handler can only set a flag.
 void run_viewer(Viewer& viewer) {
   using namespace std::chrono_literals;
   while (!stop_requested()) {
@@ -98,7 +99,7 @@ void save(const ServeCommand& a, const std::vector<fs::path>& outputs, const Vie
   set_stage(Stage::saving);
   const RenderState* state = viewer.state();
   if (state == nullptr) {
-    say("lanthorn: no whole pass was rendered of this view: nothing to save\n");
+    say("lanthorn: no complete pass of this view was rendered: nothing to save\n");
     end_by_signal();
   }
   RenderFiles files = a;
@@ -165,8 +166,8 @@ OptionTable serve_options(ServeCommand& a) {
 void add_serve(CLI::App& app) {
   const auto a = std::make_shared<ServeCommand>();
   constexpr const char* footer =
-      "The page shows the picture as it refines, moves the camera (drag: around what is in the middle; shift or right\n"
-      "button: sideways; wheel: nearer and farther), sets lens and environment, dims lights, chooses method, size,\n"
+      "The page shows the picture as it refines, moves the camera (drag: orbit; shift or right\n"
+      "button: pan; wheel: zoom), sets lens and environment, dims lights, chooses method, size,\n"
       "layer, exposure and tone curve, denoises the picture, saves it and gives the command line that renders it.\n"
       "Its address holds a random token: without it, nothing can be read.\n"
       "From another machine: ssh -L 8080:localhost:8080 MACHINE, then open the address there. Nothing is rendered "

@@ -20,7 +20,7 @@ PassCheck check_passes(const PassRange& expected, const std::vector<PassRange>& 
   std::vector<PassRange> sorted = passes;
   std::sort(sorted.begin(), sorted.end(), [](const PassRange& a, const PassRange& b) { return a.begin < b.begin; });
   PassCheck check;
-  std::uint64_t end = expected.begin;  // of what has been seen
+  std::uint64_t end = expected.begin;  // of the ranges visited so far
   for (const PassRange& range : sorted) {
     if (range.begin > end && end < expected.end) check.missing.push_back({end, std::min(range.begin, expected.end)});
     if (range.begin < end && range.begin >= expected.begin)

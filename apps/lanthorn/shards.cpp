@@ -26,7 +26,7 @@ namespace fs = std::filesystem;
 
 enum class Format : std::uint8_t { shell, slurm, json };
 
-// What decides the picture.
+// The options that determine the picture.
 struct PictureArguments : RenderArguments {
   SceneChanges changes;
 };
@@ -40,15 +40,15 @@ struct ShardsCommand : PictureArguments {
 
 std::string stem_of(const ShardsCommand& a) { return fs::path(a.output).replace_extension().string(); }
 
-// "picture.shard-007.state", so that names sort as passes do.
+// "picture.shard-007.state": padded, so that names sort in the order of passes.
 std::string state_of(const ShardsCommand& a, std::uint64_t shard) {
   const std::size_t digits = fmt::formatted_size("{}", a.shards - 1);
   return fmt::format("{}.shard-{:0{}}.state", stem_of(a), shard, digits);
 }
 
-// What all shards have in common: the scene and the options that decide the picture.
+// Words that all shards share: the scene and the options that determine the picture.
 std::string render_words(const ShardsCommand& a) {
-  PictureArguments printed;  // at first with the defaults, which the table remembers
+  PictureArguments printed;  // starts with the defaults, which the table remembers
   const OptionTable table = picture_options(printed);
   printed = a;
   return command_line("lanthorn render", table);
@@ -84,7 +84,7 @@ void print_json(const ShardsCommand& a) {
   print_text(all.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + '\n');
 }
 
-// A job that is requeued, because its node failed or it was killed, goes on from its last checkpoint.
+// A job that Slurm requeues, because its node failed or it was killed, resumes from its last checkpoint.
 void print_slurm(const ShardsCommand& a) {
   const std::size_t digits = fmt::formatted_size("{}", a.shards - 1);
   print_text(fmt::format(
@@ -113,7 +113,7 @@ JOB
       a.threads == 0 ? " --threads ${SLURM_CPUS_PER_TASK:-0}" : ""));
 }
 
-// That of the options or else of the scene file, which is read for it.
+// The method of the options, or else of the scene file, which is read for this.
 std::string method_of(const ShardsCommand& a) {
   if (a.options.integrator) return *a.options.integrator;
   return default_method(read_scene(a.scene, a.reading).hints.integrator).name;

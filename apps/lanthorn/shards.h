@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// A render in parts that separate jobs make.
+// Splits a render into parts for separate jobs.
 #pragma once
 
 #include <cstdint>
@@ -11,10 +11,10 @@
 
 namespace lanthorn::program {
 
-/// The passes in `count` ranges that differ by one pass at most.
+/// Splits the passes into `count` ranges whose sizes differ by at most one.
 std::vector<PassRange> split_passes(std::uint64_t passes, std::uint64_t count);
 
-/// What states with these passes lack of `expected`, and which passes several have.
+/// Passes of `expected` that the states lack, and passes that several states have.
 struct PassCheck {
   std::vector<PassRange> missing, doubled;
 };

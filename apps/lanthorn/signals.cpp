@@ -20,7 +20,7 @@ std::atomic<Stage> stage{Stage::loading};
 std::atomic<int> level{0}, last_signal{SIGTERM};
 std::atomic<bool> stop{false}, drop{false}, end_waiting{false}, can_drop{false};
 
-// Errors are ignored, as they are for all messages.
+// Ignores errors, as for all messages.
 void answer(std::string_view text) {
   while (!text.empty()) {
     const ssize_t written = ::write(STDERR_FILENO, text.data(), text.size());
@@ -29,7 +29,7 @@ void answer(std::string_view text) {
   }
 }
 
-// The signal is blocked while it is handled; it ends the program when its handler returns.
+// The signal is blocked while it is handled; it ends the program when the handler returns.
 void end_program(int signal, std::string_view text) {
   answer(text);
   struct sigaction standard {};
@@ -44,8 +44,8 @@ void answer_while_rendering(int signal, int request) {
     stop = true;
   } else if (request == 2) {
     answer(can_drop
-               ? "\nlanthorn: giving up this pass, then saving (again: end without saving)\n"
-               : "\nlanthorn: this pass cannot be given up: finishing it, then saving (again: end without saving)\n");
+               ? "\nlanthorn: abandoning this pass, then saving (again: end without saving)\n"
+               : "\nlanthorn: this pass cannot be abandoned: finishing it, then saving (again: end without saving)\n");
     drop = true;
   } else {
     end_program(signal, "\nlanthorn: ended without saving\n");
@@ -65,10 +65,9 @@ void answer_signal(int signal, int request) {
     case Stage::rendering:
       return answer_while_rendering(signal, request);
     case Stage::measuring:
-      return give_up_pass(signal, request,
-                          "\nlanthorn: ending with the renders that are complete (again: end without them)\n");
+      return give_up_pass(signal, request, "\nlanthorn: ending with the complete renders (again: end without them)\n");
     case Stage::serving:
-      return give_up_pass(signal, request, "\nlanthorn: the server ends\n");
+      return give_up_pass(signal, request, "\nlanthorn: ending the server\n");
     case Stage::saving:
       if (request > 2) return end_program(signal, "\nlanthorn: ended while saving\n");
       return answer("\nlanthorn: saving\n");
@@ -78,13 +77,13 @@ void answer_signal(int signal, int request) {
   }
 }
 
-// Raised by what this program wrote, or repeated by the system as long as the program runs.
+// True for a signal that the program's own writes raised, or that the system repeats as long as the program runs.
 bool comes_by_itself(int signal, const siginfo_t& info) {
   if (signal == SIGXCPU) return info.si_code == SI_KERNEL;
   return (signal == SIGPIPE || signal == SIGXFSZ) && info.si_pid == ::getpid();
 }
 
-// Returns the number of this request; 0 if it does not count.
+// Returns the ordinal number of this request; 0 if it does not count.
 int count_request(bool by_itself) {
   if (!by_itself) return ++level;
   if (stage != Stage::rendering && stage != Stage::measuring && stage != Stage::serving) return 0;

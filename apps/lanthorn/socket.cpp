@@ -51,7 +51,7 @@ Addresses addresses_of(const std::string& host, std::uint16_t port, int flags) {
   return {found, &::freeaddrinfo};
 }
 
-// The error of connecting; 0 if it succeeded.
+// Returns the errno value of connecting; 0 on success.
 int connect_one(const FileDescriptor& socket, const addrinfo& address, Deadline deadline) {
   if (::connect(socket.get(), address.ai_addr, address.ai_addrlen) == 0) return 0;
   if (errno != EINPROGRESS) return errno;
@@ -86,7 +86,7 @@ void Event::clear() const {
 }
 
 Connection::Connection(FileDescriptor socket, const Event* event) : socket_(std::move(socket)), stop_(event) {
-  // Head and body of a message are written one after the other: the second must not wait for an acknowledgement.
+  // Head and body of a message are written separately; without TCP_NODELAY the body would wait for an acknowledgement.
   set_option(socket_, IPPROTO_TCP, TCP_NODELAY, 1);
 }
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// TCP sockets that never wait for longer than they are told.
+// TCP sockets that never block beyond their deadline.
 #pragma once
 
 #include <chrono>
@@ -28,7 +28,7 @@ class FileDescriptor {
   int fd_;
 };
 
-/// Wakes all that wait on it, from `set` to `clear`.
+/// Wakes all threads that wait on it; stays signalled from `set` to `clear`.
 class Event {
  public:
   Event();
@@ -45,15 +45,15 @@ class Connection {
  public:
   Connection(FileDescriptor socket, const Event* stop);
 
-  /// Appends up to `most` bytes, as soon as there are any. False at the end of the stream, on errors, at the deadline
+  /// Waits for data and appends up to `most` bytes. Returns false at the end of the stream, on errors, at the deadline
   /// and when stopped.
   bool read_some(std::string& buffer, std::size_t most, Deadline deadline) const;
-  /// False if not all could be written before the deadline, or when stopped.
+  /// Returns false if not everything could be written before the deadline, or when stopped.
   bool write_all(std::string_view bytes, Deadline deadline) const;
   int fd() const { return socket_.get(); }
-  /// True if the other side has closed the connection or sent what was not asked for.
+  /// True if the peer has closed the connection or sent unexpected data.
   bool is_gone() const;
-  /// Ends the stream and reads what the other side has sent already, so that the last answer is not lost by a reset.
+  /// Shuts down the stream and drains what the peer has already sent, so that a reset does not destroy the last answer.
   void finish() const;
 
  private:
@@ -63,11 +63,11 @@ class Connection {
   const Event* stop_;
 };
 
-/// A socket that listens at an address in numbers (IPv4 or IPv6); port 0: any that is free. Throws Error.
+/// A socket that listens at a numeric address (IPv4 or IPv6); port 0: any free port. Throws Error.
 FileDescriptor listen_at(const std::string& address, std::uint16_t port, int backlog);
 /// The port of a bound socket.
 std::uint16_t port_of(const FileDescriptor& socket);
-/// A connected socket; `host`: a name or an address. Throws Error, also at the deadline.
+/// A connected socket; `host` is a name or an address. Throws Error, also at the deadline.
 FileDescriptor connect_to(const std::string& host, std::uint16_t port, Deadline deadline);
 
 }  // namespace lanthorn::program

@@ -32,7 +32,7 @@ Words option_names(const CLI::App& command) {
   return names;
 }
 
-// Options of earlier versions, and what to do instead.
+// Options of earlier versions, and their replacements.
 const std::map<std::string, std::string> removed_options{
     {"--frame", "write --at frame=36@24 for frame 36 at 24 a second"},
     {"--fps", "write --at frame=36@24 for frame 36 at 24 a second"},
@@ -58,7 +58,7 @@ std::string unknown_command(const CLI::App& program, const std::string& word) {
   return fmt::format("unknown subcommand '{}'{}", word, did_you_mean(word, names));
 }
 
-// Unknown options are reported first: their values may have been taken for something else.
+// Unknown options are reported first: their values may have been mistaken for other arguments.
 std::string describe(const CLI::App& program, const CLI::Error& error) {
   const auto chosen = program.get_subcommands();
   const CLI::App& command = chosen.empty() ? program : *chosen.front();

@@ -8,8 +8,7 @@ class App;
 
 namespace lanthorn::program {
 
-/// Makes the program say in its own words what is wrong with a command line, and what was probably meant by a command
-/// or option that does not exist.
+/// Replaces CLI11's error messages by our own, which suggest the command or option that was probably meant.
 void add_suggestions(CLI::App& program);
 
 }  // namespace lanthorn::program

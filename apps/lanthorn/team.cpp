@@ -38,7 +38,7 @@ std::string text_of(const std::exception_ptr& problem) try {
   return e.what();
 }
 
-// Rank 0 says what is wrong and ends all, at the latest when it has read the scene.
+// Rank 0 reports the problem and ends all processes, at the latest when it has read the scene.
 [[noreturn]] void wait_for_the_end(const TeamLink& link, const std::string& message) {
   report_failure(link, message);
   for (;;) ::pause();
@@ -74,7 +74,7 @@ void run_in_team(RenderCommand& a, const std::function<void(Team*)>& work) {
     if (!is_first(&team)) wait_for_the_end(team.link, text_of(std::current_exception()));
     abort_mpi(say_problem(std::current_exception()));
   }
-  // The others do not know that there will be no more frames.
+  // The other processes do not know that there will be no more frames.
   if (is_first(&team) && stop_requested() && (a.frames || a.turntable)) abort_mpi(0);
   leave_mpi();
 }

@@ -11,11 +11,11 @@
 
 namespace lanthorn::program {
 
-/// Runs `work` with the team that this process belongs to; null if it is alone. All processes but the one of rank 0 are
-/// mute, obey no signals, and write nothing. If one fails, rank 0 says why, and all end with the same exit code.
+/// Runs `work` with the team of this process; null if it is alone. Processes of ranks other than 0 are mute, ignore
+/// signals, and write nothing. If one fails, rank 0 reports why, and all end with the same exit code.
 void run_in_team(RenderCommand& arguments, const std::function<void(Team*)>& work);
 
-/// False for processes of a team that leave files and messages to another.
+/// False for processes of a team that leave files and messages to rank 0.
 inline bool is_first(const Team* team) { return !team || team->link.rank == 0; }
 
 }  // namespace lanthorn::program

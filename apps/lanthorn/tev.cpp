@@ -26,14 +26,14 @@ using Clock = std::chrono::steady_clock;
 constexpr std::uint16_t tev_port = 14158;
 constexpr std::chrono::milliseconds connect_patience = 3s, send_patience = 10s, last_patience = 5s,
                                     picture_interval = 500ms;
-constexpr std::size_t packet_bytes = std::size_t{4} << 20;  // of pixels, about
+constexpr std::size_t packet_bytes = std::size_t{4} << 20;  // approximate size of the pixels in a packet
 
 enum class Operation : std::uint8_t { create_image = 4, update_image_3 = 6 };
 
 class Packet {
  public:
   explicit Packet(Operation operation) {
-    add(std::uint32_t{0});  // the length, known at the end
+    add(std::uint32_t{0});  // the length, filled in at the end
     add(static_cast<std::uint8_t>(operation));
   }
   template <class Number>
@@ -145,7 +145,7 @@ void TevLink::work() {
   }
 }
 
-// Returns false, after a warning, if the viewer does not take the picture.
+// Returns false, after a warning, if the viewer does not accept the picture.
 bool TevLink::send(const Image& image) try {
   if (!connection_)
     connection_.emplace(connect_to(viewer_.host, viewer_.port, Clock::now() + connect_patience), &stop_);
@@ -161,8 +161,8 @@ bool TevLink::send(const Image& image) try {
   for (int first = 0; first < image.height; first += rows)
     write(tev_update_rows(name_, image, first, std::min(rows, image.height - first)));
   return true;
-} catch (const std::exception& problem) {  // the render is worth more than its display
-  warn("--tev: {}; the render goes on without it", problem.what());
+} catch (const std::exception& problem) {  // the render matters more than its display
+  warn("--tev: {}; the render continues without it", problem.what());
   return false;
 }
 

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Pictures for the viewer tev (https://github.com/Tom94/tev), by its network protocol: over TCP, packets of a length
-// (32 bits, itself included), the number of an operation (8 bits) and what the operation needs. Numbers are
-// little-endian, texts end with a zero byte.
+// Sends pictures to the viewer tev (https://github.com/Tom94/tev) by its network protocol: over TCP, packets that
+// consist of their length (32 bits, including itself), an operation (8 bits) and its arguments. Numbers are
+// little-endian, strings end with a zero byte.
 #pragma once
 
 #include <chrono>
@@ -20,9 +20,9 @@
 
 namespace lanthorn::program {
 
-/// CreateImage: a black picture with the image's channels, in place of one of the same name.
+/// CreateImage: a black picture with the image's channels; replaces a picture of the same name.
 std::string tev_create_image(const std::string& name, const Image& image);
-/// UpdateImage (version 3, of channels that are interleaved): the pixels of the rows [first, first + count).
+/// UpdateImage (version 3, interleaved channels): the pixels of the rows [first, first + count).
 std::string tev_update_rows(const std::string& name, const Image& image, int first, int count);
 
 struct HostPort {
@@ -32,7 +32,7 @@ struct HostPort {
 /// "host:port", "[::1]:port", or "host" for tev's own port, 14158. Throws Error, naming `option`.
 HostPort parse_host_port(const std::string& text, const std::string& option);
 
-/// Sends pictures on a thread of its own, so that a slow viewer delays nothing. What cannot be sent is a warning.
+/// Sends pictures on its own thread, so that a slow viewer delays nothing. Failures only cause a warning.
 class TevLink {
  public:
   /// `name`: of the picture in the viewer.
@@ -42,10 +42,10 @@ class TevLink {
   TevLink(const TevLink&) = delete;
   TevLink& operator=(const TevLink&) = delete;
 
-  /// True if the viewer has taken the last picture, at least half a second ago, and is still there: another one is
-  /// welcome.
+  /// True if the viewer has received the last picture at least half a second ago and is still connected: time to send
+  /// another one.
   bool is_ready() const;
-  /// Sends the picture; one that waits to be sent is replaced.
+  /// Sends the picture, replacing one that is still waiting to be sent.
   void show(Image image);
 
  private:
@@ -54,10 +54,10 @@ class TevLink {
 
   HostPort viewer_;
   std::string name_;
-  std::optional<Connection> connection_;  // of the thread
+  std::optional<Connection> connection_;  // used by the thread only
   std::vector<std::string> channels_;     // of the picture that the viewer has
   Event stop_;
-  mutable std::mutex mutex_;  // of all below
+  mutable std::mutex mutex_;  // guards all members below
   std::condition_variable changed_;
   std::optional<Image> next_;
   std::chrono::steady_clock::time_point next_time_{};

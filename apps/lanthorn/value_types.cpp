@@ -33,7 +33,7 @@ std::string describe(const NumberRange& range) {
   return above ? fmt::format("a number of {:g} at most", range.high) : "a number";
 }
 
-// Whole numbers with separators between them; nothing if the text is anything else.
+// Whole numbers with separators between them; nullopt for any other text.
 template <std::size_t n>
 std::optional<std::array<int, n>> parse_integers(std::string_view text, char separator) {
   std::array<int, n> numbers{};
@@ -48,14 +48,14 @@ std::optional<std::array<int, n>> parse_integers(std::string_view text, char sep
   return next == end ? std::optional(numbers) : std::nullopt;
 }
 
-// The two parts of "a:b"; nothing without the separator.
+// The two parts of "a:b"; nullopt without the separator.
 std::optional<std::pair<std::string_view, std::string_view>> split(std::string_view text, char separator) {
   const std::size_t at = text.find(separator);
   if (at == std::string_view::npos) return std::nullopt;
   return std::pair{text.substr(0, at), text.substr(at + 1)};
 }
 
-// A value of the type, or a word that is read as none.
+// A value of the type, or a word that means nullopt.
 template <class Value>
 ValueType<std::optional<Value>> or_word(const ValueType<Value>& type, const std::string& word) {
   return {type.name, type.expected + ", or " + word,

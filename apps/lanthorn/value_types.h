@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Types of values on the command line: what help calls them, how they are read and how they are printed.
+// Types of command-line values: their names in the help, how they are parsed and printed.
 #pragma once
 
 #include <fmt/format.h>
@@ -20,17 +20,17 @@
 
 namespace lanthorn::program {
 
-/// Random numbers identify a pass by 32 bits: later passes would repeat earlier ones.
+/// Random numbers identify a pass by 32 bits: passes beyond these would repeat earlier ones.
 inline constexpr std::uint64_t most_passes = std::numeric_limits<std::uint32_t>::max();
 
 template <class Value>
 struct ValueType {
-  std::string name;      ///< in help, such as COUNT, FILE or rgb|spectral; completion goes by it
+  std::string name;      ///< in the help, such as COUNT, FILE or rgb|spectral; completion depends on it
   std::string expected;  ///< in messages: "a count of 1 or more, such as 500000, 200k or 1M"
-  std::function<std::optional<Value>(std::string_view)> parse;  ///< nothing for text that is not `expected`
+  std::function<std::optional<Value>(std::string_view)> parse;  ///< nullopt for text that is not `expected`
   std::function<std::string(const Value&)> print;               ///< text that `parse` reads as this value
-  std::vector<std::string> words{};                             ///< that `parse` knows, for messages
-  /// More words that may have been meant by text that is not `expected`.
+  std::vector<std::string> words{};                             ///< words that `parse` accepts, for messages
+  /// Further words that may have been meant by text that is not `expected`.
   std::function<std::vector<std::string>(std::string_view)> similar = [](std::string_view) {
     return std::vector<std::string>();
   };
@@ -45,27 +45,27 @@ struct NumberRange {
 };
 
 ValueType<std::uint64_t> count_type(CountRange range = {});
-/// Of double or float, finite.
+/// A finite float or double.
 template <class Number = double>
 ValueType<Number> number_type(NumberRange range = {});
-/// A number, or `word`, which is read as no number.
+/// A number, or `word`, which means nullopt.
 ValueType<std::optional<float>> number_or_word_type(NumberRange range, const std::string& word);
 ValueType<double> duration_type();
 ValueType<double> share_type();
-/// A duration, or "none", which is read as none.
+/// A duration, or "none", which means nullopt.
 ValueType<std::optional<double>> duration_or_none_type();
 ValueType<std::uint64_t> bytes_type();
 /// Any text. `name` says what it is: FILE, INTEGRATOR, HOST:PORT.
 ValueType<std::string> text_type(const std::string& name);
-/// The name of a file that is there and is no folder.
+/// The name of an existing file that is not a folder.
 ValueType<std::string> existing_file_type();
-/// The same, or one of these words.
+/// An existing file, or one of these words.
 ValueType<std::string> existing_file_or_word_type(const std::vector<std::string>& words);
-/// NAME=VALUE, with a name.
+/// NAME=VALUE; the name must not be empty.
 ValueType<std::pair<std::string, std::string>> setting_type();
-/// Several words of `known` with commas between them.
+/// One or more words of `known`, separated by commas.
 ValueType<std::vector<std::string>> word_list_type(const std::vector<std::string>& known);
-/// WIDTHxHEIGHT, or WIDTH alone, with 0 for the height.
+/// WIDTHxHEIGHT, or WIDTH alone, which gives height 0.
 ValueType<std::array<int, 2>> resolution_type();
 ValueType<std::array<int, 4>> pixel_window_type();
 /// FIRST:END, counts.

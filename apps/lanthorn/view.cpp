@@ -74,7 +74,7 @@ std::string method_help() {
   return methods + "or an offline method of 'lanthorn list', which refines while the camera rests.";
 }
 
-// Of each parameter once, under the first method that has it.
+// Lists each parameter once, under the first method that has it.
 std::string parameter_help() {
   std::string text;
   std::set<std::string> known;
@@ -108,7 +108,7 @@ std::string command_of(const ViewCommand& a, const ShownRender& shown, bool film
   render.options = shown.options;
   render.options.memory.reset();
   render.reading = a.reading;
-  // A scene that was saved has the camera of the window.
+  // A saved scene contains the camera of the window.
   const bool is_saved = shown.scene != a.scene;
   render.changes = moved(a.changes, shown.look || is_saved ? shown.look : a.changes.look, shown.light_factors);
   if (is_saved) render.changes.lens.orbit.reset();
@@ -128,7 +128,7 @@ void show(const ViewCommand& a, const SharedScene& original, const ViewerOptions
   }
   const ViewerFrames frames = render_frames(scene, view, options);
   for (const std::string& limitation : frames.report.limitations) warn("{}", limitation);
-  // No times in the file: equal pictures are equal files.
+  // No times in the file: equal pictures give equal files.
   const nlohmann::json metadata{
       {"version", version}, {"method", frames.report.method}, {"frames", frames.report.frames}};
   write_picture(a.output, picture_for(a.output, frames.image), a.picture, view.film.measures_exposure, metadata.dump());
@@ -185,7 +185,7 @@ OptionTable view_options(ViewCommand& a) {
                    .brief = "With --headless: the picture (.png, .jpg, .tif, or .exr with all layers)"},
                   {.names = "--json",
                    .value = into(a.json, text_type("FILE")),
-                   .brief = "Write the times of the stages of a frame and the photons of each bounce as JSON"}};
+                   .brief = "Write frame times by stage and photons per bounce as JSON"}};
   OptionTable render = without(render_options(a), "--integrator");
   OptionTable table = joined(joined(std::move(render), scene_change_options(a.changes)), std::move(own));
   table.push_back(denoise_option(a.picture.denoise, "Remove the noise of pictures of offline methods, layer by layer"));
@@ -204,8 +204,8 @@ void add_view(CLI::App& app) {
       "  lanthorn view scene.pbrt\n"
       "  lanthorn view scene.pbrt -i vcm -r 640x360\n"
       "  lanthorn view scene.pbrt --headless -p 16 -o picture.png";
-  add_command(app, {"view", "Show a scene in a window, with light that bounces while it is dragged", view_options(*a),
-                    footer, [a] { run_view(*a); }});
+  add_command(app, {"view", "Show a scene in a window, with global illumination that follows edits in real time",
+                    view_options(*a), footer, [a] { run_view(*a); }});
 }
 
 }  // namespace lanthorn::program

@@ -21,16 +21,16 @@ struct Rgb {
   friend bool operator==(const Rgb&, const Rgb&) = default;
 };
 
-/// RGB primaries and white of RGB values in a scene file.
+/// Primaries and white point of the RGB values in a scene file.
 enum class ColorSpace : std::uint8_t { srgb, dci_p3, rec2020, aces2065_1 };
 
-/// What a path carries: RGB, or radiance at wavelengths that are drawn at random.
+/// What a path carries: RGB, or radiance at a few randomly sampled wavelengths.
 enum class ColorMode : std::uint8_t { rgb, spectral };
 
 inline constexpr float lambda_min = 360;  ///< nm
 inline constexpr float lambda_max = 830;  ///< nm
 
-/// Equal intervals of a range of wavelengths.
+/// Divides a range of wavelengths into `count` equal intervals.
 struct SpectralBuckets {
   std::size_t count = 16;
   float low = lambda_min, high = lambda_max;  ///< nm
@@ -40,7 +40,7 @@ struct SpectralBuckets {
     const double share = (static_cast<double>(bucket) + 0.5) / static_cast<double>(count);
     return static_cast<double>(low) + share * (static_cast<double>(high) - static_cast<double>(low));
   }
-  /// The bucket of a wavelength; nullopt outside the range.
+  /// Index of the interval that contains a wavelength (in nm); nullopt outside the range.
   std::optional<std::size_t> find(float nm) const {
     if (!(nm >= low && nm <= high)) return std::nullopt;
     return std::min(static_cast<std::size_t>((nm - low) / width()), count - 1);

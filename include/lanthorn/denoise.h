@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Removes noise from pictures, layer by layer, by the statistics of their own samples.
+// Denoises rendered pictures layer by layer, guided by the sample statistics that the renderer saved with them.
 #pragma once
 
 #include "lanthorn/error_estimate.h"
@@ -8,35 +8,35 @@
 
 namespace lanthorn {
 
-/// A picture and what it is without its noise.
+/// A noisy picture with its denoised version.
 struct DenoisedPicture {
-  /// All channels of the noisy picture; then denoised.R, G, B, the sum of the denoised layers of light, and these:
-  /// denoised.direct.R, denoised.caustic.R and so on; and denoised.error.R, G, B, one standard error of denoised.R, G,
-  /// B.
+  /// All channels of the noisy picture, followed by denoised.R, denoised.G, denoised.B (the sum of the denoised light
+  /// layers), the denoised light layers themselves (denoised.direct.R, denoised.caustic.R, ...), and denoised.error.R,
+  /// denoised.error.G, denoised.error.B (one standard error of denoised.R, .G, .B).
   Image picture;
-  ErrorEstimate error;  ///< of the sum
+  ErrorEstimate error;  ///< of denoised.R, .G, .B
 };
 
-/// True if the picture has what `denoise` needs: layers of light, features, and the noise of both
-/// (`with_noise`).
+/// True if the picture has the layers that `denoise` needs: light, features, and the noise of both (those that
+/// `with_noise` adds).
 bool can_denoise(const Image& picture);
 
-/// Denoises each layer of light by itself, so that layers still add up, and a caustic keeps its edges where the light
-/// beside it is smooth. Light is regressed over albedo, normal and position in neighbourhoods of like pixels; the
-/// difference of the two halves of the passes is the noise (Bitterli et al. 2016, "Nonlinearly Weighted First-order
-/// Regression for Denoising Monte Carlo Renderings"). Pixels that are not finite count as black.
+/// Denoises each light layer separately: the denoised layers still add up to the picture, and a caustic keeps its edges
+/// where the light beside it is smooth. Regresses light on albedo, normal and position over neighbourhoods of similar
+/// pixels; the difference between the two halves of the passes estimates the noise (Bitterli et al. 2016, "Nonlinearly
+/// Weighted First-order Regression for Denoising Monte Carlo Renderings"). Non-finite pixels count as black.
 ///
-/// A function of the picture, the same for any number of threads. A picture of 1024 x 1024 pixels takes about 1.6 GB;
-/// larger ones are done in tiles of this size. Throws Error if `can_denoise` is false.
+/// The result does not depend on the number of threads. Memory: about 1.6 GB for 1024 x 1024 pixels; larger pictures
+/// are processed in tiles of that size. Throws Error if `can_denoise` is false.
 DenoisedPicture denoise(const Image& picture);
 
-/// R, G, B of the picture without its noise, for a look while a render goes on: in a tenth of the time of `denoise`,
-/// with more of the noise left. `color` is denoised as one layer, so there are no layers that add up to it, and a
-/// caustic is less sharp. Same bytes for any number of threads; throws as `denoise` does.
+/// Denoised R, G, B, for display while a render is in progress: ten times as fast as `denoise`, but leaves more noise.
+/// Treats `color` as a single layer, so there are no denoised layers that add up to it, and caustics are less sharp.
+/// The result does not depend on the number of threads. Throws Error as `denoise` does.
 Image preview_without_noise(const Image& picture);
 
-/// The picture as it is shown and saved without its noise: the layers of light and `color` are the denoised ones, and
-/// neither `noise` nor `denoised` layers are left. `picture` has those of `denoise`.
+/// The denoised picture as it is shown and saved: its light layers and `color` are the denoised ones; the `noise` and
+/// `denoised` layers are removed. `picture` is a result of `denoise`.
 Image with_denoised_light(const Image& picture);
 
 }  // namespace lanthorn

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Scenes, edits and options as plain data: what `lanthorn.load_dict` of the Python module and the protocol of
-// `lanthorn link` have in common. The keys are the members of the structs (docs/python.md).
+// Scenes, edits and options as plain data: the format shared by `lanthorn.load_dict` of the Python module and the
+// `lanthorn link` protocol. The keys are the names of the structs' members (docs/python.md).
 #pragma once
 
 #include <optional>
@@ -12,26 +12,27 @@
 
 namespace lanthorn {
 
-/// A dict to a description. A table ("materials", "lights" ...) is a list, or a dict of entries by name; in such a
-/// dict, textures and mixes of materials may refer to entries that come later. References are indices or names. Throws
-/// Error with the place of what is wrong, such as "materials.glass.eta: expected a number, got 'high'".
+/// Converts a dict to a description. Each table ("materials", "lights", ...) is a list, or a dict of named entries; in
+/// a dict, textures and mixes of materials may refer to later entries. References are indices or names. Throws Error
+/// with the location of the problem, such as "materials.glass.eta: expected a number, got 'high'".
 SceneDescription description_of_data(const plain::Value& data);
-/// The description as a dict of lists, seen like this.
+/// The description and view as a dict of lists; the inverse of `description_of_data`.
 plain::Value data_of_description(const SceneDescription& description, const ViewDescription& view);
 
-/// What a dict of edits asks for.
+/// The edits that a dict describes.
 struct DescriptionEdits {
   ViewDescription view;
   std::optional<SceneEdits> scene{};  ///< none: only the view changes
 };
-/// Keys: `camera`, `film` and `filter`, and `materials`, `lights`, `area_lights` and `instances`, which are dicts of
-/// entries by name or index, and `environment`. Members that an entry does not have stay as they are in `scene`.
+/// Keys: `camera`, `film`, `filter`, `environment`, and `materials`, `lights`, `area_lights`, `instances`, which are
+/// dicts of entries by name or index. Members that an entry omits keep their values from `scene`.
 DescriptionEdits edits_of_data(const plain::Value& data, const SceneDescription& scene, const ViewDescription& view);
 
-/// A source, or a dict of the members of EnvironmentChoice.
+/// `data` is the environment's source, or a dict of the members of EnvironmentChoice.
 EnvironmentChoice environment_of_data(const plain::Value& data);
 
-/// The members of RenderOptions; all else are parameters of the method, with "-" or "_" between words.
+/// Converts a dict of the members of RenderOptions; all other keys are parameters of the method, with "-" or "_"
+/// between words.
 RenderOptions options_of_data(const plain::Value& data);
 
 }  // namespace lanthorn

@@ -15,8 +15,8 @@ struct SourceLocation {
   int column = 0;
 };
 
-/// Bad scene, file or option. Thrown at the input and settings border only, caught once in main (exit code 2).
-/// `what()` reads "file:line:column: message", leaving out what is not known.
+/// Bad scene, file or option. Thrown only where input and settings enter the library; the program catches it once, in
+/// main (exit code 2). `what()` reads "file:line:column: message" without the parts that are unknown.
 class Error : public std::runtime_error {
  public:
   explicit Error(std::string text) : Error(SourceLocation{}, std::move(text)) {}
@@ -28,7 +28,7 @@ class Error : public std::runtime_error {
 
  private:
   static std::string describe(const SourceLocation& at, const std::string& what_happened) {
-    std::string text = at.file;  // append below, not +: GCC 12 warns falsely of overlapping copies
+    std::string text = at.file;  // GCC 12 falsely warns of overlapping copies for operator+
     if (at.line > 0) text.append(":").append(std::to_string(at.line));
     if (at.line > 0 && at.column > 0) text.append(":").append(std::to_string(at.column));
     return text.empty() ? what_happened : text + ": " + what_happened;

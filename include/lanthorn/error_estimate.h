@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// How far a picture is from the truth, as its own samples tell.
+// Estimates a picture's error from its own samples.
 #pragma once
 
 #include <string>
@@ -8,14 +8,14 @@
 namespace lanthorn {
 
 /// Estimate of a picture's error: √ of the mean over pixels and channels of min(1, (a − r)² / (r² + 0.01 m²)), where a
-/// is the picture, r the truth, and m the mean of the truth. It does not depend on exposure, and a firefly counts as
-/// one pixel. 0.02 is an error of 2 % of each value, or of 0.2 % of the mean where it is dark.
+/// is the picture, r the converged picture, and m the mean of r. It does not depend on exposure, and each firefly
+/// counts as at most one pixel. 0.02 means an error of 2 % of each value, or of 0.2 % of the mean in dark regions.
 struct ErrorEstimate {
-  double noise = 0;   ///< the part that falls with the number of passes alone
-  double bias = 0;    ///< the part that falls with the radii of photons; 0 of methods without bias
-  double error = 0;   ///< of both: √(noise² + bias²)
-  double bound = 0;   ///< the error is below it with a probability of 90 %
-  std::string doubt;  ///< why the numbers are too small, or not known; empty if they can be relied on
+  double noise = 0;   ///< the part that only more passes reduce
+  double bias = 0;    ///< the part that shrinks with the photon radii; 0 for unbiased methods
+  double error = 0;   ///< both parts together: √(noise² + bias²)
+  double bound = 0;   ///< upper bound of the error at 90 % confidence
+  std::string doubt;  ///< why the numbers are too small or unknown; empty if they can be relied on
 
   bool is_known() const { return doubt.empty(); }
   bool is_below(double limit) const { return is_known() && bound <= limit; }
@@ -24,8 +24,8 @@ struct ErrorEstimate {
 /// For the user: "below 1.9 %", or "not known: there are too few passes".
 std::string describe_error(const ErrorEstimate& estimate);
 
-/// How many times as many passes will bring the bound below `limit`, if noise falls as 1/√n does and the bias as radii
-/// of progressive photon mapping do, by n^(-1/3). At least 1.
+/// Factor by which the number of passes must grow for the bound to fall below `limit`, if noise falls as n^(-1/2) and
+/// bias as n^(-1/3), as radii of progressive photon mapping do. At least 1.
 double growth_to_reach(const ErrorEstimate& estimate, double limit);
 
 }  // namespace lanthorn

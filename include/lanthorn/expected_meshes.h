@@ -10,17 +10,17 @@
 
 namespace lanthorn {
 
-/// The PLY files of a pbrt scene, as their headers say. Gzipped files do not count.
+/// The PLY files of a pbrt scene, according to their headers. Gzipped files are not counted.
 struct ExpectedMeshes {
-  std::size_t files = 0;  ///< uses of files by shapes
+  std::size_t files = 0;  ///< references from shapes to files
   double faces = 0;
-  double bytes = 0;  ///< of memory, with search trees
+  double bytes = 0;  ///< of memory, including acceleration structures
 };
 
 /// Called before any of the files is read.
 using MeshObserver = std::function<void(const ExpectedMeshes&)>;
 
-/// `read_scene`, for callers that want to tell their user what the scene will take before it is loaded.
+/// `read_scene` for callers that want to report the size of the scene before it is loaded.
 SceneDescription read_scene(const std::filesystem::path& path, const ReadOptions& options,
                             const MeshObserver& observer);
 

@@ -17,22 +17,22 @@ namespace lanthorn {
 /// The extension of `path` with its dot, in lower case; empty if it has none.
 std::string lower_extension(const std::filesystem::path& path);
 
-/// Names of the files in the folder of `path`, each with that folder as `path` has it, sorted: one of them may have
-/// been meant by a name that is not there. Those of the first thousand entries.
+/// Sorted names of the files in the folder of `path`, each prefixed with that folder as `path` spells it; for
+/// suggestions when `path` does not exist. Considers only the first 1000 entries.
 std::vector<std::string> file_names_beside(const std::filesystem::path& path);
 
 /// Resolves the symbolic links of `path`; the final file need not exist. Throws Error for cyclic links.
 std::filesystem::path follow_links(const std::filesystem::path& path);
 
 /// Writes a file whole or not at all: under a temporary name in the same folder, synced, then renamed over `path`. A
-/// replaced file's mode is kept, and its owner and group where permitted. A link stays a link to its file, even if that
-/// file does not exist yet. Devices and pipes cannot be renamed over and are written directly, a pipe only if somebody
-/// reads from it. Throws `lanthorn::Error` that says what failed and what to do; a failed write leaves no file behind.
-/// Also removes temporary files for `path` that killed processes left behind.
+/// replaced file's mode is kept, and its owner and group where permitted. A symbolic link stays a link: its target is
+/// written, even if it does not exist yet. Devices and pipes cannot be renamed over and are written directly, a pipe
+/// only if a process reads from it. Throws `lanthorn::Error` that says what failed and what to do; a failed write
+/// leaves no file behind. Also removes temporary files for `path` that killed processes left behind.
 void write_file(const std::filesystem::path& path, std::span<const std::byte> bytes);
 
-/// Files that are written all or none. What has no `commit` leaves nothing behind; of a killed process, the next write
-/// to the same names removes the rest.
+/// Writes several files, all or none. Without `commit`, no file is left behind; if the process is killed, the next
+/// write to the same names removes the temporary files.
 class FileSet {
  public:
   FileSet();
@@ -40,9 +40,11 @@ class FileSet {
   FileSet& operator=(const FileSet&) = delete;
   ~FileSet();
 
-  /// Writes and syncs the bytes under a temporary name, as `write_file` does. Devices and pipes are written at once.
+  /// Writes and syncs the bytes under a temporary name, as `write_file` does. Devices and pipes are written
+  /// immediately.
   void add(const std::filesystem::path& path, std::span<const std::byte> bytes);
-  /// Gives all files their names. Throws `lanthorn::Error` if one cannot be renamed: then those before it are there.
+  /// Renames all files to their final names. Throws `lanthorn::Error` if a rename fails; files renamed before it
+  /// remain.
   void commit();
 
  private:
@@ -51,7 +53,7 @@ class FileSet {
 };
 
 /// Writes a new file in `folder` that only the user may read, and returns its path: `prefix`, 16 random digits,
-/// `suffix`. Fails if a file or link of that name exists. Throws `lanthorn::Error` on failure; leaves no file behind.
+/// `suffix`. Never replaces an existing file or link. Throws `lanthorn::Error` on failure and leaves no file behind.
 std::filesystem::path write_private_file(const std::filesystem::path& folder, const std::string& prefix,
                                          const std::string& suffix, std::span<const std::byte> bytes);
 
@@ -61,29 +63,29 @@ std::string read_file(const std::filesystem::path& path);
 
 struct OpenedFile {
   std::string bytes;
-  std::filesystem::path real_path;  ///< path of the opened file, links followed
+  std::filesystem::path real_path;  ///< canonical path of the opened file (links resolved)
 };
 /// Like `read_file`, and also returns the real path at the moment of opening.
 OpenedFile read_opened_file(const std::filesystem::path& path);
 
 struct OpenedStream {
   std::shared_ptr<std::FILE> file;
-  std::filesystem::path real_path;  ///< of the opened file, links followed
+  std::filesystem::path real_path;  ///< canonical path of the opened file (links resolved)
 };
 /// Opens a file that is too large to be read as a whole. Throws `lanthorn::Error` as `read_file` does.
 OpenedStream open_stream(const std::filesystem::path& path);
 
-/// A regular file of which parts are read, by any number of threads at once.
+/// A regular file that any number of threads may read in parts at the same time.
 class PartlyReadFile {
  public:
-  /// Throws Error as `read_file`.
+  /// Throws Error as `read_file` does.
   explicit PartlyReadFile(const std::filesystem::path& path);
   PartlyReadFile(const PartlyReadFile&) = delete;
   PartlyReadFile& operator=(const PartlyReadFile&) = delete;
   ~PartlyReadFile();
 
   std::uint64_t size() const { return size_; }
-  /// Fills `out` with the bytes from `offset` on. Throws Error unless the file has all of them.
+  /// Fills `out` with the bytes that start at `offset`. Throws Error if the file ends before that.
   void read(std::uint64_t offset, std::span<std::byte> out) const;
 
  private:

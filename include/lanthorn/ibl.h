@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Image-based lighting: what engines in real time look up instead of integrating over an environment
+// Image-based lighting: the tables that real-time engines look up instead of integrating over an environment
 // (docs/methods/ibl.md). Maps are normalised: a white environment of radiance 1 gives 1.
 #pragma once
 
@@ -20,67 +20,68 @@
 
 namespace lanthorn {
 
-/// How an image covers the sphere of directions; y is up. A cube map's texel holds the light from the direction for
+/// How an image covers the sphere of directions; y is up. A cube map's texel stores the light from the direction for
 /// which OpenGL looks it up.
 enum class EnvironmentLayout : std::uint8_t {
-  equirectangular,  ///< 2:1; the top row is +y, the centre +x, a quarter to its right +z
-  octahedral,       ///< square; equal-area, as pbrt-v4 has it, whose z is up: its (x, y, z) is (x, z, -y) here
+  equirectangular,  ///< 2:1; the top row is +y, the centre +x, +z a quarter of the width to its right
+  octahedral,       ///< square, equal-area, as in pbrt-v4 but y-up: pbrt's (x, y, z) is our (x, z, -y)
   cube,             ///< 6:1, faces +X -X +Y -Y +Z -Z, rows from the top
 };
 const char* layout_name(EnvironmentLayout layout);
-/// By the shape of the image; nullopt if it has none of these.
+/// Layout by the image's aspect ratio; nullopt if none fits.
 std::optional<EnvironmentLayout> layout_of(const Image& image);
 
-/// Of an environment. What is larger may have sums over the sphere that are not finite.
+/// Radiance of an environment. Sums over the sphere could overflow for larger values.
 inline constexpr float largest_environment_radiance = 1e30f;
 
-/// Reads an environment from one image or from six square ones, the faces of a cube. Other layouts of cubes (1:6, cross
-/// of 4:3 or 3:4) become 6:1. Throws Error that names the file: it cannot be read, has no colours or no known shape, or
-/// holds no positive number up to `largest_environment_radiance`.
+/// Reads an environment from one image, or from six square ones, the faces of a cube. Other cube layouts (1:6, 4:3 or
+/// 3:4 cross) are converted to 6:1. Throws Error, naming the file, if it cannot be read, has no colours, has an unknown
+/// shape, or holds no value in (0, `largest_environment_radiance`].
 Image read_environment(const std::vector<std::filesystem::path>& files,
                        std::uint64_t max_pixels = FileAccess::default_max_pixels);
 
-/// Which roughness a level of the specular map is for; x is its number as a fraction of the last one's.
+/// Roughness of each level of the specular map; x = level / last level.
 enum class RoughnessMapping : std::uint8_t {
   square,    ///< roughness = x; alpha = roughness²
   linear,    ///< alpha = x
-  filament,  ///< x = roughness (2 - roughness), as Filament looks it up; alpha = roughness²
+  filament,  ///< x = roughness (2 - roughness), Filament's mapping; alpha = roughness²
 };
 
-/// By what the light in the lobe of the specular map is weighted.
+/// Weight of the light within the lobe of the specular map.
 enum class LobeWeight : std::uint8_t {
   cosine,   ///< n·l (Karis 2013): what engines expect
-  masking,  ///< Smith's G2 / G1, which the reflection at n = v = r itself has
+  masking,  ///< Smith's G2 / G1, the exact weight for n = v = r
 };
 
 struct IblSettings {
-  bool irradiance = true, specular = true, sh = true;  ///< which maps
+  bool irradiance = true, specular = true, sh = true;  ///< which maps to bake
   int irradiance_size = 32;                            ///< texels along an edge of a face
   int specular_size = 256, smallest_size = 16;         ///< of the first and the last level, powers of two
-  int samples = 4096;                                  ///< of the lobe, at the specular map's last level
+  int samples = 4096;                                  ///< per texel of the specular map's last level
   RoughnessMapping mapping = RoughnessMapping::square;
   LobeWeight weight = LobeWeight::cosine;
-  bool windowed = false;  ///< spherical harmonics without ringing
-  int checks = 8;         ///< places of each map that are compared with brute force
-  /// Called as work goes on: what is done, in [0,1].
+  bool windowed = false;  ///< windows the spherical harmonics to suppress ringing
+  int checks = 8;         ///< texels of each map that are compared with brute-force integration
+  /// Called during the work with the completed fraction, in [0,1].
   std::function<void(double)> progress = [](double) {};
 };
 
-/// Real spherical harmonics with y up, by (l, m): l² + l + m. No Condon-Shortley phase.
+/// Real spherical harmonics with y up; (l, m) is at index l² + l + m. No Condon-Shortley phase.
 template <std::size_t bands>
 using ShCoefficients = std::array<Rgb, bands * bands>;
 
 struct ShMaps {
   ShCoefficients<4> radiance{};  ///< projection of the environment, order 3
-  /// Projection of the irradiance over pi, order 3; its first nine are those of order 2. Band 3 is 0, as for every
+  /// Projection of the irradiance divided by pi, order 3; the first nine are those of order 2. Band 3 is 0 for every
   /// environment.
   ShCoefficients<4> irradiance{};
   double window = 0;  ///< lambda of the window 1 / (1 + lambda l² (l + 1)²) in `irradiance`; 0 for none
 };
-/// Irradiance over pi at a surface of this normal.
+/// Irradiance divided by pi on a surface with this unit normal; `order` is 2 or 3.
 Rgb irradiance_at(const ShMaps& sh, const std::array<float, 3>& normal, std::size_t order);
 
-/// Differences from brute force, relative to the root mean square of the truth over all places that were checked.
+/// Differences from brute-force integration, relative to the root mean square of the exact values at all checked
+/// texels.
 struct MapError {
   double rms = 0, max = 0;
   int checks = 0;
@@ -96,28 +97,28 @@ struct SpecularLevel {
 struct Ibl {
   EnvironmentLayout layout = EnvironmentLayout::equirectangular;
   int width = 0, height = 0;
-  std::uint64_t unusable_values = 0;  ///< negative, not finite or above `largest_environment_radiance`: they count as 0
-  Rgb mean;                           ///< radiance, over the sphere
-  std::uint64_t sun_texels = 0;       ///< whose excess is integrated exactly
+  std::uint64_t unusable_values = 0;  ///< negative, non-finite or above `largest_environment_radiance`; count as 0
+  Rgb mean;                           ///< mean radiance over the sphere
+  std::uint64_t sun_texels = 0;       ///< texels whose excess over `sun_threshold` is integrated exactly
   float sun_threshold = 0;            ///< luminance above which light is excess
-  Rgb sun_share;                      ///< of the flux
+  Rgb sun_share;                      ///< share of the excess in the flux
 
   std::optional<Image> irradiance;  ///< six faces side by side; R, G, B
   std::optional<MapError> irradiance_error;
   std::vector<SpecularLevel> specular;
   std::optional<ShMaps> sh;
-  std::optional<MapError> sh_error;  ///< of the irradiance by order 2, which leaves its bands from 4 on out
+  std::optional<MapError> sh_error;  ///< of the irradiance by order 2, which omits the bands from 4 on
 };
 
-/// Throws Error for sizes that are no powers of two, and if memory does not suffice. The same for any number of
-/// threads.
+/// Throws Error for sizes that are not powers of two, and if memory does not suffice. The result does not depend on the
+/// number of threads.
 Ibl bake_ibl(const Image& environment, const IblSettings& settings);
 
-/// The environment's reflection by GGX with Schlick's Fresnel term is F0 R + G, at columns n·v and rows roughness
-/// (alpha = roughness²), both at (i + ½) / size. B: albedo of Charlie sheen of the same alpha, or 0. Multiple
-/// scattering (Fdez-Agüera 2019) needs R and G alone.
+/// Table of the split-sum approximation: the reflection of a white environment by GGX with Schlick's Fresnel term is F0
+/// R + G. Columns are n·v, rows roughness (alpha = roughness²), both at (i + ½) / size. B is the albedo of Charlie
+/// sheen of the same alpha, or 0. Multiple scattering (Fdez-Agüera 2019) needs only R and G.
 Image brdf_table(int size, bool sheen);
-/// Error of R and G at `checks` places against integration over all normals of the microsurface.
+/// Error of R and G at `checks` entries against integration over all microfacet normals.
 MapError brdf_table_error(const Image& table, int checks);
 
 /// Formats of texels in texture files.

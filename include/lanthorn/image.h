@@ -23,14 +23,14 @@ struct ImageWindow {
 /// A picture of named float channels, interleaved, rows from the top. Colours are linear (see `Rgb`).
 ///
 /// A layer is a group of channels in OpenEXR's naming: `color` is R, G, B; another layer NAME is NAME.R, NAME.G, NAME.B
-/// (colours), NAME.X, NAME.Y, NAME.Z (vectors), NAME.Z or NAME alone (one channel). Spectral channels (S0.550,5nm), of
-/// which pictures of spectral films have some, are a layer each.
+/// (colours), NAME.X, NAME.Y, NAME.Z (vectors), or NAME.Z or NAME alone (one channel). Each spectral channel
+/// (S0.550,5nm), which spectral films write, is a layer of its own.
 struct Image {
   int width = 0;
   int height = 0;
   std::vector<std::string> channels;
   std::vector<float> pixels;  ///< width * height * channels.size() values
-  ImageWindow window;         ///< full size 0: the picture is whole
+  ImageWindow window;         ///< full size 0: the picture is not cropped
 
   Image() = default;
   /// All pixels 0. `width`, `height` >= 0.
@@ -49,10 +49,10 @@ struct Image {
   std::optional<std::size_t> find_channel(std::string_view name) const;
 };
 
-/// The picture with the channels of another one of the same size after its own.
+/// Appends the channels of `layers` to those of `picture`. Both have the same size.
 Image with_layers(const Image& picture, const Image& layers);
 
-/// The channels of the layer `name` (see `Image`), in the order of the layer's components; nothing if the image has no
+/// The channels of the layer `name` (see `Image`), in the order of the layer's components; nullopt if the image has no
 /// such layer. A one-channel picture (Y or a single nameless channel) counts as the layer `color` with R = G = B.
 std::optional<Image> select_layer(const Image& image, std::string_view name);
 
@@ -60,10 +60,10 @@ std::optional<Image> select_layer(const Image& image, std::string_view name);
 /// Pacanowski & Wilkie 2021).
 bool is_spectral_channel(std::string_view channel);
 
-/// True for the channels that `with_noise` adds, which are the noise of others. Files store them as half floats.
+/// True for the channels that `with_noise` adds: the noise of other channels. Files store them as half floats.
 bool is_noise_channel(std::string_view channel);
 
-/// Names of the layers of an image, each once, in the order of its channels.
+/// Distinct names of the layers of an image, in the order of its channels.
 std::vector<std::string> layer_names(const Image& image);
 
 }  // namespace lanthorn

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Image files: multi-layer OpenEXR, PNG, JPEG and TIFF out; Radiance pictures and what OpenImageIO knows in.
+// Image files. Writes multi-layer OpenEXR, PNG, JPEG and TIFF; reads these, Radiance pictures, and all other formats of
+// OpenImageIO.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +19,7 @@ namespace lanthorn {
 enum class ToneCurve : std::uint8_t {
   none,    ///< clamp
   filmic,  ///< a film-like shoulder and toe (Narkowicz 2015, fit of the ACES curve)
-  agx,     ///< bright colours lose their saturation, as on film (Sobotka's AgX)
+  agx,     ///< bright colours desaturate, as on film (Sobotka's AgX)
 };
 
 /// A view of an OpenColorIO configuration.
@@ -33,28 +34,29 @@ struct DisplaySettings {
   float exposure = 0;  ///< stops: colours are scaled by 2^exposure
   ToneCurve curve = ToneCurve::none;
   std::optional<OcioView> ocio{};  ///< instead of the curve
-  bool display_emission = false;   ///< the layer `emission` is shown as it is, without exposure, curve and view
+  bool display_emission = false;   ///< show the layer `emission` unchanged: without exposure, curve and view
 };
 
-/// The layer `color` as a display wants it: R, G, B in [0,1], sRGB-encoded or as the OpenColorIO view has them. Throws
-/// Error if the picture has no such layer, or the view cannot be had.
+/// The layer `color` ready for a display: R, G, B in [0,1], encoded as sRGB or by the OpenColorIO view. Throws Error if
+/// the picture has no such layer or the view is not available.
 Image displayed(const Image& image, const DisplaySettings& display = {});
 
-/// The exposure in stops, a multiple of 0.1, at which the picture is neither dark nor bleached: white surfaces are
-/// white under the light that 10 % of the lit pixels exceed. That light is the sum of the layers direct, indirect and
-/// caustic divided by the albedo, as an incident light meter measures it: white and black things get the same exposure,
-/// and lamps and skies in the picture none. Where fewer than 1 % of the pixels show lit surfaces, or layers are
-/// missing, the 90 % quantile of the brightest components of colours that are not black becomes white. 0 for black
-/// pictures.
+/// Exposure in stops, a multiple of 0.1, at which the picture is neither too dark nor washed out: a white surface is
+/// displayed as white under the illumination that 10 % of the lit pixels exceed. Illumination is the sum of the layers
+/// direct, indirect and caustic divided by the albedo, as an incident light meter measures it: white and black objects
+/// get the same exposure, and visible lights and skies do not affect it. If less than 1 % of the pixels show lit
+/// surfaces or layers are missing, the 90 % quantile of the brightest component of all pixels that are not black
+/// becomes white. 0 for black pictures.
 float measured_exposure(const Image& image);
 
-/// An EXR file of all channels as 32-bit floats, those of noise as 16-bit floats (ZIP compression), `image.window` as
-/// data and display window. The channel depth.Z is called Z there, as other programs expect it, and is depth.Z again in
-/// `read_image`. `metadata`: text of a JSON object, or empty; each member becomes an attribute "lanthorn:NAME" (numbers
-/// and strings as such, all else as JSON text). Same input, same bytes.
+/// An EXR file of all channels as 32-bit floats, except noise channels as 16-bit floats (ZIP compression), with
+/// `image.window` as data and display window. The channel depth.Z is stored as Z, as other programs expect it, and is
+/// depth.Z again in `read_image`. `metadata`: text of a JSON object, or empty; each member becomes an attribute
+/// "lanthorn:NAME" (numbers and strings as such, all other types as JSON text). Equal input gives equal bytes.
 std::vector<unsigned char> encode_exr(const Image& image, const std::string& metadata = {});
 
-/// A PNG file of the layer `color` as 8-bit sRGB; metadata all as text. Throws Error if the picture has no such layer.
+/// A PNG file of the layer `color` as 8-bit sRGB; all metadata is stored as text. Throws Error if the picture has no
+/// such layer.
 std::vector<unsigned char> encode_png(const Image& image, const DisplaySettings& display = {},
                                       const std::string& metadata = {});
 
@@ -65,11 +67,11 @@ void write_exr(const std::filesystem::path& path, const Image& image, const std:
 void write_png(const std::filesystem::path& path, const Image& image, const DisplaySettings& display = {},
                const std::string& metadata = {});
 
-/// Extensions of the files that `write_image` writes: .exr, .png ...
+/// Extensions that `write_image` supports: .exr, .png, ...
 const std::vector<std::string>& picture_extensions();
 
-/// Writes EXR, PNG, JPEG (quality 95) or TIFF (16 bits, displayed as a PNG) by the extension of `path`; Error for
-/// others.
+/// Writes EXR, PNG, JPEG (quality 95) or TIFF (16 bits, display values as in a PNG), chosen by the extension of `path`.
+/// Throws Error for other extensions.
 void write_image(const std::filesystem::path& path, const Image& image, const DisplaySettings& display = {},
                  const std::string& metadata = {});
 
@@ -84,8 +86,7 @@ enum class ColorEncoding : std::uint8_t {
 Image read_image(const std::filesystem::path& path, ColorEncoding encoding = ColorEncoding::automatic,
                  std::uint64_t max_pixels = FileAccess::default_max_pixels);
 
-/// The attributes that `write_image` wrote ("lanthorn:NAME"), by name without prefix: text of a JSON
-/// object.
+/// The attributes that `write_image` wrote ("lanthorn:NAME"), by name without prefix, as the text of a JSON object.
 std::string read_image_metadata(const std::filesystem::path& path);
 
 }  // namespace lanthorn

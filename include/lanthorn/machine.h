@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The machine and this process's share of it.
+// The machine, and the resources that this process may use.
 #pragma once
 
 #include <cstdint>
@@ -10,18 +10,18 @@
 
 namespace lanthorn {
 
-/// A word and what belongs to it.
+/// A name and its value.
 struct NamedText {
   std::string name, text;
 };
 
-/// Cores of one kind, in processors that have several: fast ones and ones that save power.
+/// Cores of one kind, on processors that have several: performance cores and efficiency cores.
 struct CoreKind {
   std::string name;
   unsigned threads = 0;  ///< hardware threads
 };
 
-/// Empty texts and nullopt: unknown, or no limit.
+/// An empty text means unknown; nullopt means unknown or unlimited.
 struct MachineInfo {
   std::string processor;
   std::vector<std::string> instruction_sets;  ///< only those that affect speed, by the kernel's names
@@ -30,16 +30,16 @@ struct MachineInfo {
   unsigned hardware_threads = 0;
   std::vector<CoreKind> core_kinds;               ///< empty if all cores are alike
   unsigned allowed_threads = 0;                   ///< hardware threads that the process may run on (CPU affinity)
-  std::optional<double> cpu_quota;                ///< CPU seconds for each second that control groups grant
-  unsigned default_threads = 0;                   ///< threads of a render without --threads
+  std::optional<double> cpu_quota;                ///< CPU seconds per second that control groups grant
+  unsigned default_threads = 0;                   ///< number of render threads without --threads
   std::optional<std::uint64_t> memory;            ///< bytes, of the machine
   std::optional<std::uint64_t> memory_limit;      ///< bytes, of the control groups
   std::optional<std::uint64_t> memory_available;  ///< bytes that the process can still allocate
-  std::vector<std::string> gpus;                  ///< as far as drivers name them in /proc or /sys
+  std::vector<std::string> gpus;                  ///< those that drivers list in /proc or /sys
   std::vector<NamedText> libraries;               ///< versions
 };
 
-/// Looks at the machine and loads the module that reads images, for its version. Throws Error if it cannot be loaded.
+/// Inspects the machine. To report its version, loads the module that reads images; throws Error if that fails.
 MachineInfo machine_info();
 
 }  // namespace lanthorn

@@ -7,7 +7,8 @@
 
 namespace lanthorn {
 
-/// Functions on one grid of nodes over the unit square, interpolated bilinearly; the outermost nodes lie on its edges.
+/// Functions on a common grid of nodes over the unit square, interpolated bilinearly; the outermost nodes lie on the
+/// square's edges.
 struct NodeGrids {
   std::size_t width = 0, height = 0;  ///< nodes, at least 2
   std::vector<float> values;          ///< one grid after the other, row by row, x running fastest
@@ -30,7 +31,7 @@ struct MeasuredData {
   NodeGrids sigma;                 ///< projected area of the microsurface, by viewing direction; > 0
   NodeGrids vndf;                  ///< by incident direction: density over the square of normals, up to a factor
   NodeGrids luminance;             ///< by incident direction: density over the warped square, up to a factor
-  std::vector<float> wavelengths;  ///< nm, ascending; none: three channels, linear Rec.709
+  std::vector<float> wavelengths;  ///< nm, ascending; empty: three channels, linear Rec.709
   /// f cos(theta_o), times 4 sigma / ndf if `weighted`, over the warped square; by incident direction and, running
   /// faster, by wavelength or channel.
   NodeGrids reflectance;

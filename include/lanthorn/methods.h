@@ -24,19 +24,19 @@ struct MethodInfo {
 
 /// All methods, in the order of `lanthorn list`.
 std::vector<MethodInfo> methods();
-/// Throws Error, naming the known ones, if there is none of this name.
+/// Throws Error, naming the known methods, if none has this name.
 const MethodInfo& find_method(const std::string& name);
-/// Throws Error, which begins with `option`, if passes of this method depend on earlier ones, so that parts of a render
-/// cannot be rendered apart.
+/// Throws an Error that begins with `option` if passes of this method depend on earlier ones, so that a render cannot
+/// be split into ranges of passes.
 void require_independent_passes(const std::string& option, const std::string& method);
 
-/// The method of renders whose options name none.
+/// The method of renders whose options do not name one.
 struct DefaultMethod {
   std::string name;
-  std::string notice;  ///< for the user, if `auto` takes the place of the integrator that the file names; else empty
+  std::string notice;  ///< for the user, if `auto` replaces the integrator that the file names; else empty
 };
-/// `integrator`: the one that the scene's file names (`RenderHints::integrator`), or nothing. A method that only
-/// Lanthorn has is taken; everything else becomes `auto`.
+/// `integrator`: the method that the scene's file names (`RenderHints::integrator`), or empty. Methods that only
+/// Lanthorn has are used as named; all other names become `auto`.
 DefaultMethod default_method(const std::string& integrator);
 
 }  // namespace lanthorn

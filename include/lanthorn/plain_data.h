@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Plain data (dicts, lists, numbers, arrays) to structs, such as those of a scene description, and back.
+// Converts plain data (dicts, lists, numbers, arrays) to structs, such as those of a scene description, and back.
 //
 // A struct is a dict with one key per member. `Fields<T>` lists the members once; reading, writing, messages and the
-// check for unknown keys follow from it. A std::variant is a dict whose key "type" names the alternative.
+// check for unknown keys are derived from it. A std::variant is a dict whose key "type" names the alternative.
 #pragma once
 
 #include <array>
@@ -28,10 +28,10 @@ namespace lanthorn::plain {
 
 using description::Index;
 
-/// Reads one value and all that it contains. Knows where it is, for messages, and hashes what it has read.
+/// State of reading a value and everything in it: tracks the current path for messages, and hashes what it reads.
 class Reader {
  public:
-  /// What a name in the data stands for: an index into the vector `table` ("materials", ...).
+  /// For each table ("materials", ...): the index of each named entry in that vector.
   std::map<std::string, std::map<std::string, Index>> names;
   std::uint64_t hash = 0xcbf29ce484222325u;  ///< FNV-1a
 
@@ -40,7 +40,7 @@ class Reader {
       hash = (hash ^ static_cast<const unsigned char*>(bytes)[i]) * 0x100000001b3u;
   }
   void mix(std::string_view text) { mix(text.data(), text.size()); }
-  /// Calls `read` for a part of the value, whose place is `step` further: ".radius", "[2]".
+  /// Calls `read` for a part of the value; `step` extends the path: ".radius", "[2]".
   template <class Read>
   void at(const std::string& step, Read&& read) {
     const std::size_t before = path_.size();
@@ -63,7 +63,7 @@ struct Fields;
 template <class T>
 struct Convert;
 
-/// The number that a value is; none if it is none. True and False are none.
+/// The value as a number; nullopt for everything else, including True and False.
 std::optional<double> number_of(const Value& value);
 
 template <class T>
@@ -93,12 +93,12 @@ struct Member {
   const char* name;
   M T::*member;
 };
-/// A member of the struct's own name.
+/// A member whose key is `name`.
 template <class T, class M>
 constexpr Member<T, M> field(const char* name, M T::*member) {
   return {name, member};
 }
-/// An index into a vector of the description, or the name of what is there; or an array of such.
+/// An index into a vector of the description or the name of an entry of `table`; or a fixed-size array of these.
 template <class T, class M>
 struct Reference {
   const char* name;
@@ -197,9 +197,9 @@ struct Convert<E> {
   }
 };
 
-// Arrays of numbers, or nested lists of them.
+// Arrays of numbers, or nested lists of numbers.
 
-/// What an element of an array consists of.
+/// Type and count of the numbers in one element of an array.
 template <class T>
 struct Numbers;
 template <class T>
@@ -231,8 +231,8 @@ concept NumberElement = requires {
 
 using Shape = std::vector<std::size_t>;
 
-/// The shape of an array, or of nested lists of numbers (a number: no extents). Fails if `data` is neither, if rows
-/// have different lengths, and for fractions where whole numbers belong.
+/// The shape of an array or of nested lists of numbers; a single number has no extents. Fails if `data` is neither, if
+/// rows have different lengths, and for fractions where whole numbers are required.
 Shape shape_of(Reader& reader, const Value& data, bool is_integral, const std::string& expected);
 
 /// Copies the numbers of an array or of nested lists, whose shape is known, to `out`. Fails for numbers out of range.
@@ -287,7 +287,7 @@ NumberArray<T> number_array(Reader& reader, const Value& data, const std::string
   return array;
 }
 
-/// An array that keeps `values`.
+/// An array that owns `values`.
 template <class T>
 Array array_of(std::vector<T> values, Shape shape) {
   using Number = typename Numbers<T>::Scalar;
@@ -381,7 +381,7 @@ requires(!std::is_arithmetic_v<T>) struct Convert<std::array<T, n>> {
 
 using Keys = std::vector<std::string>;
 
-/// Reads the members of `out` that `data` has, and adds the keys that it may have to `known`.
+/// Reads those members of `out` that `data` has, and adds all valid keys to `known`.
 template <Struct T>
 void read_members(Reader& reader, const Dict& data, T& out, Keys& known);
 
@@ -393,7 +393,7 @@ std::string types_of(const std::variant<T...>*) {
   return all;
 }
 
-/// The alternative that "type" names. Without "type": the one that `out` has.
+/// Reads the alternative that "type" names; without "type", the alternative that `out` holds.
 template <class... T>
 void read_alternative(Reader& reader, const Dict& data, std::variant<T...>& out, Keys& known) {
   known.emplace_back("type");
@@ -412,10 +412,10 @@ void read_alternative(Reader& reader, const Dict& data, std::variant<T...>& out,
   std::visit([&](auto& alternative) { read_members(reader, data, alternative, known); }, out);
 }
 
-/// Fails if `data` is no dict.
+/// Fails if `data` is not a dict.
 const Dict& dict_of(Reader& reader, const Value& data);
 void refuse_other_keys(Reader& reader, const Dict& data, const Keys& known);
-/// An index, or the name of an entry of a table.
+/// Reads an index, or the name of an entry of a table.
 void read_reference(Reader& reader, const Value& data, const char* table, Index& out);
 
 template <class T, class M>
@@ -513,7 +513,7 @@ struct Convert<std::variant<T...>> {
   }
 };
 
-// Maps.
+// Transforms.
 
 /// A 4 x 4 matrix that multiplies column vectors.
 template <>

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Plain data as Python and JSON have it: numbers, text, lists, dicts, and arrays of numbers whose memory is elsewhere.
-// Scene descriptions are read from it and written to it (lanthorn/description_data.h).
+// Plain data as in Python and JSON: numbers, text, lists, dicts, and arrays of numbers whose memory others own. Scene
+// descriptions are read from it and written to it (lanthorn/description_data.h).
 #pragma once
 
 #include <cstddef>
@@ -17,7 +17,7 @@ namespace lanthorn::plain {
 
 enum class Scalar : std::uint8_t { int8, int16, int32, int64, uint8, uint16, uint32, uint64, float32, float64 };
 
-/// Calls `visit` with a null pointer to the C++ type of a scalar, and returns what it returns.
+/// Calls `visit` with a null pointer to the C++ type of a scalar, and returns its result.
 template <class Visit>
 decltype(auto) with_type(Scalar scalar, Visit&& visit) {
   switch (scalar) {
@@ -49,7 +49,7 @@ inline std::size_t bytes_of(Scalar scalar) {
   return with_type(scalar, [](const auto* type) { return sizeof(*type); });
 }
 
-/// Numbers in memory that `owner` keeps, the last index running fastest; the address need not be aligned.
+/// Numbers in memory that `owner` keeps alive, the last index running fastest; the address need not be aligned.
 struct Array {
   Scalar type = Scalar::float32;
   std::vector<std::size_t> shape{};
@@ -63,7 +63,7 @@ struct Array {
   }
 };
 
-/// A value that has no counterpart here, as messages show it.
+/// A value without counterpart in plain data; keeps only its text for messages.
 struct Other {
   std::string shown;
 };
@@ -71,7 +71,7 @@ struct Other {
 struct Value;
 using List = std::vector<Value>;
 
-/// Values by name, in the order in which they were added.
+/// Named values in insertion order.
 class Dict {
  public:
   using Entry = std::pair<std::string, Value>;
@@ -96,7 +96,7 @@ struct Value
   }
 };
 
-/// As Python would print it, in short: 'text', 1.5, None, [1, 2], {...}.
+/// Abbreviated Python representation: 'text', 1.5, None, [1, 2], {...}.
 std::string shown(const Value& value);
 
 }  // namespace lanthorn::plain

@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Methods that draw by OpenGL.
+// Registers the methods that draw with OpenGL.
 #pragma once
 
 namespace lanthorn {
 
-/// Adds to `methods` the techniques of the viewer that render by frames (`ispm` and `voxelcones`), if the library was
-/// built with them (LANTHORN_BUILD_VIEWER). Call it once,
-/// before any render: not thread-safe. Needs no OpenGL itself.
+/// Adds to `methods` those of the viewer's techniques that render frame by frame (`ispm` and `voxelcones`), if the
+/// library was built with LANTHORN_BUILD_VIEWER. Does not use OpenGL itself. Not thread-safe: call it once, before any
+/// render.
 void add_realtime_methods();
 
 }  // namespace lanthorn

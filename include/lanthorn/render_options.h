@@ -23,23 +23,23 @@ struct PassRange {
 struct ViewOptions {
   std::optional<std::array<int, 2>> resolution{};  ///< width, height of the full film, pixels
   std::optional<std::array<int, 4>> crop{};        ///< x0, y0, x1, y1, pixels; end exclusive
-  /// Limit of what a path adds to a pixel, emission that is seen directly left out. Loses energy. Default: none.
+  /// Clamps each path's contribution to a pixel, except for directly visible lights; biased. Default: no clamping.
   std::optional<float> clamp{};
 };
 
-/// What the user asks for. Empty members come from the scene file or have a default.
+/// The user's options. Empty members come from the scene file or have a default.
 struct RenderOptions : ViewOptions {
   std::optional<std::string> integrator{};  ///< name of a method
   std::optional<std::uint64_t> passes{};
-  std::optional<double> seconds{};  ///< stop after the pass in which this time is over
-  /// Stop when the picture's error is below this (ErrorEstimate::bound), in (0, 1].
+  std::optional<double> seconds{};  ///< stop after the pass in which this time elapses
+  /// Stop when the picture's error is below this bound (ErrorEstimate::bound), in (0, 1].
   std::optional<double> noise{};
   std::optional<PassRange> pass_range{};  ///< for shards; excludes `passes`
   std::optional<std::uint64_t> seed{};
   std::optional<ColorMode> color{};
   std::optional<std::uint64_t> photons{};    ///< light paths per pass
   std::optional<int> max_depth{};            ///< scattering events of a whole path, from light to eye
-  std::optional<std::uint64_t> memory{};     ///< bytes for film, photons and pixels together; else what the machine has
+  std::optional<std::uint64_t> memory{};     ///< bytes for film, photons and pixels; default: all available
   std::map<std::string, std::string> set{};  ///< the method's parameters
 };
 

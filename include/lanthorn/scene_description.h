@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// A scene as plain data, made by a reader (pbrt, glTF, OBJ) or by a program, and turned into a Scene by `build_scene`.
-// No behaviour, no pointers: parts refer to each other by index. Every part that can be wrong stores its location in
-// the file.
+// A scene as plain data, made by a reader (pbrt, glTF, OBJ) or by a program; `build_scene` turns it into a Scene. It
+// has no behaviour and no pointers: parts refer to each other by index. Every part that can be invalid stores its
+// location in the file.
 #pragma once
 
 #include <array>
@@ -57,16 +57,16 @@ struct SpectrumParameter {
   std::optional<Index> texture;  ///< into SceneDescription::spectrum_textures
 };
 
-// Textures. `FloatParameter`s and `SpectrumParameter`s inside them refer to textures defined before.
+// Textures. `FloatParameter`s and `SpectrumParameter`s inside them may refer only to earlier textures.
 
-// Texture mappings: texture coordinates of a surface point. Transforms map world to texture space.
+// Texture mappings from a surface point to texture coordinates. Transforms map world to texture space.
 
 /// (s, t) = linear * (u, v) + offset.
 struct UvMapping {
   Mat2 linear{1.0f};
   Vec2 offset{0, 0};
 };
-/// (s, t) = (theta / pi, phi / 2 pi) of the direction from the origin, theta from +z.
+/// (s, t) = (theta / pi, phi / 2 pi) of the direction from the origin, with theta measured from +z.
 struct SphericalTextureMapping {
   Transform world_to_texture;
 };
@@ -82,13 +82,13 @@ struct PlanarTextureMapping {
 };
 using TextureMapping =
     std::variant<UvMapping, SphericalTextureMapping, CylindricalTextureMapping, PlanarTextureMapping>;
-/// Mapping of solid textures.
+/// Maps points to texture space for solid textures.
 struct SolidMapping {
   Transform world_to_texture;
 };
 
-// Texture nodes. Their inputs are `Parameter`s here and compiled inputs in the texture graph. `Factor` replaces a
-// float.
+// Texture nodes. Their inputs are `Parameter`s here and compiled inputs in the texture graph. `Factor` is the type of
+// an input that is a float in most textures.
 
 enum class Wrap : std::uint8_t { repeat, mirror, black, clamp, octahedral_sphere };
 enum class Encoding : std::uint8_t { automatic, srgb, linear, gamma };
@@ -102,19 +102,19 @@ struct ImageTexture {
   std::string filename;           ///< absolute, or relative to the working folder
   std::optional<Index> embedded;  ///< into SceneDescription::embedded_images, instead of `filename`
   TextureMapping mapping;
-  Wrap wrap = Wrap::repeat;    ///< along both axes, or along s if `wrap_t` is given
-  std::optional<Wrap> wrap_t;  ///< along t; neither may be octahedral_sphere then
+  Wrap wrap = Wrap::repeat;    ///< along both axes, or along s only if `wrap_t` is given
+  std::optional<Wrap> wrap_t;  ///< along t; then neither may be octahedral_sphere
   ImageFilter filter = ImageFilter::bilinear;
   Encoding encoding = Encoding::automatic;  ///< automatic: sRGB for 8-bit and PNG files, linear otherwise
   float gamma = 1;                          ///< for Encoding::gamma
   float scale = 1;
-  Rgb tint{1, 1, 1};  ///< further factor of spectrum textures, linear sRGB
+  Rgb tint{1, 1, 1};  ///< additional factor of spectrum textures, linear sRGB
   bool invert = false;
   ColorSpace space = ColorSpace::srgb;
-  /// Channel that a float texture reads (0 is red; a grey image has its value in 0 to 2; a missing alpha is 1). None:
-  /// see TextureImage::scalar.
+  /// Channel that a float texture reads (0 is red; a grey image has its value in 0 to 2; a missing alpha is 1).
+  /// nullopt: see TextureImage::scalar.
   std::optional<int> channel;
-  std::optional<float> threshold;  ///< for float textures: the result is 1 from this value on and 0 below
+  std::optional<float> threshold;  ///< for float textures: results from this value on become 1, smaller ones 0
 };
 /// tex1 where the sum of the floors of the coordinates is even, else tex2; "dimension" 3 has a SolidMapping.
 template <class Parameter>
@@ -132,7 +132,7 @@ struct MixTexture {
   Parameter tex1, tex2;
   Factor amount;  ///< weight of tex2
 };
-/// The colours of a mesh's vertices, interpolated; as a float their alpha. 1 on surfaces that have none.
+/// The interpolated colours of a mesh's vertices; a float texture reads their alpha. 1 on surfaces without colours.
 struct VertexColorTexture {};
 template <class Parameter>
 struct ConstantTexture {
@@ -157,7 +157,7 @@ struct DotsTexture {
   TextureMapping mapping;
   Parameter inside, outside;
 };
-/// Octave i of a sum of noise has 1.99^i times the frequency and roughness^i times the amplitude of the first.
+/// Octave i of a noise sum has 1.99^i times the frequency and roughness^i times the amplitude of the first.
 struct Octaves {
   int count = 8;
   float roughness = 0.5f;
@@ -179,7 +179,7 @@ struct MarbleTexture {
   float scale = 1;
   float variation = 0.2f;
 };
-/// Use of a spectrum: reflectances and lights are upsampled from RGB differently.
+/// Use of a spectrum, which decides how RGB is upsampled.
 enum class SpectrumRole : std::uint8_t { albedo, unbounded, illuminant };
 struct FloatTexture {
   std::variant<ConstantTexture<FloatParameter>, ImageTexture, Checkerboard<FloatParameter>,
@@ -198,7 +198,7 @@ struct SpectrumTexture {
   SourceLocation location;
 };
 
-// Materials. Default parameters are pbrt-v4's. `kind` is what pbrt-v4 calls a material, if it has it.
+// Materials. Default parameters are pbrt-v4's. `kind` is the name in pbrt-v4 if the material exists there.
 
 struct Roughness {
   FloatParameter u, v;  ///< user roughness in [0,1] or GGX alpha
@@ -215,7 +215,7 @@ struct DiffuseTransmissionMaterial {
   SpectrumParameter reflectance{0.25f, {}}, transmittance{0.25f, {}};
   float scale = 1;
 };
-/// Either (eta, k) or a reflectance.
+/// Given by either (eta, k) or a reflectance.
 struct ConductorMaterial {
   static constexpr const char* kind = "conductor";
 
@@ -223,9 +223,9 @@ struct ConductorMaterial {
   SpectrumParameter eta{NamedSpectrum{"metal-Cu-eta"}, {}}, k{NamedSpectrum{"metal-Cu-k"}, {}};
   Roughness roughness;
 };
-/// A transparent layer on a surface, about as thick as a wavelength, whose reflection is coloured by interference.
+/// A transparent layer about as thick as a wavelength, whose interference colours the reflection.
 struct ThinFilm {
-  FloatParameter thickness{400, {}};  ///< nm; 0: there is none
+  FloatParameter thickness{400, {}};  ///< nm; 0: no film
   float eta = 1.3f;                   ///< index of refraction, at least 1
 };
 struct DielectricMaterial {
@@ -233,7 +233,7 @@ struct DielectricMaterial {
 
   SpectrumValue eta = 1.5f;
   Roughness roughness;
-  SpectrumParameter tint{1.0f, {}};  ///< factor of light that enters and leaves: its square root at each interface
+  SpectrumParameter tint{1.0f, {}};  ///< transmission factor for entering plus leaving; its square root per interface
   std::optional<ThinFilm> film{};    ///< on the outside
 };
 struct ThinDielectricMaterial {
@@ -241,7 +241,7 @@ struct ThinDielectricMaterial {
 
   SpectrumValue eta = 1.5f;
   Roughness roughness{};
-  SpectrumParameter tint{1.0f, {}};  ///< factor of light that passes the sheet
+  SpectrumParameter tint{1.0f, {}};  ///< factor of light that passes through the sheet
   std::optional<ThinFilm> film{};    ///< on both faces
 };
 struct Coat {
@@ -267,8 +267,8 @@ struct CoatedConductorMaterial {
   Roughness conductor_roughness;
   Coat coat;
 };
-/// Absorption per radius of the hair: `sigma_a` if given, else the absorption for this `color`, else melanin (1.3 of
-/// eumelanin if nothing is given).
+/// Absorption coefficient for a hair of radius 1: `sigma_a` if given, else the one that yields `color`, else from
+/// melanin (default: 1.3 of eumelanin).
 struct HairMaterial {
   static constexpr const char* kind = "hair";
 
@@ -285,15 +285,15 @@ struct PlasticMaterial {
   Roughness roughness;  ///< the same along u and v
   SpectrumValue eta = 1.5f;
   FloatParameter specular{1, {}};              ///< factor of the reflection at every angle, in [0,1]
-  SpectrumParameter specular_color{1.0f, {}};  ///< factor of the reflection at normal incidence alone
+  SpectrumParameter specular_color{1.0f, {}};  ///< factor of the reflection at normal incidence only
   SpectrumParameter sheen_color{0.0f, {}};     ///< of fibres on the surface (glTF's sheen; see surface/cloth.h)
-  FloatParameter sheen_roughness{0, {}};       ///< the root of their width
-  std::optional<ThinFilm> film{};              ///< on a surface with the reflectance at normal incidence given above
+  FloatParameter sheen_roughness{0, {}};       ///< square root of the sheen lobe's width
+  std::optional<ThinFilm> film{};              ///< on the surface whose reflectance at normal incidence is given above
 };
 struct CoatedPlasticMaterial {
   static constexpr const char* kind = "coatedplastic";
 
-  PlasticMaterial base;  ///< which reflects under the coat as it does in air; without sheen
+  PlasticMaterial base;  ///< reflects under the coat as it does in air; without sheen
   Coat coat;
 };
 struct MeasuredMaterial {
@@ -313,7 +313,7 @@ struct InterfaceMaterial {
   static constexpr const char* kind = "interface";
 };
 /// Shading normals from an image: r, g, b are (x + 1) / 2 of the normal's coordinates along dp/du, dp/dv and the smooth
-/// normal. Encoding should be linear.
+/// normal. The image should be encoded linearly.
 struct NormalMap {
   ImageTexture image;
   float strength = 1;  ///< multiplies x and y
@@ -323,10 +323,10 @@ struct Material {
                ThinDielectricMaterial, CoatedDiffuseMaterial, CoatedConductorMaterial, HairMaterial, PlasticMaterial,
                CoatedPlasticMaterial, MeasuredMaterial, MixMaterial, InterfaceMaterial>
       node;
-  std::optional<NormalMap> normal_map;  ///< with `displacement`: if its image has colours of normals; not of a mix
+  std::optional<NormalMap> normal_map;         ///< beside `displacement` only if it looks like normals; never of a mix
   std::optional<FloatParameter> displacement;  ///< metres along the normal; affects shading normals only
-  std::optional<Index> interior;  ///< medium inside shapes of this material, overriding theirs (subsurface scattering)
-  std::string name;               ///< empty if anonymous
+  std::optional<Index> interior;               ///< medium inside shapes (subsurface scattering); overrides the shape's
+  std::string name;                            ///< empty if anonymous
   SourceLocation location;
 };
 
@@ -354,9 +354,9 @@ struct TemperatureGrid {
 struct GridDensity {
   ScalarGrid density;
   std::optional<MediumGrid<float>> emission_factor;
-  std::optional<TemperatureGrid> temperature;  ///< replaces the medium's emission spectrum
+  std::optional<TemperatureGrid> temperature;  ///< if given, replaces the medium's emission spectrum
 };
-/// A procedural cloud from noise.
+/// A procedural cloud made of noise.
 struct CloudDensity {
   Point low{0}, high{1};
   float density = 1, wispiness = 1, frequency = 5;
@@ -370,7 +370,7 @@ struct Medium {
   SpectrumValue sigma_a = 0.0f, sigma_s = 0.0f;
   float scale = 1;
   float g = 0;                            ///< mean cosine of scattering (Henyey & Greenstein)
-  std::optional<SpectrumValue> emission;  ///< spectrum of a light
+  std::optional<SpectrumValue> emission;  ///< volumetric emission as the spectrum of a light; nullopt: none
   float emission_scale = 1;
   std::variant<HomogeneousDensity, GridDensity, CloudDensity, RgbGridDensity> density;
   std::string name;
@@ -409,21 +409,21 @@ struct Cylinder {
   float radius = 1, z_min = -1, z_max = 1;
   float phi_max = 360;  ///< degrees
 };
-/// Flat: faces every ray. Cylinder: a tube. Ribbon: oriented by its given normals.
+/// Flat curves face every ray. Cylinders are tubes. Ribbons are oriented by given normals.
 enum class CurveKind : std::uint8_t { flat, cylinder, ribbon };
 /// Cubic Bézier segments of varying width.
 struct Curves {
   CurveKind kind = CurveKind::flat;
-  std::vector<glm::vec4> points;        ///< control points; w: half the width there, metres, not negative
-  std::vector<Normal> normals;          ///< of ribbons: one per control point, interpolated by the same Bézier basis
+  std::vector<glm::vec4> points;        ///< control points; w: half the width there, metres, >= 0
+  std::vector<Normal> normals;          ///< for ribbons: one per control point, interpolated by the same Bézier basis
   std::vector<std::uint32_t> segments;  ///< each the index of the first of its four control points
-  std::uint32_t pieces = 1;             ///< this many consecutive segments share one range of u
+  std::uint32_t pieces = 1;             ///< number of consecutive segments that share one range of u
 };
 /// Diffuse emission of a shape's surface.
 struct AreaLight {
   SpectrumParameter radiance{1.0f, {}};
   float scale = 1;
-  std::optional<float> power;  ///< watts; rescales the emission to this emitted power
+  std::optional<float> power;  ///< watts; rescales the emission to this total power
   bool two_sided = false;
   SourceLocation location;
 };
@@ -433,20 +433,20 @@ struct MeshDisplacement {
   FloatParameter height;
   float edge_length = 1;
 };
-/// Clear glass that rays pass straight, shadow rays too: an approximation of windows (see `replace_window_glass`).
+/// Clear glass that all rays, including shadow rays, pass straight: approximates windows (see `replace_window_glass`).
 struct Pane {
   float eta = 1.5f;
-  bool thin = true;  ///< the shape is the whole pane; otherwise one or both of its faces
+  bool thin = true;  ///< the shape is the whole pane; otherwise it is one or both of the pane's faces
 };
 struct Shape {
   std::variant<TriangleMesh, BilinearMesh, Sphere, Disk, Cylinder, Curves> geometry;
-  AnimatedTransform object_to_world;  ///< for a shape of an object: to the object's space
+  AnimatedTransform object_to_world;  ///< shapes of an object: to the object's space
   bool reverse_orientation = false;
   Index material = 0;
   std::optional<Index> area_light;
-  bool shares_power = false;  ///< the area light's power is that of the whole shape, not of each of its primitives
+  bool shares_power = false;  ///< the area light's power applies to the whole shape, not to each of its primitives
   FloatParameter alpha{1, {}};
-  std::optional<Pane> pane{};  ///< rays meet the shape with the probability of reflection only; `material` is a mirror
+  std::optional<Pane> pane{};  ///< rays hit the shape only with the probability of reflection; `material` is a mirror
   std::optional<MeshDisplacement> displacement;        ///< of meshes
   std::optional<Index> inside_medium, outside_medium;  ///< into SceneDescription::media; none: vacuum
   SourceLocation location;
@@ -462,7 +462,7 @@ struct Instance {
   SourceLocation location;
 };
 
-// Lights without surface.
+// Lights without a surface.
 
 /// Emission strength, as in pbrt-v4: every spectrum is scaled to luminance 1 (RGB: (1,1,1) has luminance 1), then
 /// multiplied by `scale`. `power` or `illuminance`, if given, then determine the magnitude.
@@ -470,7 +470,7 @@ struct Emission {
   SpectrumValue spectrum = 1.0f;
   float scale = 1;
 };
-/// What users are told of a kind of light.
+/// How a kind of light is presented to users.
 struct LightKind {
   const char* label;
   bool has_place;  ///< at `from`, or else at the origin, of the light's space
@@ -482,8 +482,8 @@ struct PointLight {
   Point from{0};
   std::optional<float> power;
 };
-/// Decline of a spot light between its cones, as a function of the cosine's fraction x of the way from the outer to the
-/// inner one: pbrt's smoothstep 3x^2 - 2x^3, or glTF's x^2.
+/// Falloff of a spot light between its cones. x in [0,1] is the fraction of the cosine's way from the outer to the
+/// inner cone: pbrt's smoothstep 3x^2 - 2x^3, or glTF's x^2.
 enum class SpotFalloff : std::uint8_t { smoothstep, square };
 struct SpotLight {
   static constexpr LightKind kind{.label = "Spot light", .has_place = true};
@@ -515,15 +515,15 @@ struct InfiniteLight {
 
   Emission radiance;
   std::optional<std::string> image;
-  /// An image that is no file, in linear sRGB; instead of `image`. Shared by copies of the scene.
+  /// An image in memory, in linear sRGB, used instead of `image`. Shared by copies of the scene.
   std::shared_ptr<const SphericalTexels> texels;
   ColorSpace image_space = ColorSpace::srgb;
   std::optional<float> illuminance;
-  /// Corners of a rectangle, in order around it, in world space whatever the light's transformation. Light passes only
+  /// Corners of a rectangle, in order around it, in world space regardless of the light's transform. Light passes only
   /// through it, in the direction opposite to (p3 - p0) x (p1 - p0).
   std::optional<std::array<Point, 4>> portal;
 };
-/// A point light whose intensity is multiplied by an image: the layouts of an infinite light, but grey.
+/// A point light whose intensity is multiplied by a grey image in one of the layouts of an infinite light.
 struct GoniometricLight {
   static constexpr LightKind kind{.label = "Goniometric light", .has_place = true};
 
@@ -531,7 +531,7 @@ struct GoniometricLight {
   std::string image;
   std::optional<float> power;
 };
-/// A point that projects an image along z, x to the right and y up.
+/// A point light that projects an image along z, with x to the right and y up.
 struct ProjectionLight {
   static constexpr LightKind kind{.label = "Projector", .has_place = true};
 
@@ -563,14 +563,14 @@ enum class SphericalMapping : std::uint8_t { equirectangular, equal_area };
 struct SphericalCamera {
   SphericalMapping mapping = SphericalMapping::equal_area;
 };
-/// A spherical surface of a lens; an aperture stop if the radius is 0.
+/// A spherical surface of a lens, or an aperture stop if the radius is 0.
 struct LensElement {
-  float curvature_radius = 0;  ///< metres; above 0: convex as seen from the scene
+  float curvature_radius = 0;  ///< metres; > 0: convex as seen from the scene
   float thickness = 0;         ///< metres along the axis to the next element (the last element's is adjusted for focus)
   float eta = 1;               ///< index of refraction behind the element, on the film's side
   float aperture_diameter = 0;  ///< metres
 };
-/// A lens system in front of a film in the plane z = 0 of camera space.
+/// A lens system in front of a film, which lies in the plane z = 0 of camera space.
 struct RealisticCamera {
   std::vector<LensElement> elements;  ///< from the scene to the film
   float focus_distance = 10;          ///< metres from the film
@@ -582,8 +582,8 @@ struct Camera {
   float shutter_open = 0, shutter_close = 1;
   std::optional<float> frame_aspect_ratio;
   std::optional<std::array<float, 4>> screen_window;  ///< x0, x1, y0, y1
-  /// A box in camera space that a perspective camera frames: it moves, without turning, before the middle of the box
-  /// and back until the picture shows all of it, whatever its aspect ratio.
+  /// A box in camera space to be framed by a perspective camera: without turning, the camera moves in front of the
+  /// box's centre, then backwards until the whole box is visible, whatever the picture's aspect ratio.
   std::optional<Bounds> subject;
   std::optional<Index> medium;  ///< medium around the camera; none: vacuum
   SourceLocation location;
@@ -600,21 +600,20 @@ struct Film {
   int width = 1280, height = 720;
   std::array<float, 4> crop{0, 1, 0, 1};  ///< x0, x1, y0, y1 as fractions
   std::string filename;                   ///< output file name in the scene file, may be empty
-  bool measures_exposure = false;         ///< the scene file cannot say an exposure: pictures for a screen need one
-  bool display_emission =
-      false;                ///< surfaces seen to emit have colours for a screen, whatever the exposure (unlit ones)
-  float imaging_ratio = 1;  ///< factor of radiance to pixel value (pbrt's iso * exposure / 100 ... = 1 by default)
+  bool measures_exposure = false;         ///< the scene file format has no exposure: measure one for display
+  bool display_emission = false;          ///< visible emitters (unlit surfaces) have display colours, without exposure
+  float imaging_ratio = 1;  ///< factor from radiance to pixel value (pbrt's iso * exposure / 100 ... = 1 by default)
   std::optional<float> white_balance;         ///< colour temperature in kelvin that becomes white
-  std::optional<float> largest_component;     ///< limit to which samples are scaled down, in CIE XYZ
+  std::optional<float> largest_component;     ///< samples are scaled down so that no CIE XYZ component exceeds this
   std::optional<SpectralBuckets> buckets;     ///< spectral buckets, stored beside the colours
   float diagonal = 0.035f;                    ///< metres; diagonal of a realistic camera's film
-  ColorSpace color_space = ColorSpace::srgb;  ///< whose white `white_balance` leads to
+  ColorSpace color_space = ColorSpace::srgb;  ///< `white_balance` adapts to its white point
 };
 
 /// The scene file's own Integrator and Sampler settings; options override them.
 struct RenderHints {
-  std::string integrator;  ///< pbrt's name, e.g. "sppm", or that of a method of Lanthorn; empty if none
-  std::map<std::string, std::string> parameters;  ///< of the method that stands for it, as in `RenderOptions::set`
+  std::string integrator;  ///< pbrt's name, e.g. "sppm", or the name of one of Lanthorn's methods; empty if none
+  std::map<std::string, std::string> parameters;  ///< of the method that replaces it, as in `RenderOptions::set`
   std::optional<int> max_depth;                   ///< pbrt's maxdepth: scattering events per path
   std::optional<int> photons_per_iteration;
   std::optional<int> pixel_samples;  ///< from Sampler
@@ -625,7 +624,7 @@ struct RenderHints {
 /// A file that the scene refers to: an included file, a mesh, an image, a spectrum.
 struct File {
   std::filesystem::path path;
-  std::optional<std::uint64_t> hash;  ///< hash of its bytes; none if it could not be read
+  std::optional<std::uint64_t> hash;  ///< hash of its bytes; nullopt if it could not be read
   SourceLocation location;            ///< where the scene names it first, if known
 };
 
@@ -639,7 +638,7 @@ struct Warning {
 
 namespace lanthorn {
 
-/// Who looks at a scene, and how the picture is taken.
+/// The camera, and how the picture is taken.
 struct ViewDescription {
   description::Camera camera;
   description::Film film;
@@ -648,15 +647,15 @@ struct ViewDescription {
 
 enum class UpAxis : std::uint8_t { y, z };
 
-/// An environment in place of a scene's own.
+/// An environment that replaces the scene's own.
 struct EnvironmentChoice {
-  /// One of `environment_names`, or an image file in any layout that `read_environment` (ibl.h) reads, wherever it
-  /// lies. Empty: the scene's own.
+  /// One of `environment_names`, or the path of an image file in any layout that `read_environment` (ibl.h) supports,
+  /// in any folder. Empty: the scene's own environment.
   std::string source{};
-  float rotation = 0;  ///< degrees around the axis upwards, counter-clockwise as seen from above
+  float rotation = 0;  ///< degrees around the up axis, counter-clockwise as seen from above
   float scale = 1;     ///< factor of radiance
-  /// None: +y. Of pbrt files, whose worlds have no direction upwards, +y or +z, whichever is nearer to the camera's;
-  /// a warning says which.
+  /// nullopt: +y; for pbrt files, whose worlds have no up direction, +y or +z, whichever is nearer to the camera's up
+  /// vector (a warning says which).
   std::optional<UpAxis> up{};
   friend bool operator==(const EnvironmentChoice&, const EnvironmentChoice&) = default;
 };
@@ -671,7 +670,7 @@ struct SceneDescription {
   std::vector<description::EmbeddedImage> embedded_images;
   std::vector<description::FloatTexture> float_textures;
   std::vector<description::SpectrumTexture> spectrum_textures;
-  std::vector<std::shared_ptr<const MeasuredData>> measured_brdfs;  ///< none null; shared by copies of the scene
+  std::vector<std::shared_ptr<const MeasuredData>> measured_brdfs;  ///< none is null; shared by copies of the scene
   std::vector<description::Material> materials;                     ///< [0] is the default material
   std::vector<description::Medium> media;
   std::vector<description::AreaLight> area_lights;
@@ -679,11 +678,11 @@ struct SceneDescription {
   std::vector<description::Object> objects;
   std::vector<description::Instance> instances;
   std::vector<description::Light> lights;
-  EnvironmentChoice environment;               ///< what `replace_environment` put in the place of the scene's own
-  std::vector<description::Light> own_lights;  ///< `lights` as they were before it did; else empty
+  EnvironmentChoice environment;               ///< the choice that `replace_environment` applied
+  std::vector<description::Light> own_lights;  ///< `lights` before `replace_environment`; else empty
   std::vector<description::Warning> warnings;
-  ColorSpace color_space = ColorSpace::srgb;  ///< of the film; its white is that of lights given as numbers
-  /// Where the origin of all coordinates here lies in the coordinates of the file, metres: see `move_origin`.
+  ColorSpace color_space = ColorSpace::srgb;  ///< of the film; its white point is the colour of lights given as numbers
+  /// Position of this description's origin in the coordinates of the file, metres: see `move_origin`.
   DVec3 origin{0.0};
 };
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// A render under way.
+// Renders a scene pass by pass.
 #pragma once
 
 #include <array>
@@ -22,108 +22,108 @@ namespace lanthorn {
 
 struct Team;
 
-/// What is kept so that running passes can be given up.
+/// Backup that allows abandoning running passes.
 enum class Undo : std::uint8_t {
-  /// A copy of the film if the passes take at least a second and 50 times as long as the copy, and if a quarter of the
-  /// free memory holds it.
+  /// A copy of the film, if the passes take at least a second and 50 times as long as the copy, and if the copy fits
+  /// into a quarter of the free memory.
   if_cheap,
   always,  ///< a copy of the film
-  never,   ///< nothing: giving up a pass gives up the render
+  never,   ///< no backup: abandoning a pass abandons the render
 };
 
-/// When to stop; whatever comes first. The flags may be set at any time, by any thread or signal handler.
+/// When to stop: at whichever limit is reached first. Any thread or signal handler may set the flags at any time.
 struct StopRule {
-  PassRange passes{0, 1};           ///< passes to have done; end may be "never" (the largest number)
-  std::optional<double> seconds{};  ///< of this call, wall clock
-  /// Bound of the picture's error (`ErrorEstimate::is_below`). Looked at after numbers of passes that are fixed in
-  /// advance, so that the picture does not depend on the machine's speed.
+  PassRange passes{0, 1};           ///< passes to complete; end may be "never" (the largest number)
+  std::optional<double> seconds{};  ///< wall-clock time of this call
+  /// Bound of the picture's error (`ErrorEstimate::is_below`). Checked only at predetermined numbers of passes, so that
+  /// the picture does not depend on the machine's speed.
   std::optional<double> noise{};
-  /// After the running passes; one pass is always rendered.
+  /// Stops after the running passes; at least one pass is rendered.
   const std::atomic<bool>* interrupted = nullptr;
-  /// At once: the running passes are given up and leave no trace if `undo` allows it, and are finished otherwise.
+  /// Stops immediately: the running passes are abandoned without a trace if `undo` allows it, and completed otherwise.
   const std::atomic<bool>* drop = nullptr;
   Undo undo = Undo::if_cheap;
-  /// Processes that share the passes (lanthorn/team.h). Those of other ranks than 0 obey that rank's rule. Until the
-  /// render ends, `Session::picture` has the passes of this process alone.
+  /// Processes that share the passes (lanthorn/team.h). Ranks other than 0 follow the rule of rank 0. Until the render
+  /// ends, `Session::picture` has only the passes of this process.
   Team* team = nullptr;
 };
 
-/// How far a call of `Session::render` has come.
+/// Progress of a call of `Session::render`.
 struct RenderProgress {
-  double fraction = 0;                         ///< of the work, by whatever of the stop rule comes first
-  std::optional<double> seconds_left{};        ///< 0 at the end; none: not known yet, or nothing ends the render
-  std::optional<std::uint64_t> passes_left{};  ///< none: as many as the time or the bound of the error asks for
+  double fraction = 0;                         ///< of the work, in [0,1], by the limit of the stop rule that is nearest
+  std::optional<double> seconds_left{};        ///< 0 at the end; nullopt: not yet known, or nothing ends the render
+  std::optional<std::uint64_t> passes_left{};  ///< nullopt: as many as the time or the error bound requires
 };
-/// `state` and `statistics`: as an observer's `progress` has them.
+/// `state` and `statistics` are the arguments of an observer's `progress`.
 RenderProgress progress_of(const StopRule& stop, const RenderState& state, const RenderStatistics& statistics);
 
-/// What the pass loop reports. All are called on the thread that renders, between passes, or between batches of passes
-/// that are rendered at once. Of a team, rank 0 reports; its states have the passes whose sums have been gathered.
+/// Callbacks of the pass loop. All are called on the rendering thread, between passes or between batches of concurrent
+/// passes. In a team, rank 0 calls them; its states have the passes whose sums have been gathered.
 struct Observer {
-  /// Before the preparation and before every pass: whether `StopRule::drop` will stop it.
+  /// Before the preparation and before every pass: whether `StopRule::drop` will be able to stop it.
   std::function<void(bool)> can_drop = [](bool) {};
-  /// After the preparation, if the method has found something that the user should know.
+  /// After the preparation, with a message for the user about what the method measured and chose, if anything.
   std::function<void(const std::string&)> remark = [](const auto&) {};
-  /// After the preparation. The settings of the state have what it found (`StateSummary::settings`).
+  /// After the preparation. The state's settings contain its results (`StateSummary::settings`).
   std::function<void(const RenderState&)> prepared = [](const auto&) {};
   /// After every pass.
   std::function<void(const RenderState&, const RenderStatistics&)> progress = [](const auto&, const auto&) {};
-  /// After every pass, with the seconds since the last checkpoint. Returns true if it made one.
+  /// After every pass, with the seconds since the last checkpoint. Returns true if it wrote one.
   std::function<bool(const RenderState&, double)> checkpoint = [](const auto&, double) { return false; };
 };
 
 /// Checks camera, film and crop window without a scene. Throws Error.
 void check_view(const ViewDescription& view, const ViewOptions& options = {});
-/// Width and height of the full film in pixels. A resolution whose height is 0 has that of the scene's shape. Throws
-/// Error as `check_view` does.
-std::array<int, 2> film_size(const ViewDescription& view, const ViewOptions& options = {});
-/// Camera to world when the shutter opens, of a camera that frames a subject (`description::Camera::subject`) too.
+/// Width and height of the full film in pixels. If the requested height is 0, it follows from the scene's aspect ratio.
 /// Throws Error as `check_view` does.
+std::array<int, 2> film_size(const ViewDescription& view, const ViewOptions& options = {});
+/// Camera to world when the shutter opens, including the framing of a subject (`description::Camera::subject`). Throws
+/// Error as `check_view` does.
 Transform camera_placement(const ViewDescription& view, const ViewOptions& options = {});
 
-/// A render of a scene: as many passes as wanted, and the picture at any time.
+/// Renders a scene: as many passes as wanted, with the picture available at any time.
 ///
-/// One thread at a time may call the functions that are not const. `picture`, `pass_count` and `stop` may be called
-/// by any thread at any time.
+/// Only one thread at a time may call non-const functions. Any thread may call `picture`, `pass_count` and `stop` at
+/// any time.
 class Session {
  public:
-  /// Throws Error for unknown methods or parameters, values out of range, and what does not fit into memory.
+  /// Throws Error for unknown methods or parameters, values out of range, and if memory does not suffice.
   explicit Session(const SharedScene& scene, const RenderOptions& options = {});
-  /// With another view than that of the scene's file. Its shutter must be the file's if anything moves.
+  /// Replaces the view of the scene's file. The shutter times must be those of the file if anything moves.
   Session(SharedScene scene, const ViewDescription& view, const RenderOptions& options = {});
   ~Session();
   Session(Session&&) noexcept;
   Session& operator=(Session&&) noexcept;
 
-  /// The passes and the time that options and scene ask for.
+  /// The stop rule that follows from options and scene.
   const StopRule& plan() const;
-  /// What the scene asks for and does not get, and light that the method leaves out.
+  /// What the scene requests but does not get, and light that the method cannot render.
   std::vector<description::Warning> warnings() const;
 
-  /// Renders the passes of `stop.passes` that are not done yet.
+  /// Renders those passes of `stop.passes` that are not done yet.
   RenderStatistics render(const StopRule& stop, const Observer& observer = {});
-  /// Renders what the plan asks for.
+  /// Renders according to `plan`.
   RenderStatistics render(const Observer& observer = {}) { return render(plan(), observer); }
-  /// Renders the next pass. False if `stop` ended it: the picture is that of the passes before.
+  /// Renders the next pass. Returns false if `stop` ended it: the picture is then that of the earlier passes.
   bool render_pass();
-  /// Gives up the running pass of `render_pass` within milliseconds, or the next one if none is running.
+  /// Abandons the running pass of `render_pass` within milliseconds, or the next one if none is running.
   void stop();
 
   std::uint64_t pass_count() const;
-  /// The picture of the passes done, with all its layers. Waits at most for the end of a short pass: long ones
-  /// keep a copy of the film. Throws Error before the end of the first pass.
+  /// The picture of the completed passes with all its layers. Waits at most until a short pass ends: long passes keep a
+  /// copy of the film. Throws Error before the end of the first pass.
   Image picture() const;
 
-  /// The sums so far; not while a pass is running.
+  /// The film's sums so far; do not call it while a pass is running.
   const RenderState& state() const;
-  /// Goes on from a saved state, whose sums move into the session. Throws Error, naming the first difference, if it
-  /// belongs to another render; `name` is that of its file, for the message.
+  /// Continues from a saved state, whose sums move into the session. Throws Error, naming the first difference, if it
+  /// belongs to another render; `name` is its file name, for the message.
   void resume(const std::shared_ptr<RenderState>& state, const std::string& name);
 
-  /// Starts anew with another scene. The options and the view are kept: of a file's new scene, `set_view` takes its
-  /// camera and film over. Passes, picture and sums of before are gone; states that were saved of them are not.
+  /// Restarts with another scene. Options and view are kept; use `set_view` to apply the camera and film of the new
+  /// scene's file. Discards passes, picture and sums; states that were saved remain.
   void set_scene(SharedScene scene);
-  /// Starts anew with another view of the same scene, which is not built again. The options are kept.
+  /// Restarts with another view of the same scene, which is not rebuilt. The options are kept.
   void set_view(const ViewDescription& view);
 
  private:

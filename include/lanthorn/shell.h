@@ -6,9 +6,9 @@
 
 namespace lanthorn {
 
-/// `text` as one word of a POSIX shell's command line: in single quotes, unless all of it is plain. With control
-/// characters, which a terminal would obey when the line is pasted, it is printable ASCII in $'...' (POSIX 2024; bash,
-/// zsh, ksh).
+/// `text` quoted as one word of a POSIX shell's command line: in single quotes, unless it has only plain characters.
+/// Text with control characters, which a terminal would obey when the line is pasted, becomes printable ASCII in $'...'
+/// (POSIX 2024; bash, zsh, ksh).
 std::string shell_word(const std::string& text);
 
 }  // namespace lanthorn

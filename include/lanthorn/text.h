@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Text in messages: names that were misspelt, durations, and text of files. Whatever its bytes, a message stays one
-// line, has no effect on a terminal, and shows no more of a file than one token.
+// Text in messages: suggestions for misspelt names, durations, quotations from files. Whatever bytes a file holds, a
+// message stays on one line, has no effect on a terminal, and shows at most one token of the file.
 #pragma once
 
 #include <optional>
@@ -11,7 +11,7 @@
 
 namespace lanthorn {
 
-/// `text` with all but printable UTF-8 (control characters, marks that change the writing direction) written as \xNN.
+/// `text` with everything but printable UTF-8 (control characters, marks that change the writing direction) as \xNN.
 std::string printable(std::string_view text);
 
 /// `text` as messages show it: printable, and cut after 32 characters.
@@ -24,11 +24,11 @@ std::string in_quotes(std::string_view text);
 std::string without_quotations(std::string_view message);
 
 /// The known name that `word` was probably meant to be: the one with the fewest insertions, deletions, replacements and
-/// swaps of neighbours, if they are at most a third of its letters; else the only one that begins with `word` (three
-/// letters or more). The first of several equally near names. nullopt if there is none.
+/// swaps of neighbouring letters, if these are at most a third of the letters of `word`; else the only one that begins
+/// with `word` (at least three letters). The first of several equally near names. nullopt if there is none.
 std::optional<std::string> nearest_name(std::string_view word, std::span<const std::string> known);
 
-/// "; did you mean NAME?", or an empty string, to append to a message.
+/// "; did you mean NAME?" to append to a message, or an empty string.
 std::string did_you_mean(std::string_view word, std::span<const std::string> known);
 
 /// Seconds as "1:02:03 h", "2:03 min" or "4 s".

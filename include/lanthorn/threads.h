@@ -6,10 +6,11 @@
 
 namespace lanthorn {
 
-/// Limits the threads of all parallel loops of this process while it lives; the newest counts. Changes no result.
+/// Limits the threads of all parallel loops of this process during its lifetime; the newest limit applies. Does not
+/// change any result.
 class ThreadLimit {
  public:
-  /// 0: what CPU affinity and control groups leave. Never more than the cores of the affinity or what can be started.
+  /// 0: as many as CPU affinity and control groups allow. Never more than the affinity's cores or than can be started.
   explicit ThreadLimit(unsigned threads);
   ~ThreadLimit();
   ThreadLimit(const ThreadLimit&) = delete;

@@ -6,14 +6,14 @@
 
 namespace lanthorn {
 
-/// An affine (or, for cameras, projective) map with its inverse. Column vectors: (A * B) applies B first. In double
-/// precision, so that chains of maps far from the origin keep small things in place.
+/// An affine (or, for cameras, projective) map with its inverse. Column vectors: (A * B) applies B first. Double
+/// precision, so that chains of maps far from the origin place small objects accurately.
 struct Transform {
   DMat4 matrix{1.0};
   DMat4 inverse{1.0};
 
   Transform() = default;
-  explicit Transform(const DMat4& m);  ///< inverts m; `is_singular()` tells if that failed
+  explicit Transform(const DMat4& m);  ///< inverts m; if that fails, `is_singular()` is true
   explicit Transform(const Mat4& m) : Transform(DMat4(m)) {}
   Transform(const DMat4& m, const DMat4& inv) : matrix(m), inverse(inv) {}
 
@@ -29,7 +29,7 @@ struct Transform {
   Bounds bounds(const Bounds& b) const;
 
   Transform inverted() const { return {inverse, matrix}; }
-  /// True if the map mirrors, turning right-handed coordinates into left-handed ones.
+  /// True if the map mirrors: turns right-handed coordinates into left-handed ones.
   bool swaps_handedness() const;
   bool is_singular() const;
   bool is_identity() const { return matrix == DMat4(1.0); }
@@ -47,8 +47,8 @@ Transform rotate(double degrees, const DVec3& axis);
 /// World to camera, for a camera at `eye` looking along +z with +y near `up`, left-handed as in pbrt.
 Transform look_at(const DVec3& eye, const DVec3& target, const DVec3& up);
 
-/// Rigid motion plus stretch at two times. In between, translation and stretch are interpolated linearly and the
-/// rotation spherically (Shoemake & Duff 1992), as in pbrt.
+/// Two affine maps at two times. In between, translation and stretch are interpolated linearly and the rotation
+/// spherically (Shoemake & Duff 1992), as in pbrt.
 struct AnimatedTransform {
   Transform start;
   Transform end;

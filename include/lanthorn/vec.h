@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Geometric types: glm under the field's names. Metres; world space unless a name says `local`.
+// Geometric types: aliases of glm's. Metres; world space unless a name says `local`.
 #pragma once
 
 #include <glm/common.hpp>

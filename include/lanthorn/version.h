@@ -4,7 +4,7 @@
 
 namespace lanthorn {
 
-/// The build, packages and the Python module read it here. docs/releases.md says what it promises.
+/// CMake, the packages and the Python module read the version from here. docs/releases.md says what it promises.
 inline constexpr const char* version = "0.9.0";
 
 }  // namespace lanthorn

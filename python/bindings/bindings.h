@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// What the parts of the Python module share. Each file binds one theme.
+// Declarations shared by the parts of the Python module. Each file binds one theme.
 #pragma once
 
 #include <pybind11/numpy.h>
@@ -21,13 +21,13 @@ namespace lanthorn::python {
 
 namespace py = pybind11;
 
-/// A scene and who looks at it. Python sees one value.
+/// A scene with its view; a single value in Python.
 struct SeenScene {
   SharedScene scene;
   ViewDescription view;
 };
 
-/// A picture with what a screen needs to show it.
+/// A picture with the data that displaying it needs.
 struct Picture {
   Image image{};
   std::optional<ErrorEstimate> error{};
@@ -35,19 +35,19 @@ struct Picture {
 };
 Picture picture_of_state(const RenderState& state, bool with_noise_layers);
 
-/// The options of a render from keyword arguments: members of RenderOptions by their names, all else parameters of the
-/// method. Throws Error for values of the wrong type.
+/// The options of a render from keyword arguments: members of RenderOptions by their names; all other keywords are
+/// parameters of the method. Throws Error for values of the wrong type.
 RenderOptions options_of(const py::dict& keywords);
 py::list texts_of(const std::vector<description::Warning>& warnings);
 
 SceneDescription description_of_dict(const py::dict& data);
 py::dict dict_of_description(const SceneDescription& description, const ViewDescription& view);
-/// The scene with the replacements of the keywords `camera`, `film`, `filter`, `materials`, `lights`, `area_lights`,
+/// The scene with the replacements in the keywords `camera`, `film`, `filter`, `materials`, `lights`, `area_lights`,
 /// `instances` and `environment`.
 SeenScene edited(const SeenScene& scene, const py::dict& edits);
 EnvironmentChoice environment_of(py::handle data);
 
-/// `values` as an array that shares the memory of `owner`, which holds them.
+/// `values` as an array that shares the memory of `owner`, which keeps them alive.
 template <class Scalar, class T>
 py::array writable_array(const std::vector<T>& values, py::handle owner) {
   // NOLINTNEXTLINE(bugprone-sizeof-expression): T may be Scalar

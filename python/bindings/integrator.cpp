@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Methods that are written in Python.
+// Methods written in Python.
 #include <algorithm>
 #include <map>
 
@@ -12,7 +12,7 @@ namespace lanthorn::python {
 
 namespace {
 
-// What Python calls for a method of this name. Kept to the end of the process: the interpreter may be gone before.
+// Python functions by method name. Never destroyed: at process exit the interpreter may already be gone.
 std::map<std::string, py::object>& functions() {
   static auto* const all = new std::map<std::string, py::object>;
   return *all;
@@ -37,7 +37,7 @@ void call(const std::string& name, const SharedScene& scene, const EyeRays& eye,
 }
 
 void add(const std::string& name, const std::string& summary, const py::object& function) {
-  // A method of this name that Python has added before has another function from now on: cells are run again.
+  // Redefining a method replaces its function, because notebook cells are run repeatedly.
   if (!functions().contains(name))
     add_method(name, summary, [name](const SharedScene& scene, const EyeRays& eye, std::span<Rgb> radiance) {
       call(name, scene, eye, radiance);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The extension module lanthorn._lanthorn, whose names the package lanthorn shows.
+// The extension module lanthorn._lanthorn, whose names the package lanthorn re-exports.
 #include "bindings.h"
 #include "lanthorn/error.h"
 #include "lanthorn/realtime.h"
@@ -15,9 +15,9 @@ void bind_error(py::module_& module) {
   static py::handle type;
   py::exception<Error> error(module, "Error");
   error.attr("__doc__") =
-      "A wrong scene, file, option or value.\n\n"
-      "str(error) says where and what. Attributes: `file` (str, empty if no file is to blame), `line` and `column`\n"
-      "(int, from 1; 0 if not known) and `message` (str, without the place).";
+      "An invalid scene, file, option or value.\n\n"
+      "str(error) says where and what. Attributes: `file` (str, empty if no file is involved), `line` and `column`\n"
+      "(int, from 1; 0 if not known) and `message` (str, without the location).";
   type = error.release();
   // NOLINTNEXTLINE(performance-unnecessary-value-param): pybind11 takes a function of this type
   py::register_exception_translator([](std::exception_ptr pointer) {

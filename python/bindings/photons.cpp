@@ -26,7 +26,7 @@ void bind_photons(py::module_& module) {
   py::class_<Photons>(
       module, "Photons",
       "Photons of one pass as read-only arrays, which share their memory. n = len(photons).\n\n"
-      "Classes are DIRECT (0, straight from the light), CAUSTIC (1, after mirrors and clear glass alone)\n"
+      "Classes are DIRECT (0, straight from the light), CAUSTIC (1, after only mirrors and clear glass)\n"
       "and INDIRECT (2, all others).")
       .def("__len__", &Photons::size, "Number of photons.")
       .def_readonly("light_paths", &Photons::light_paths, "int: light paths that were emitted.")
@@ -37,9 +37,10 @@ void bind_photons(py::module_& module) {
       .def_property_readonly("directions", &column<float, &Photons::directions>,
                              "(n, 3) float32: unit vectors towards where the photon came from.")
       .def_property_readonly("powers", &column<float, &Photons::powers>,
-                             "(n, 3) float32: watts in linear Rec.709; negative where a wavelength's colour is.")
-      .def_property_readonly("depths", &column<std::int32_t, &Photons::depths>,
-                             "(n,) int32: scattering events up to the photon's own; 1: straight from the light.")
+                             "(n, 3) float32: watts in linear Rec.709; negative for wavelengths outside the gamut.")
+      .def_property_readonly(
+          "depths", &column<std::int32_t, &Photons::depths>,
+          "(n,) int32: scattering events up to and including the photon's own; 1: straight from the light.")
       .def_property_readonly("classes", &column<std::uint8_t, &Photons::classes>,
                              "(n,) uint8: DIRECT, CAUSTIC or INDIRECT.")
       .def("__repr__",
@@ -51,10 +52,10 @@ void bind_photons(py::module_& module) {
   const py::object type = module.attr("Photons");
   type.attr("CAUSTIC") = 1;
   type.attr("INDIRECT") = 2;
-  module.def("trace_photons", &trace, py::arg("scene"), py::kw_only(), py::arg("pass_number") = 0,
-             py::arg("direct") = true,
-             "Traces the Photons of a pass; the same for any number of threads. direct: with those that come straight\n"
-             "from a light. Further keywords are options as of Session (integrator, photons, seed, max_depth ...).");
+  module.def(
+      "trace_photons", &trace, py::arg("scene"), py::kw_only(), py::arg("pass_number") = 0, py::arg("direct") = true,
+      "Traces the Photons of a pass; they do not depend on the number of threads. direct: include those that come\n"
+      "straight from a light. Further keywords are options as of Session (integrator, photons, seed, max_depth ...).");
 }
 
 }  // namespace lanthorn::python

@@ -37,7 +37,7 @@ Picture picture_of_state(const RenderState& state, bool with_noise_layers) {
 
 namespace {
 
-// Channels of a layer; empty if there is none.
+// Indices of the channels of a layer; empty if there is no such layer.
 std::vector<std::size_t> channels_of(const Image& image, const std::string& layer) {
   std::vector<std::size_t> found;
   const std::string prefix = layer == "color" ? "" : layer + ".";
@@ -51,8 +51,8 @@ std::vector<std::size_t> channels_of(const Image& image, const std::string& laye
   return {};
 }
 
-// (height, width, channels), or (height, width) if it is one channel. Shares the picture's memory: the channels of a
-// layer lie at equal distances.
+// An array of shape (height, width, channels), or (height, width) for one channel. It shares the picture's memory,
+// which requires that the channels of a layer are equally spaced.
 py::array layer_array(const py::object& owner, const std::string& layer) {
   const Image& image = owner.cast<const Picture&>().image;
   const std::vector<std::size_t> channels = channels_of(image, layer);
@@ -71,7 +71,7 @@ py::array layer_array(const py::object& owner, const std::string& layer) {
     strides.push_back(step * bytes);
     for (std::size_t i = 2; i < channels.size(); ++i)
       if (static_cast<py::ssize_t>(channels[i]) - static_cast<py::ssize_t>(channels[i - 1]) != step)
-        throw Error("the channels of the layer " + in_quotes(layer) + " do not lie side by side");
+        throw Error("the channels of the layer " + in_quotes(layer) + " are not equally spaced");
   }
   py::array_t<float> array(shape, strides, image.pixels.data() + channels[0], owner);
   array.attr("flags").attr("writeable") = false;
@@ -132,15 +132,15 @@ void save(const Picture& picture, const std::filesystem::path& path, const std::
 
 void bind_error_estimate(py::module_& module) {
   py::class_<ErrorEstimate>(module, "ErrorEstimate",
-                            "How far a picture is from the truth, as its own samples tell (docs/error.md).\n\n"
+                            "Estimate of a picture's error from its own samples (docs/error.md).\n\n"
                             "All numbers are relative: 0.02 is 2 % of each value.")
-      .def_readonly("noise", &ErrorEstimate::noise, "float: the part that falls with the number of passes alone.")
+      .def_readonly("noise", &ErrorEstimate::noise, "float: the part that only more passes reduce.")
       .def_readonly("bias", &ErrorEstimate::bias,
-                    "float: the part that falls with the radii of photons; 0 of methods without bias.")
+                    "float: the part that shrinks with the photon radii; 0 for unbiased methods.")
       .def_readonly("error", &ErrorEstimate::error, "float: both, sqrt(noise**2 + bias**2).")
-      .def_readonly("bound", &ErrorEstimate::bound, "float: the error is below it with a probability of 90 %.")
+      .def_readonly("bound", &ErrorEstimate::bound, "float: upper bound of the error at 90 % confidence.")
       .def_readonly("doubt", &ErrorEstimate::doubt,
-                    "str: why the numbers are too small or not known; empty if they can be relied on.")
+                    "str: why the numbers are too small or unknown; empty if they can be relied on.")
       .def("__repr__", [](const ErrorEstimate& e) { return "<lanthorn.ErrorEstimate " + describe_error(e) + ">"; });
 }
 
@@ -164,7 +164,7 @@ void bind_picture(py::module_& module) {
       .def(
           "__contains__",
           [](const Picture& p, const std::string& layer) { return !channels_of(p.image, layer).empty(); },
-          py::arg("layer"), "Whether the picture has the layer.")
+          py::arg("layer"), "True if the picture has the layer.")
       .def(
           "__array__",
           [](const py::object& self, const py::object& dtype) -> py::object {
@@ -184,17 +184,17 @@ void bind_picture(py::module_& module) {
       .def_property_readonly(
           "height", [](const Picture& p) { return p.image.height; }, "int: pixels.")
       .def_readonly("error", &Picture::error,
-                    "ErrorEstimate: how far the picture is from the truth; None for pictures that were not rendered.")
+                    "ErrorEstimate: the picture's estimated error; None for pictures that were not rendered.")
       .def("save", &save, py::arg("path"), py::kw_only(), py::arg("exposure") = py::none(),
            py::arg("curve") = none_curve,
-           "Writes .exr (all layers), .png, .jpg or .tif, whole or not at all. `exposure`: stops, None: measured if "
+           "Writes .exr (all layers), .png, .jpg or .tif, whole or not at all. `exposure`: stops; None: measured if "
            "the\n"
-           "scene's file has none. `curve`: 'none', 'filmic' or 'agx'. EXR files hold the values as they are.")
+           "scene's file specifies none. `curve`: 'none', 'filmic' or 'agx'. EXR files store linear values unchanged.")
       .def("png", &png_of, py::kw_only(), py::arg("exposure") = py::none(), py::arg("curve") = none_curve,
            "The bytes of an 8-bit sRGB PNG file of the layer 'color'. Parameters as `save`.")
       .def(
           "_repr_png_", [none_curve](const Picture& p) { return png_of(p, {}, py::str("none")); },
-          "What notebooks show.")
+          "Representation in notebooks.")
       .def("__repr__", [](const Picture& p) {
         return "<lanthorn.Picture " + std::to_string(p.image.width) + " x " + std::to_string(p.image.height) + ", " +
                std::to_string(layer_names(p.image).size()) + " layers>";

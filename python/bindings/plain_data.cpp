@@ -19,7 +19,7 @@ namespace {
 
 std::string repr_of(py::handle object) { return py::repr(object).cast<std::string>(); }
 
-// Keeps a Python object. The last copy may go where no Python code runs.
+// Keeps a Python object alive. The last reference may be dropped on a thread that runs no Python code.
 std::shared_ptr<const void> keeper_of(const py::object& object) {
   return {object.ptr(), [kept = object](const void*) mutable {
             const py::gil_scoped_acquire acquire;
@@ -47,7 +47,7 @@ std::optional<Scalar> scalar_of(const py::dtype& type) {
   }
 }
 
-// Halves and long doubles become doubles.
+// Half and long double arrays become double.
 Value value_of_array(const py::array& any) {
   py::array array = py::array::ensure(any, py::array::c_style);
   const char kind = array.dtype().kind();
@@ -81,7 +81,7 @@ Value value_of_dict(const py::dict& data) {
   return dict;
 }
 
-// A number, or what numpy makes an array of.
+// A number, or anything that numpy can convert to an array.
 Value value_of_other(py::handle object) {
   const bool is_extended = py::hasattr(object, "ndim") && object.attr("ndim").cast<int>() > 0;
   if (!is_extended && !py::isinstance<py::bool_>(object)) {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Python's objects as plain data, and back.
+// Converts Python objects to plain data, and back.
 #pragma once
 
 #include <pybind11/numpy.h>
@@ -16,7 +16,7 @@ namespace lanthorn::python {
 namespace py = pybind11;
 using plain::Reader;
 
-/// Arrays of numpy share their memory with the value.
+/// numpy arrays share their memory with the value.
 plain::Value value_of(py::handle object);
 /// Arrays share their memory with the object.
 py::object object_of(const plain::Value& value);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Rays, the light along them, and the scattering of surfaces, over arrays.
+// Ray queries, radiance along rays, and BSDFs, over arrays.
 #include "lanthorn/rays.h"
 
 #include <pybind11/stl.h>
@@ -19,7 +19,7 @@ std::vector<Vec3> vectors(py::handle data, const char* name) {
   return values;
 }
 
-// One of `values` stands for all, as numpy broadcasts.
+// A single value applies to all rows, as in numpy's broadcasting.
 const Vec3& of_all(const std::vector<Vec3>& values, std::size_t i) { return values[values.size() == 1 ? 0 : i]; }
 
 std::size_t common_size(const std::vector<Vec3>& a, const std::vector<Vec3>& b, const char* names) {
@@ -82,7 +82,7 @@ py::dict hits_of(const SeenScene& scene, const py::object& origins, const py::ob
   return data;
 }
 
-// A material alone, on a disk that is seen from above.
+// A scene with only this material, on a disk seen from above.
 SurfaceBsdf bsdf_of_material(const py::dict& material) {
   py::dict disk, data;
   disk["type"] = "disk";
@@ -125,24 +125,25 @@ py::dict samples_of(const SurfaceBsdf& bsdf, const py::object& wi, const py::obj
 void bind_bsdf(py::module_& module) {
   py::class_<SurfaceBsdf>(
       module, "Bsdf",
-      "How a material scatters, in RGB: Bsdf({'type': 'conductor', 'roughness': {'u': .3, 'v': .3}}).\n\n"
+      "The BSDF of a material, in RGB: Bsdf({'type': 'conductor', 'roughness': {'u': .3, 'v': .3}}).\n\n"
       "Directions are unit vectors of shape (n, 3) in the shading frame, whose z is the normal; all\n"
-      "point away from the surface, wi towards the eye. One row stands for all.")
+      "point away from the surface, wi towards the eye. A single row applies to all.")
       .def(py::init(&bsdf_of_material), py::arg("material"),
-           "The scattering of a material, a dict as in `load_dict`, without textures, seen from above.")
+           "The BSDF of a material, a dict as in `load_dict`, without textures, on its outside.")
       .def(
           "eval",
           [](const SurfaceBsdf& self, const py::object& wi, const py::object& wo) {
             return over_pairs<float, Rgb>(wi, wo, [&](const Vec3& i, const Vec3& o) { return self.eval(i, o); });
           },
           py::arg("wi"), py::arg("wo"),
-          "(n, 3) float32: f(wi, wo) in 1/sr, without the cosine, and without mirrors and clear refraction.")
+          "(n, 3) float32: f(wi, wo) in 1/sr, without the cosine and without delta lobes.")
       .def(
           "pdf",
           [](const SurfaceBsdf& self, const py::object& wi, const py::object& wo) {
             return over_pairs<float, float>(wi, wo, [&](const Vec3& i, const Vec3& o) { return self.pdf(i, o); });
           },
-          py::arg("wi"), py::arg("wo"), "(n,) float32: density per solid angle with which `sample` chooses wo.")
+          py::arg("wi"), py::arg("wo"),
+          "(n,) float32: density per solid angle with which `sample` chooses wo; without delta lobes.")
       .def("sample", &samples_of, py::arg("wi"), py::arg("u"),
            "dict of arrays: 'wo' (n, 3), 0 where light is absorbed; 'weight' (n, 3), f |cos| / pdf; 'pdf' (n,);\n"
            "'is_delta' (n,). u: numbers in [0, 1) of shape (n, 3).");
@@ -156,7 +157,7 @@ void bind_bsdf(py::module_& module) {
         return bsdf_at(scene.scene, ray);
       },
       py::arg("scene"), py::arg("origin"), py::arg("direction"),
-      "The Bsdf of the nearest surface along a ray; None if the ray meets nothing.");
+      "The Bsdf of the nearest surface along a ray; None if the ray hits nothing.");
 }
 
 }  // namespace
@@ -166,10 +167,10 @@ void bind_rays(py::module_& module) {
       "radiance_along", &radiance, py::arg("scene"), py::arg("origins"), py::arg("directions"), py::kw_only(),
       py::arg("samples") = 64, py::arg("seed") = 0, py::arg("max_depth") = 64,
       "(n, 3) float32: radiance that arrives at each origin from its direction, linear Rec.709, by path tracing.\n\n"
-      "origins, directions: (n, 3), metres; one row stands for all. samples: paths per ray. The same numbers for\n"
-      "any number of threads.");
+      "origins, directions: (n, 3), metres; a single row applies to all. samples: paths per ray. The result does not\n"
+      "depend on the number of threads.");
   module.def("intersect", &hits_of, py::arg("scene"), py::arg("origins"), py::arg("directions"),
-             "dict of arrays, one row per ray: 'distance' (n,), metres, inf where the ray meets nothing; 'position',\n"
+             "dict of arrays, one row per ray: 'distance' (n,), metres, inf where the ray hits nothing; 'position',\n"
              "'normal' and 'shading_normal' (n, 3); 'uv' (n, 2); 'emits' (n,) bool.");
   bind_bsdf(module);
 }

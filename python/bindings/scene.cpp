@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Scenes: from files, from Python's data, edited.
+// Scenes: loading from files and Python data, and editing.
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
@@ -84,7 +84,7 @@ LookAt look_of(const py::object& eye, const py::object& target, const py::object
   return look;
 }
 
-// As `--look-at`: whether the picture is mirrored stays as it was, and so does the camera's own scale.
+// As `--look-at`: keeps the mirroring and scale of the camera's transform.
 SeenScene look(const SeenScene& seen, const py::object& eye, const py::object& target, const py::object& up) {
   const LookAt look = look_of(eye, target, up);
   const DVec3 origin = description_of(*seen.scene).origin;
@@ -108,7 +108,7 @@ std::string counted(const std::map<std::string, int>& numbers) {
   for (const auto& [kind, count] : numbers) text += (text.empty() ? "" : ", ") + std::to_string(count) + " " + kind;
   return text.empty() ? "none" : text;
 }
-// Names of kinds and numbers alone, so that nothing of a file gets into the page.
+// Shows only names of kinds and counts, so that no text of a file gets into the page.
 std::string html_of(const SeenScene& seen) {
   const SceneSummary summary = summarize(*seen.scene);
   const auto size = film_size(seen.view);
@@ -147,7 +147,7 @@ void bind_transforms(py::module_& module) {
   module.def(
       "scale",
       [](const py::object& factors) { return matrix(factors, "factors", [](const DVec3& v) { return scale(v); }); },
-      py::arg("factors"), "The 4 x 4 matrix that stretches by `factors` (x, y, z).");
+      py::arg("factors"), "The 4 x 4 matrix that scales by `factors` (x, y, z).");
   module.def(
       "rotate",
       [](double degrees, const py::object& axis) {
@@ -159,7 +159,7 @@ void bind_transforms(py::module_& module) {
       "look_at",
       [](const py::object& eye, const py::object& target, const py::object& up) {
         const LookAt look = look_of(eye, target, up);
-        // Camera space is left-handed, as pbrt's; the mirror makes pictures of a right-handed world.
+        // Camera space is left-handed, as in pbrt; mirror it for a right-handed world.
         return write(lanthorn::look_at(look.eye, look.target, look.up).inverted() * lanthorn::scale({-1, 1, 1}));
       },
       py::arg("eye"), py::arg("target"), py::arg("up") = py::make_tuple(0, 1, 0),
@@ -171,40 +171,39 @@ void bind_transforms(py::module_& module) {
 
 void bind_scene(py::module_& module) {
   py::class_<SeenScene>(module, "Scene",
-                        "A scene that can be rendered, and the camera that looks at it. Never changes: `edit` and\n"
-                        "`look_at` make another scene, which shares geometry and images with this one.")
+                        "A scene that can be rendered, with its camera. Immutable: `edit` and `look_at` return\n"
+                        "another scene, which shares geometry and images with this one.")
       .def(
           "edit", [](const SeenScene& self, const py::kwargs& edits) { return edited(self, edits); },
-          "The scene with replacements, in a fraction of a millisecond where nothing of the geometry is built "
-          "again.\n\n"
-          "camera, film, filter: dicts as in `description`; keys that are left out stay as they are.\n"
+          "The scene with replacements; takes a fraction of a millisecond unless geometry must be rebuilt.\n\n"
+          "camera, film, filter: dicts as in `description`; omitted keys keep their values.\n"
           "materials: {index or name: dict}; lights: {index or 'light1': dict}; area_lights: {index or 'area1': "
           "dict};\n"
           "instances: {index: 4 x 4 matrix}; environment: a name, a file, or {'source', 'rotation', 'scale', 'up'}.\n"
-          "Raises Error, naming the place in the data, for what cannot be.")
+          "Raises Error, naming the place in the data, for invalid edits.")
       .def("look_at", &look, py::arg("eye"), py::arg("target"), py::arg("up") = py::make_tuple(0, 1, 0),
-           "The scene seen by its camera from `eye` towards `target`: (x, y, z) in metres, in the file's coordinates.")
+           "The scene with its camera at `eye`, looking at `target`: (x, y, z) in metres, in the file's coordinates.")
       .def_property_readonly(
           "description", [](const SeenScene& s) { return dict_of_description(description_of(*s.scene), s.view); },
           "dict: the scene as plain data, as `load_dict` takes it. The meshes of a built scene are\n"
-          "empty: they live in the ray tracer.")
+          "empty: only the ray tracer has them.")
       .def_property_readonly("summary", &summary_of,
                              "dict: numbers of triangles, lights and materials by kind; bounds in metres; bytes.")
       .def_property_readonly("lights", &lights_as_list,
-                             "list of (str, str): each light's name in `edit`, and words for it.")
+                             "list of (str, str): each light's name in `edit`, and its description.")
       .def_property_readonly("materials", &names_of_materials,
-                             "list of str: names of the materials by index; anonymous ones have none.")
+                             "list of str: names of the materials by index; empty for anonymous ones.")
       .def_property_readonly(
           "warnings", [](const SeenScene& s) { return texts_of(warnings_of(*s.scene, s.view)); },
-          "list of str: what the scene asks for and does not get.")
+          "list of str: unsupported features of the scene, and what replaces them.")
       .def_property_readonly(
           "resolution",
           [](const SeenScene& s) {
             const auto size = film_size(s.view);
             return py::make_tuple(size[0], size[1]);
           },
-          "(int, int): width and height in pixels, unless options name others.")
-      .def("_repr_html_", &html_of, "What notebooks show.")
+          "(int, int): width and height in pixels, unless options override them.")
+      .def("_repr_html_", &html_of, "Representation in notebooks.")
       .def("__repr__", &text_of);
   module.def(
       "load_file", &load_file, py::arg("path"), py::kw_only(), py::arg("environment") = py::none(),
@@ -212,19 +211,19 @@ void bind_scene(py::module_& module) {
       py::arg("window_glass") = false,
       "Reads a scene from a .pbrt, .gltf, .glb or .obj file, each also gzipped, and builds it.\n\n"
       "environment: a name (see `environments`), an image file, or a dict {'source', 'rotation' (degrees), 'scale',\n"
-      "'up' ('y' or 'z')}, in place of the scene's own. camera: of a glTF file, name or number from 1. at: seconds\n"
-      "into a glTF animation. sandbox: reads only files below the scene's folder. skip_missing: goes on without\n"
+      "'up' ('y' or 'z')}, which replaces the scene's own. camera: of a glTF file, name or number from 1. at: seconds\n"
+      "into a glTF animation. sandbox: reads only files below the scene's folder. skip_missing: continues without\n"
       "missing files. window_glass: light passes straight through clear panes.\n"
       "Raises Error with file, line and column.");
-  module.def(
-      "load_string", &load_string, py::arg("text"), py::kw_only(), py::arg("folder") = ".", py::arg("name") = "text",
-      py::call_guard<py::gil_scoped_release>(),
-      "Reads a scene from the text of a pbrt-v4 file. File names in it start in `folder`; messages call it `name`.");
-  module.def(
-      "load_dict", &load_dict, py::arg("description"),
-      "Builds a scene from plain data: a dict with the members of SceneDescription (docs/python.md).\n\n"
-      "Arrays may be numpy's. Raises Error that names the place: \"shapes[0].radius: expected a number, got 'wide'\".");
-  module.def("environments", &environment_names, "list of str: environments that need no file.");
+  module.def("load_string", &load_string, py::arg("text"), py::kw_only(), py::arg("folder") = ".",
+             py::arg("name") = "text", py::call_guard<py::gil_scoped_release>(),
+             "Reads a scene from the text of a pbrt-v4 file. Relative file names are resolved in `folder`; messages "
+             "call it `name`.");
+  module.def("load_dict", &load_dict, py::arg("description"),
+             "Builds a scene from plain data: a dict with the members of SceneDescription (docs/python.md).\n\n"
+             "Arrays may be numpy's. Raises Error that names the location: \"shapes[0].radius: expected a number, got "
+             "'wide'\".");
+  module.def("environments", &environment_names, "list of str: built-in environments, which need no file.");
   bind_transforms(module);
 }
 

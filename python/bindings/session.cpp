@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Renders under way.
+// Renders in progress.
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
@@ -21,14 +21,14 @@ namespace {
 
 using std::uint64_t;
 
-// A session as Python's threads share it: one at a time renders, and the interpreter is free meanwhile.
+// A session shared by Python threads: one at a time renders, and the GIL is released meanwhile.
 class PythonSession {
  public:
   PythonSession(const SeenScene& scene, const RenderOptions& options)
       : scene_(scene), session_(scene.scene, scene.view, options), integrator_(options.integrator) {}
 
-  /// Renders what the plan asks for, or these limits. Throws Python's KeyboardInterrupt after the running pass if the
-  /// user asks for that; the passes until then are kept.
+  /// Renders according to the plan, or to these limits. Throws Python's KeyboardInterrupt after the current pass if the
+  /// user interrupts; completed passes are kept.
   void render(std::optional<uint64_t> passes, std::optional<double> seconds, std::optional<double> noise) {
     const std::lock_guard lock = locked();
     StopRule stop = session_.plan();
@@ -80,7 +80,7 @@ class PythonSession {
   }
 
  private:
-  // Never waits: whoever holds the lock may wait for the interpreter.
+  // Never blocks: the thread that holds the lock may be waiting for the GIL.
   std::lock_guard<std::mutex> locked() {
     if (!mutex_.try_lock()) throw Error("the session is rendering in another thread");
     return {mutex_, std::adopt_lock};
@@ -116,7 +116,7 @@ class PythonSession {
 
 using SharedSession = std::shared_ptr<PythonSession>;
 
-// for picture in session.passes(64)
+// Iterator for: for picture in session.passes(64)
 struct Passes {
   SharedSession session;
   uint64_t left;
@@ -159,14 +159,14 @@ void bind_session(py::module_& module) {
       .def("__next__", &Passes::next, "Renders a pass and returns its Picture.");
   py::class_<PythonSession, SharedSession>(
       module, "Session",
-      "A render under way: as many passes as wanted, and the picture in between.\n\n"
+      "Renders a scene pass by pass, with the picture available at any time.\n\n"
       "Keyword arguments are the options of `lanthorn render`: integrator, passes, seconds, noise (the error at which\n"
       "to stop, 0.02 is 2 %), seed, resolution (width, height), crop (x0, y0, x1, y1), clamp, color ('rgb' or\n"
       "'spectral'), photons (light paths per pass), max_depth, memory (bytes), pass_range (first, end). Other "
       "keywords\n"
-      "are parameters of the method (see `methods`). Raises Error for what is unknown or does not fit.\n\n"
-      "Rendering does not hold the GIL. Ctrl-C raises KeyboardInterrupt after the running pass; the session keeps all\n"
-      "passes and can go on.")
+      "are parameters of the method (see `methods`). Raises Error for unknown options and invalid values.\n\n"
+      "Rendering does not hold the GIL. Ctrl-C raises KeyboardInterrupt after the current pass; the session keeps all\n"
+      "passes and can continue.")
       .def(py::init([](const SeenScene& scene, const py::kwargs& options) {
              const RenderOptions read = options_of(options);
              const py::gil_scoped_release release;
@@ -182,7 +182,7 @@ void bind_session(py::module_& module) {
             return self.picture(false);
           },
           py::kw_only(), py::arg("passes") = py::none(), py::arg("seconds") = py::none(), py::arg("noise") = py::none(),
-          "Renders what the options ask for; or `passes` more, or for `seconds`, or until the error is below `noise`.\n"
+          "Renders as the options say; or `passes` more, or for `seconds`, or until the error is below `noise`.\n"
           "Returns the Picture.")
       .def(
           "passes",
@@ -191,23 +191,24 @@ void bind_session(py::module_& module) {
           },
           py::arg("count"),
           "for picture in session.passes(64): renders a pass at a time and yields the Picture after each.")
-      .def("stop", &PythonSession::stop, "Ends `render`, called by another thread, after the running pass.")
+      .def("stop", &PythonSession::stop, "Ends `render`, called by another thread, after the current pass.")
       .def("picture", &PythonSession::picture, py::kw_only(), py::arg("noise") = false,
            py::call_guard<py::gil_scoped_release>(),
-           "The Picture of the passes done, with all layers. noise: with the layers that `denoise` needs, too.")
+           "The Picture of the completed passes, with all layers. noise: adds the layers that `denoise` needs.")
       .def("denoised", &PythonSession::denoised, py::call_guard<py::gil_scoped_release>(),
-           "The Picture of the passes done without its noise, layer by layer.")
+           "The Picture of the completed passes, denoised layer by layer.")
       .def("save", &PythonSession::save, py::arg("path"), py::call_guard<py::gil_scoped_release>(),
            "Saves the sums, whole or not at all, to be resumed or merged.")
       .def("resume", &PythonSession::resume, py::arg("path"), py::call_guard<py::gil_scoped_release>(),
-           "Goes on from a saved state. Raises Error, naming the first difference, if it belongs to another render.")
-      .def_property("scene", &PythonSession::scene, &PythonSession::set_scene,
-                    "Scene: what is rendered. Another one, such as scene.edit(...), starts anew with the same options.")
-      .def_property_readonly("pass_count", &PythonSession::pass_count, "int: passes done.")
+           "Continues from a saved state. Raises Error, naming the first difference, if it belongs to another render.")
+      .def_property(
+          "scene", &PythonSession::scene, &PythonSession::set_scene,
+          "Scene: the scene rendered. Assigning another one, such as scene.edit(...), restarts with the same options.")
+      .def_property_readonly("pass_count", &PythonSession::pass_count, "int: completed passes.")
       .def_property_readonly("planned_passes", &PythonSession::planned_passes, "int: passes that the options ask for.")
       .def_property_readonly(
           "warnings", [](const PythonSession& s) { return texts_of(s.warnings()); },
-          "list of str: what the scene does not get, and light that the method leaves out.")
+          "list of str: unsupported features of the scene, and light that the method cannot render.")
       .def_property_readonly("statistics", &statistics_as_dict,
                              "dict: passes, seconds, rays, photons ... of the last call of `render`.")
       .def("__repr__", &session_text);

@@ -13,7 +13,7 @@ namespace {
 
 using SharedState = std::shared_ptr<RenderState>;
 
-/// A state as Python holds it. RenderState itself is incomplete here.
+/// A state as a Python object. RenderState itself is incomplete here.
 struct SavedState {
   SharedState state;
 };
@@ -35,20 +35,19 @@ SavedState merged(const std::vector<std::filesystem::path>& paths) {
 }  // namespace
 
 void bind_state(py::module_& module) {
-  py::class_<SavedState>(module, "State",
-                         "The sums of a saved render: what a checkpoint, a shard and a finished render have in common.")
+  py::class_<SavedState>(module, "State", "The sums of a saved render: a checkpoint, a shard or a finished render.")
       .def(
           "picture", [](const SavedState& s, bool noise) { return picture_of_state(*s.state, noise); }, py::kw_only(),
           py::arg("noise") = false, py::call_guard<py::gil_scoped_release>(),
-          "The Picture so far, with all its layers. noise: with the layers that `denoise` needs, too.")
+          "The Picture so far, with all its layers. noise: adds the layers that `denoise` needs.")
       .def(
           "save", [](const SavedState& s, const std::filesystem::path& path) { save_state(*s.state, path); },
           py::arg("path"), py::call_guard<py::gil_scoped_release>(), "Writes the state, whole or not at all.")
       .def_property_readonly(
-          "pass_count", [](const SavedState& s) { return summarize(*s.state).pass_count; }, "int: passes done.")
+          "pass_count", [](const SavedState& s) { return summarize(*s.state).pass_count; }, "int: completed passes.")
       .def_property_readonly(
           "passes", [](const SavedState& s) { return ranges_of(summarize(*s.state)); },
-          "list of (int, int): ranges of passes done, end exclusive.")
+          "list of (int, int): ranges of completed passes, end exclusive.")
       .def_property_readonly(
           "integrator", [](const SavedState& s) { return summarize(*s.state).integrator; }, "str: the method.")
       .def_property_readonly(

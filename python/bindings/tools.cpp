@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Pictures compared and denoised, convergence, image-based lighting, methods, threads.
+// Comparing and denoising pictures, convergence, image-based lighting, methods, threads.
 #include <pybind11/functional.h>
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
@@ -61,7 +61,7 @@ Picture denoised(const Picture& picture) {
 
 constexpr double no_reference = std::numeric_limits<double>::quiet_NaN();
 
-// Columns of the points; NaN where there is no reference.
+// One column of the points; NaN where there is no reference.
 template <class Value>
 py::array column(const Convergence& convergence, Value&& value) {
   py::array_t<double> values(static_cast<py::ssize_t>(convergence.points.size()));
@@ -146,12 +146,12 @@ void bind_threads(py::module_& module) {
   module.def(
       "set_threads",
       [](unsigned threads) {
-        // Never destroyed: at exit TBB may be gone before it.
+        // Never destroyed: at process exit TBB may already be gone.
         static auto& limit = *new std::unique_ptr<ThreadLimit>;
         limit.reset();
         if (threads > 0) limit = std::make_unique<ThreadLimit>(threads);
       },
-      py::arg("threads"), "Limits the threads of all renders; 0: as many as there are. Changes no result.");
+      py::arg("threads"), "Limits the threads of all renders; 0: all available. Does not change any result.");
 }
 
 }  // namespace
@@ -160,9 +160,9 @@ void bind_tools(py::module_& module) {
   module.def("compare", &compare, py::arg("picture"), py::arg("reference"),
              "dict: errors of the layer 'color' against a reference of the same size: 'mse'; 'rel_mse', the mean of\n"
              "(a - r)**2 / (r**2 + 0.01); 'flip' (HDR-FLIP, 0 to 1); 'mean', 'mean_reference', 'mean_ratio',\n"
-             "'max_difference'; 'non_finite', the number of values left out.");
+             "'max_difference'; 'non_finite', the number of excluded values.");
   module.def("denoise", &denoised, py::arg("picture"), py::call_guard<py::gil_scoped_release>(),
-             "The Picture without its noise, layer by layer. It needs the layers of session.picture(noise=True).");
+             "The Picture denoised layer by layer. It needs the layers of session.picture(noise=True).");
   module.def("converge", &converge, py::arg("scene"), py::kw_only(), py::arg("runs") = 50,
              py::arg("reference") = py::none(),
              "dict of arrays over 1, 2, 4 ... passes, from `runs` renders that differ in their seeds: 'passes';\n"
@@ -175,10 +175,11 @@ void bind_tools(py::module_& module) {
   module.def(
       "ibl", &bake, py::arg("environment"), py::kw_only(), py::arg("irradiance_size") = 32,
       py::arg("specular_size") = 256, py::arg("samples") = 4096,
-      "dict: what engines look up instead of integrating over an environment (docs/methods/ibl.md): 'irradiance',\n"
-      "a Picture of six faces side by side, over pi; 'specular', a list of (roughness, Picture) by level;\n"
-      "'sh' (9, 3), spherical harmonics of the irradiance over pi; 'mean' radiance.");
-  module.def("_methods", &methods_as_list, "What lanthorn.methods makes a list of Method.");
+      "dict: tables that engines look up instead of integrating over an environment (docs/methods/ibl.md): "
+      "'irradiance',\n"
+      "a Picture of six faces side by side, divided by pi; 'specular', a list of (roughness, Picture) by level;\n"
+      "'sh' (9, 3), spherical harmonics of the irradiance divided by pi; 'mean' radiance.");
+  module.def("_methods", &methods_as_list, "Data from which lanthorn.methods makes a list of Method.");
   bind_threads(module);
 }
 

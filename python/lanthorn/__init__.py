@@ -13,8 +13,8 @@
     for picture in session.passes(64):              # the picture after each pass
         print(session.pass_count, picture.error)
 
-Units are metres, watts and degrees; colours are linear Rec.709; a picture's rows start at the top. What is wrong with a
-file, a scene or an option raises `lanthorn.Error`, which says where. docs/python.md has the rest.
+Units are metres, watts and degrees; colours are linear Rec.709; a picture's rows start at the top. Invalid files,
+scenes and options raise `lanthorn.Error`, which says where. docs/python.md has the rest.
 """
 
 import html
@@ -58,9 +58,9 @@ from ._lanthorn import (
 def render(scene, *, denoise=False, **options):
     """Renders the scene and returns the Picture.
 
-    denoise: without its noise. options: as of Session, such as noise=0.02, passes=64, seconds=10, integrator="vcm",
-    resolution=(640, 360). Ctrl-C raises KeyboardInterrupt after the running pass, whose attribute `picture` is what was
-    rendered until then.
+    denoise: returns the denoised picture. options: as of Session, such as noise=0.02, passes=64, seconds=10,
+    integrator="vcm", resolution=(640, 360). Ctrl-C raises KeyboardInterrupt after the current pass; its attribute
+    `picture` holds the Picture up to then, or None before the end of the first pass.
     """
     session = Session(scene, **options)
     try:
@@ -72,14 +72,14 @@ def render(scene, *, denoise=False, **options):
 
 
 class Method(dict):
-    """What `methods` tells of a rendering method: 'name', 'summary', 'paper' and 'parameters', {name: (default, help)}."""
+    """A rendering method: 'name', 'summary', 'paper' and 'parameters', which is {name: (default, help)}."""
 
     def __repr__(self):
-        """Its name and summary in one line."""
+        """Name and summary in one line."""
         return f"<lanthorn.Method {self['name']}: {self['summary']}>"
 
     def _repr_html_(self):
-        """What notebooks show: the parameters with their defaults."""
+        """Representation in notebooks: the parameters with their defaults."""
         rows = "".join(_row(name, *texts) for name, texts in self["parameters"].items())
         paper = f"<br><i>{html.escape(self['paper'])}</i>" if self["paper"] else ""
         return f"<p><b>{html.escape(self['name'])}</b> {html.escape(self['summary'])}{paper}</p><table>{rows}</table>"
@@ -89,7 +89,7 @@ class Methods(list):
     """The methods, each a Method, in the order of `lanthorn list`."""
 
     def _repr_html_(self):
-        """What notebooks show: a line for each method."""
+        """Representation in notebooks: one row per method."""
         return f"<table>{''.join(_row(m['name'], m['summary'], m['paper']) for m in self)}</table>"
 
 
@@ -99,7 +99,7 @@ def _row(name, *texts):
 
 
 def methods():
-    """The rendering methods, a list of Method: what each is, where it comes from, and its parameters."""
+    """The rendering methods, a list of Method: summary, publication and parameters of each."""
     return Methods(map(Method, _lanthorn._methods()))
 
 
@@ -107,7 +107,7 @@ class Rays:
     """Rays of a tile: `origins` and `directions` (unit), both (n, 3) float32, metres, in the file's coordinates."""
 
     def __init__(self, origins, directions):
-        """Keeps both arrays as they are."""
+        """Keeps both arrays without copying them."""
         self.origins = origins
         self.directions = directions
 
@@ -117,7 +117,7 @@ class Rays:
 
 
 class Integrator:
-    """A rendering method in Python, to learn and to try things: override `radiance`, then `add_integrator`.
+    """A rendering method in Python, for teaching and experiments: override `radiance`, then call `add_integrator`.
 
         class Normals(lanthorn.Integrator):
             "shows normals as colours"
@@ -128,19 +128,19 @@ class Integrator:
         lanthorn.add_integrator("normals", Normals())
         lanthorn.render(scene, integrator="normals", passes=4)
 
-    Pixels, filters, passes, states and merging are those of every other method.
+    Pixels, filters, passes, states and merging work as for every other method.
     """
 
     def radiance(self, rays, scene, sampler):
-        """Returns the radiance along `rays` (Rays), shape (n, 3), linear Rec.709: one sample for each.
+        """Returns the radiance along `rays` (Rays), shape (n, 3), linear Rec.709: one sample per ray.
 
-        scene: Scene. sampler: numpy.random.Generator; draw all random numbers from it, so that a render can be repeated.
+        scene: Scene. sampler: numpy.random.Generator; draw all random numbers from it, so that renders are repeatable.
         """
         raise NotImplementedError("an integrator needs a method radiance(self, rays, scene, sampler)")
 
 
 def add_integrator(name, integrator):
-    """Makes an Integrator a method of this name for `render` and Session; again: another one in its place."""
+    """Registers an Integrator under this name for `render` and Session; replaces an earlier one of the same name."""
 
     def radiance(scene, origins, directions, key):
         import numpy

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The Lanthorn authors
 # SPDX-License-Identifier: Apache-2.0
-# Types of the module; help(lanthorn) has the words. tests/python/test_stubs.py compares both.
+# Types of the module; help(lanthorn) documents it. tests/python/test_stubs.py compares the two.
 from os import PathLike
 from typing import Any, Iterator, Mapping, Sequence
 

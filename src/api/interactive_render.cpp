@@ -31,16 +31,16 @@ using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
 constexpr double first_coarse_pixels = 96 * 96, fewest_coarse_pixels = 48 * 48;
-constexpr double coarse_seconds = 0.06;  // of a coarse pass: more than ten a second while the camera moves
-constexpr double patient_seconds = 1.5;  // longer full passes have pictures between the coarse one and theirs
-constexpr double largest_growth = 6;     // of the pixels from one of those pictures to the next
+constexpr double coarse_seconds = 0.06;  // for a coarse pass, so that more than ten a second fit while the camera moves
+constexpr double patient_seconds = 1.5;  // slower full passes get intermediate pictures after the coarse one
+constexpr double largest_growth = 6;     // of the pixel count from one of these pictures to the next
 constexpr double fewest_coarse_photons = 8000;
-constexpr Clock::duration moving_time = 300ms;      // that full passes wait for the next edit
+constexpr Clock::duration moving_time = 300ms;      // full passes wait this long for the next edit
 constexpr Clock::duration picture_interval = 40ms;  // between pictures of full passes
-constexpr int picture_share = 8;                    // making pictures takes this part of the time at most
-constexpr double denoising_growth = 1.5;            // of the passes, from one denoised picture to the next
-constexpr double denoising_rest = 3;                // rendering takes so many times as long before each
-constexpr double guessed_denoising_seconds = 1e-6;  // of a pixel, before one was denoised
+constexpr int picture_share = 8;                    // making pictures takes at most 1/8 of the time
+constexpr double denoising_growth = 1.5;            // in the number of passes, from one denoised picture to the next
+constexpr double denoising_rest = 3;                // before each preview, rendering runs this many times as long
+constexpr double guessed_denoising_seconds = 1e-6;  // per pixel, before the first measurement
 
 double seconds(Clock::duration time) { return std::chrono::duration<double>(time).count(); }
 
@@ -49,7 +49,7 @@ PixelWindow window_of(const ViewDescription& view, const RenderOptions& options)
 }
 double pixels_of(const PixelWindow& window) { return static_cast<double>(window.width()) * window.height(); }
 
-// The options of one pass of a picture of `share` times the width and the height.
+// The options for a single pass of a picture scaled by `share` in width and height.
 RenderOptions coarse_options(RenderOptions options, const description::Film& film, double share, double photons) {
   static_cast<ViewOptions&>(options) = scaled(options, film, share);
   options.photons = static_cast<std::uint64_t>(
@@ -58,7 +58,7 @@ RenderOptions coarse_options(RenderOptions options, const description::Film& fil
   return options;
 }
 
-// The noise is the difference of the halves of the passes.
+// Denoising needs passes in both halves, since their difference is the noise.
 bool has_both_halves(const InteractivePicture& picture) {
   std::array<bool, 2> has{};
   for (const PassRange& range : picture.state.passes)
@@ -73,7 +73,7 @@ InteractiveDenoised denoised_picture(const InteractivePicture& picture, bool is_
       is_preview, picture.state.pass_count};
 }
 
-// The pilot of `auto` would take longer than a coarse pass. Parameters of the scene's file are for another method.
+// Avoids the pilot of `auto`, which would take longer than a coarse pass. Drops parameters meant for another method.
 void leave_out_pilot(RenderOptions& options) {
   options.integrator = method_without_pilot;
   for (const ParameterInfo& p : find_integrator(method_without_pilot).parameters)
@@ -82,9 +82,9 @@ void leave_out_pilot(RenderOptions& options) {
 
 }  // namespace
 
-// One thread runs `run`. `wanted_` is what all edits add up to; the thread copies it, renders without the lock, and
-// looks again. An edit changes `wanted_` and sets `drop_` under the lock, under which the thread clears `drop_` and
-// copies, so that no edit is missed.
+// A single thread executes `run`. `wanted_` accumulates all edits; the thread copies it, renders without the lock, and
+// checks again. An edit changes `wanted_` and sets `drop_` under the lock, and the thread clears `drop_` and copies
+// under the same lock, so that no edit is missed.
 class InteractiveRender::Worker {
  public:
   Worker(SharedScene scene, const ViewDescription& view, const RenderOptions& options,
@@ -105,7 +105,7 @@ class InteractiveRender::Worker {
  private:
   using Lock = std::unique_lock<std::mutex>;
   struct Wanted {
-    std::shared_ptr<const std::function<SharedScene()>> make_scene;  // null once it has made the scene
+    std::shared_ptr<const std::function<SharedScene()>> make_scene;  // null once the scene is made
     std::uint64_t scene_revision = 0, options_revision = 0, revision = 0;
     ViewDescription view;
     RenderOptions options;
@@ -136,41 +136,41 @@ class InteractiveRender::Worker {
   InteractivePhase phase() const;
   InteractiveSnapshot seen() const;
   void tell_phase();
-  // With the lock.
+  // Call with the lock held.
   bool can_denoise_shown() const;
   void show(std::shared_ptr<const InteractivePicture> picture);
   void note_end(const Wanted& wanted, const RenderStatistics& statistics, const StopRule& stop);
 
   const InteractiveSettings settings_;
 
-  // Of the thread, and of those who wait for its end.
+  // Used by the thread, and by those who wait for it to end.
   SharedScene scene_;
   std::uint64_t scene_revision_ = 0, options_revision_ = 0, plan_revision_ = 0;
   std::optional<RenderPlan> plan_;
   std::vector<description::Warning> warnings_;
   double photons_per_pixel_ = 0;
-  double coarse_pixels_ = first_coarse_pixels;  // that a coarse pass in time has
+  double coarse_pixels_ = first_coarse_pixels;  // estimate of what a coarse pass can render in time
   Clock::time_point next_picture_{}, next_preview_{};
-  double preview_seconds_ = guessed_denoising_seconds;  // of a pixel
+  double preview_seconds_ = guessed_denoising_seconds;  // per pixel
 
-  mutable std::mutex mutex_;  // of all below
+  mutable std::mutex mutex_;  // guards all members below
   std::condition_variable edited_;
   mutable std::condition_variable changed_;
   Wanted wanted_;
   bool is_paused_ = false, denoises_ = false;
-  bool has_ended_ = false, is_over_ = false;  // `stop` was called; there is no thread any more
+  bool has_ended_ = false, is_over_ = false;  // `stop` was called; the thread has ended
   std::uint64_t coarse_revision_ = 0, failed_revision_ = 0, over_revision_ = 0;
-  InteractivePhase over_ = InteractivePhase::finished;  // of over_revision_
+  InteractivePhase over_ = InteractivePhase::finished;  // phase for over_revision_
   std::string problem_;
   Clock::time_point moving_until_{};
   std::shared_ptr<const InteractivePicture> picture_;
   std::shared_ptr<const InteractiveDenoised> denoised_;  // of the revision of picture_
   std::uint64_t number_ = 1;
-  InteractivePhase told_ = InteractivePhase::preparing;  // the last phase that `number_` counts
-  std::atomic<bool> drop_{false};                        // the running pass
-  std::atomic<bool> end_{false};                         // every pass, the first coarse ones of an edit, too
-  std::atomic<bool> rest_{false};                        // after the running pass
-  std::atomic<bool> drop_denoising_{false};              // what is being denoised
+  InteractivePhase told_ = InteractivePhase::preparing;  // the last phase counted in `number_`
+  std::atomic<bool> drop_{false};                        // abandons the running pass
+  std::atomic<bool> end_{false};                         // abandons every pass, even the first coarse one of an edit
+  std::atomic<bool> rest_{false};                        // pauses after the running pass
+  std::atomic<bool> drop_denoising_{false};              // abandons the running denoising
 
   std::once_flag joined_;
   std::thread thread_;
@@ -204,7 +204,7 @@ void InteractiveRender::Worker::run() {
     render(step, wanted);
     lock.lock();
   }
-  if (plan_) plan_->integrator.reset();  // what it has of OpenGL belongs to this thread
+  if (plan_) plan_->integrator.reset();  // its OpenGL objects belong to this thread
 }
 
 InteractiveRender::Worker::Step InteractiveRender::Worker::next_step() const {
@@ -216,7 +216,7 @@ InteractiveRender::Worker::Step InteractiveRender::Worker::next_step() const {
   return rests ? next_step_at_rest() : Step::refine;
 }
 
-// A picture of the end, and one that is paused, are denoised as they are: at first by a preview.
+// Final and paused pictures are denoised: first as a preview, then at full quality.
 InteractiveRender::Worker::Step InteractiveRender::Worker::next_step_at_rest() const {
   if (!can_denoise_shown()) return Step::rest;
   const bool is_over = over_revision_ == wanted_.revision;
@@ -225,7 +225,7 @@ InteractiveRender::Worker::Step InteractiveRender::Worker::next_step_at_rest() c
   return is_over && (!is_of_shown || denoised_->is_preview) ? Step::denoise : Step::rest;
 }
 
-// Until something changes, or hands have come to rest.
+// Waits until something changes or the current movement ends.
 void InteractiveRender::Worker::rest(Lock& lock) {
   if (Clock::now() < moving_until_)
     edited_.wait_until(lock, moving_until_);
@@ -236,7 +236,7 @@ void InteractiveRender::Worker::rest(Lock& lock) {
 void InteractiveRender::Worker::render(Step step, Wanted& wanted) {
   try {
     if (scene_revision_ != wanted.scene_revision) make_scene(wanted);
-    // Options that do not fit are refused before a coarse picture by them is shown.
+    // Invalid options are rejected before a coarse picture is shown.
     if (options_revision_ != wanted.options_revision) make_plan(wanted);
     if (step == Step::coarse)
       render_coarse(wanted);
@@ -277,11 +277,11 @@ bool InteractiveRender::Worker::is_wanted(const Wanted& wanted) const {
   return !has_ended_ && wanted.revision == wanted_.revision;
 }
 
-// Coarse pictures, each finer than the one before, until the full one will not be long in coming.
+// Renders coarse pictures, each finer than the last, until the full one will follow soon.
 void InteractiveRender::Worker::render_coarse(const Wanted& wanted) {
   const double full = pixels_of(window_of(wanted.view, wanted.options));
   const double taken = render_coarse(wanted, coarse_pixels_, /*is_first=*/true);
-  // At a few pixels all else counts more than these: then this many are a cautious guess.
+  // For few pixels, fixed costs dominate: then this pixel count is a cautious guess.
   const double growth = std::clamp(coarse_seconds / std::max(taken, 1e-4), 0.25, 2.0);
   double pixels = std::min(coarse_pixels_, full);
   coarse_pixels_ = std::clamp(pixels * growth, std::min(fewest_coarse_pixels, full), full);
@@ -305,7 +305,7 @@ double InteractiveRender::Worker::render_coarse(const Wanted& wanted, double pix
   RenderOptions options = coarse_options(wanted.options, wanted.view.film, share, photons_of(wanted, full));
   if (plan_->info->name == automatic_method) leave_out_pilot(options);
   RenderPlan plan = plan_render(*scene_, wanted.view, options);
-  // The first picture of an edit is worth waiting for; those after it are not.
+  // The first picture of an edit is always completed; later ones may be abandoned.
   const RenderStatistics statistics =
       lanthorn::render(*scene_, plan, {.passes = {0, 1}, .drop = is_first ? &end_ : &drop_, .undo = Undo::never});
   if (plan.state.pass_count() > 0) {
@@ -346,7 +346,7 @@ void InteractiveRender::Worker::refine(const Wanted& wanted) {
   if (drop_) return;
   const bool is_news = shown_passes < plan_->state.pass_count();
   auto last = is_news ? full_picture(wanted, stop, statistics) : nullptr;
-  // Who sees the end sees its picture, too.
+  // Updates phase and picture together, so that an observer of the end also sees its picture.
   const std::lock_guard lock(mutex_);
   if (!rest_) note_end(wanted, statistics, stop);
   if (last) show(std::move(last));
@@ -370,7 +370,7 @@ bool InteractiveRender::Worker::can_denoise_shown() const {
   return denoises_ && picture_ && picture_->revision == wanted_.revision && has_both_halves(*picture_);
 }
 
-// Without the lock, for which edits would have to wait.
+// Runs without the lock, because edits would have to wait for it.
 void InteractiveRender::Worker::denoise_shown(bool is_preview) {
   std::shared_ptr<const InteractivePicture> picture;
   {
@@ -404,7 +404,7 @@ void InteractiveRender::Worker::note_end(const Wanted& wanted, const RenderStati
   over_ = is_good || has_all ? InteractivePhase::finished : InteractivePhase::out_of_time;
 }
 
-// What coarse and full pictures have in common.
+// The parts that coarse and full pictures have in common.
 InteractivePicture InteractiveRender::Worker::make_picture(const Wanted& wanted, const RenderPlan& plan,
                                                            const RenderStatistics& statistics) const {
   const PixelWindow full = window_of(wanted.view, wanted.options);
@@ -414,7 +414,7 @@ InteractivePicture InteractiveRender::Worker::make_picture(const Wanted& wanted,
                              .state = summarize(plan.state),
                              .statistics = statistics,
                              .limitation = plan.integrator->limitation(*scene_)};
-  picture.state.integrator = plan_->state.integrator;  // whatever stands in for it in a coarse picture
+  picture.state.integrator = plan_->state.integrator;  // even if a coarse picture used another method
   return picture;
 }
 

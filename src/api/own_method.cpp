@@ -28,12 +28,11 @@ class OwnMethod final : public Integrator {
   explicit OwnMethod(OwnRadiance radiance) : radiance_(std::move(radiance)) {}
 
   void prepare(const RenderJob& job) override {
-    if (job.settings.color != ColorMode::rgb)
-      throw Error("methods of a program's own render in RGB only (--color rgb)");
+    if (job.settings.color != ColorMode::rgb) throw Error("user-defined methods render in RGB only (--color rgb)");
     scene_ = std::make_shared<const Scene>(job.scene.data());
   }
   FilmContents film_contents(const Scene&) const override { return {}; }
-  // Whole before any of it is in the film: what the function throws leaves no half of a pass.
+  // Computes the whole pass before adding any of it to the film, so that an exception leaves no partial pass.
   PassReport render_pass(const RenderJob& job, std::uint32_t pass, const FilmPass& film,
                          const PhaseObserver& begin) override {
     begin(Phase::eye);

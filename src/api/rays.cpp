@@ -19,7 +19,7 @@ namespace lanthorn {
 
 namespace {
 
-// Where nothing disperses, the wavelength changes nothing in RGB.
+// An arbitrary wavelength: without dispersion, it does not affect RGB.
 const Wavelengths middle_wavelength = Wavelengths::rgb(0.5f);
 
 Ray ray_in_scene(const Scene& scene, const SceneRay& ray, std::size_t index) {
@@ -42,7 +42,7 @@ std::vector<Ray> rays_in_scene(const Scene& scene, std::span<const SceneRay> ray
   return all;
 }
 
-// The nearest surface that is one, and not only an interface of media.
+// The nearest actual surface, skipping interfaces between media.
 std::optional<SurfacePoint> nearest_surface(const Scene& scene, Ray ray) {
   for (;;) {
     std::optional<SurfacePoint> at = scene.intersect(ray, middle_wavelength);
@@ -112,7 +112,7 @@ std::vector<Rgb> radiance_along(const Scene& scene, std::span<const SceneRay> ra
 }
 
 struct SurfaceBsdf::At {
-  SharedScene scene;  ///< has the closure
+  SharedScene scene;  ///< keeps the BSDF's scene alive
   SurfacePoint point;
 };
 

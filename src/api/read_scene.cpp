@@ -30,7 +30,7 @@ SceneDescription read_at(SceneSource& source, const std::filesystem::path& path,
     if (replace_window_glass(scene) == 0)
       scene.warnings.push_back(
           {{path.string()}, "--window-glass: no thin dielectric and no flat slab of clear glass is in the scene"});
-    scene.hash = hash_words({scene.hash, 1});  // another scene
+    scene.hash = hash_words({scene.hash, 1});  // a different scene
   }
   move_origin(scene);
   if (options.environment.source.empty()) return scene;
@@ -41,7 +41,7 @@ SceneDescription read_at(SceneSource& source, const std::filesystem::path& path,
 
 void check_environment(const EnvironmentChoice& environment) {
   if (environment.source.empty() && !(environment == EnvironmentChoice()))
-    throw Error("--environment-rotate, -scale, -up: expected --environment FILE, which they are about");
+    throw Error("--environment-rotate, -scale, -up: expected --environment FILE, to which they apply");
 }
 
 }  // namespace

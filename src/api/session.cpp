@@ -23,14 +23,14 @@ namespace lanthorn {
 
 namespace {
 
-// A copy of the film is made after a pass if that took this many times as long as the copy.
+// The film is copied after a pass if the pass took this many times as long as the copy.
 constexpr double passes_per_copy = 50;
 constexpr double bytes_copied_per_second = 1e9;
 
 }  // namespace
 
-// While passes run, the film belongs to the thread that renders. Other threads see the copy that it publishes between
-// passes: after each long pass, and after a short one if somebody waits for it.
+// While passes run, the film belongs to the rendering thread. Other threads see the copy that it publishes between
+// passes: after each long pass, and after a short one if another thread waits for it.
 struct Session::Impl {
   SharedScene scene;
   ViewDescription view;
@@ -38,7 +38,7 @@ struct Session::Impl {
   RenderPlan plan;
   std::atomic<bool> stopped{false};
 
-  std::mutex mutex;  // of all below
+  std::mutex mutex;  // guards all members below
   std::condition_variable changed;
   bool is_running = false;
   std::uint64_t passes_done = 0;
@@ -49,7 +49,7 @@ struct Session::Impl {
     std::uint64_t passes = 0;
   };
   std::optional<Published> published;
-  double pass_seconds = std::numeric_limits<double>::infinity();  // of the last pass; of a resumed render not known
+  double pass_seconds = std::numeric_limits<double>::infinity();  // of the last pass; unknown for a resumed render
 
   Impl(SharedScene scene_, ViewDescription view_, RenderOptions options_)
       : scene(std::move(scene_)),
@@ -103,7 +103,7 @@ struct Session::Impl {
     is_awaited = false;
     changed.notify_all();
   }
-  // Into the memory of the last copy: the system's fresh pages would take longer than the copy.
+  // Copies into the memory of the last copy: faulting in fresh pages would take longer than copying.
   void copy_film() {
     if (!published) {
       published = Published{plan.state.film, plan.state.passes, passes_done};
@@ -168,7 +168,7 @@ bool Session::render_pass() {
   while (state.has_pass(next)) ++next;
   impl_->run({.passes = {next, next + 1}, .drop = &impl_->stopped, .undo = Undo::always}, {});
   const bool is_done = state.has_pass(next);
-  if (!is_done) impl_->stopped = false;  // else a stop that came too late is for the next pass
+  if (!is_done) impl_->stopped = false;  // otherwise the stop came too late and applies to the next pass
   return is_done;
 }
 
@@ -186,7 +186,7 @@ const RenderState& Session::state() const { return impl_->plan.state; }
 void Session::resume(const std::shared_ptr<RenderState>& state, const std::string& name) {
   RenderPlan& plan = impl_->plan;
   require_same_identity(*state, plan.state.settings, name);
-  // The settings are text in the file, which need not be true of its film.
+  // The settings are text in the file and need not match its film.
   const Film &film = state->film, &expected = plan.state.film;
   if (state->integrator != plan.state.integrator || state->shardable != plan.state.shardable ||
       film.width() != expected.width() || film.height() != expected.height() || film.contents() != expected.contents())

@@ -27,7 +27,7 @@ void tighten(std::optional<Number>& limit, std::optional<Number> other) {
   if (other) limit = std::min(*other, limit.value_or(*other));
 }
 
-// A hierarchy of groups as it is mounted, and the group of this process in it.
+// A mounted hierarchy of control groups, and this process's group in it.
 struct Hierarchy {
   bool unified = false;  // version 2
   fs::path mount, group;
@@ -42,7 +42,7 @@ bool has_word(std::string_view list, std::string_view word) {
   return false;
 }
 
-// The kernel writes spaces and backslashes in paths as octal numbers.
+// The kernel writes spaces and backslashes in paths as octal escapes.
 std::string unescaped(std::string_view text) {
   std::string plain;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -54,8 +54,8 @@ std::string unescaped(std::string_view text) {
   return plain;
 }
 
-// The path of this process's group in the hierarchy that has `controller`, or in that of version 2 if this is empty:
-// lines "4:cpu,cpuacct:/path" and "0::/path".
+// The path of this process's group in the hierarchy that has `controller`, or in that of version 2 if `controller` is
+// empty. Parses lines "4:cpu,cpuacct:/path" and "0::/path".
 std::optional<std::string> group_path(const fs::path& root, std::string_view controller) {
   std::ifstream in(root / "proc/self/cgroup");
   for (std::string line; std::getline(in, line);) {
@@ -67,14 +67,14 @@ std::optional<std::string> group_path(const fs::path& root, std::string_view con
   return {};
 }
 
-// The path below the folder that is mounted. In a container the mount may begin at the process's own group, or the
-// path may lead out of what is mounted: the mount point is all that can be seen then.
+// The path relative to the mounted folder. In a container the mount may start at the process's own group, or the path
+// may lead outside the mount: then only the mount point is visible.
 fs::path below_mount(const fs::path& path, const fs::path& mounted) {
   const fs::path below = path.lexically_relative(mounted);
   return below.empty() || *below.begin() == ".." || below == "." ? fs::path() : below;
 }
 
-// Lines of mountinfo: id, parent, device, mounted folder, mount point, options ..., "-", type, source, options.
+// Parses lines of mountinfo: id, parent, device, mounted folder, mount point, options ..., "-", type, source, options.
 std::vector<Hierarchy> hierarchies_with(const fs::path& root, std::string_view controller) {
   std::vector<Hierarchy> found;
   std::ifstream in(root / "proc/self/mountinfo");
@@ -95,7 +95,7 @@ std::vector<Hierarchy> hierarchies_with(const fs::path& root, std::string_view c
   return found;
 }
 
-// Calls `visit(folder, unified)` for the process's group and the groups around it that can be seen.
+// Calls `visit(folder, unified)` for the process's group and its visible ancestors.
 template <class Visit>
 void visit_groups(const fs::path& root, std::string_view controller, Visit&& visit) {
   for (const Hierarchy& h : hierarchies_with(root, controller))
@@ -110,7 +110,7 @@ std::optional<double> cores_of(const fs::path& group, bool unified) {
   if (unified) {
     if (std::ifstream in(group / "cpu.max"); !(in >> quota >> period)) return {};  // also for "max"
   } else {
-    quota = read_number<double>(group / "cpu.cfs_quota_us").value_or(-1);  // -1 is none
+    quota = read_number<double>(group / "cpu.cfs_quota_us").value_or(-1);  // -1 means no limit
     period = read_number<double>(group / "cpu.cfs_period_us").value_or(0);
   }
   if (!(quota > 0 && period > 0)) return {};
@@ -127,7 +127,7 @@ constexpr MemoryFiles memory_v2{"memory.max", "memory.current", "inactive_file"}
 void add_memory(const fs::path& group, bool unified, GroupLimits& limits) {
   const MemoryFiles& files = unified ? memory_v2 : memory_v1;
   const auto most = read_number<std::uint64_t>(group / files.limit);
-  constexpr std::uint64_t none = std::uint64_t{1} << 62;  // version 1 has a number for no limit
+  constexpr std::uint64_t none = std::uint64_t{1} << 62;  // version 1 reports a huge number for no limit
   if (!most || *most >= none) return;
   tighten(limits.memory, most);
   const auto used = read_number<std::uint64_t>(group / files.used);

@@ -10,15 +10,15 @@
 
 namespace lanthorn {
 
-/// The strictest limit of the process's control group and of all groups around it; nullopt: none.
+/// The strictest limits of the process's control group and all its ancestors; nullopt: none.
 struct GroupLimits {
-  std::optional<double> cores;               ///< CPU seconds for each second, such as 1.5
+  std::optional<double> cores;               ///< CPU seconds per second, such as 1.5
   std::optional<std::uint64_t> memory;       ///< bytes
   std::optional<std::uint64_t> memory_left;  ///< bytes that can still be allocated
 };
 
-/// Reads the limits of versions 1 and 2 of control groups, wherever they are mounted. Cached files count as free
-/// memory. Limits that cannot be read count as none. `root`: where /proc and /sys are, for tests.
+/// Reads the limits of control groups, versions 1 and 2, wherever they are mounted. Cached files count as free memory.
+/// Unreadable limits count as none. `root`: location of /proc and /sys, for tests.
 GroupLimits group_limits(const std::filesystem::path& root = "/");
 
 /// The number after `key` in a file of lines "key number"; nullopt if the key is missing.

@@ -62,7 +62,7 @@ class OpenFile {
   OpenFile(OpenFile&& other) noexcept
       : descriptor_(std::exchange(other.descriptor_, -1)), remove_(std::exchange(other.remove_, {})) {}
   OpenFile& operator=(OpenFile&&) = delete;
-  // The temporary file is removed before its lock is released.
+  // Removes the temporary file before releasing its lock.
   ~OpenFile() {
     if (!remove_.empty()) ::unlink(remove_.c_str());
     if (descriptor_ >= 0) ::close(descriptor_);
@@ -96,7 +96,7 @@ class OpenFile {
   int sync() const { return ::fsync(descriptor_) == 0 ? 0 : errno; }
   int close() { return ::close(std::exchange(descriptor_, -1)) == 0 ? 0 : errno; }
   void keep() { remove_.clear(); }
-  /// Leaves it to the caller to close the file.
+  /// Leaves closing the file to the caller.
   int release() { return std::exchange(descriptor_, -1); }
 
  private:
@@ -129,7 +129,7 @@ bool is_temporary(const std::string& name, const std::string& start) {
 
 fs::path folder_of(const fs::path& path) { return path.has_parent_path() ? path.parent_path() : fs::path("."); }
 
-// A process locks its temporary file for as long as it lives: an unlocked one is abandoned.
+// A process keeps its temporary file locked as long as it lives: an unlocked one is abandoned.
 void remove_abandoned_temporaries(const fs::path& target) {
   const std::string start = start_of_temporaries(target);
   std::error_code error;
@@ -143,7 +143,7 @@ void remove_abandoned_temporaries(const fs::path& target) {
   }
 }
 
-// Throws Error that names `path`, the name that the user gave for `target`.
+// Throws Error, naming `path`, the user's name for `target`.
 OpenFile create_temporary(const fs::path& target, mode_t mode, const fs::path& path) {
   while (true) {
     const fs::path temporary = folder_of(target) / (start_of_temporaries(target) + random_name() + ".tmp");
@@ -151,7 +151,7 @@ OpenFile create_temporary(const fs::path& target, mode_t mode, const fs::path& p
     if (descriptor < 0 && errno == EEXIST) continue;
     if (descriptor < 0) fail(path, errno);
     OpenFile file(descriptor, temporary);
-    // File systems without locks keep abandoned files.
+    // On file systems without locks, abandoned files remain.
     while (::flock(descriptor, LOCK_EX) != 0 && errno == EINTR) {
     }
     struct stat status {};
@@ -160,7 +160,7 @@ OpenFile create_temporary(const fs::path& target, mode_t mode, const fs::path& p
   }
 }
 
-// Gives the new file the owner, group and mode of the old one. If the group cannot be kept, the new group gets only the
+// Gives the new file the old one's owner, group and mode. If the group cannot be kept, the new group gets only the
 // permissions of others.
 void keep_permissions(int descriptor, const struct stat& old) {
   struct stat now {};
@@ -174,7 +174,7 @@ void keep_permissions(int descriptor, const struct stat& old) {
   ::fchmod(descriptor, mode);
 }
 
-// Makes the new name durable. Some file systems cannot do this; failure is ignored.
+// Makes the rename durable. Some file systems do not support this; failure is ignored.
 void sync_folder(const fs::path& folder) {
   const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (descriptor < 0) return;
@@ -182,11 +182,11 @@ void sync_folder(const fs::path& folder) {
   ::close(descriptor);
 }
 
-// A pipe that nobody reads is an error: opening it would wait for a reader, perhaps for ever.
+// A pipe without a reader is an error: opening it would block, possibly for ever.
 void write_in_place(const fs::path& path, std::span<const std::byte> bytes) {
   OpenFile file(::open(path.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK), {});
   if (file.descriptor() < 0) fail(path, errno);
-  if (::fcntl(file.descriptor(), F_SETFL, 0) != 0) fail(path, errno);  // a slow reader is waited for
+  if (::fcntl(file.descriptor(), F_SETFL, 0) != 0) fail(path, errno);  // from here on, waits for a slow reader
   if (const int code = file.write(bytes)) fail(path, code);
   if (const int code = file.close()) fail(path, code);
 }
@@ -220,7 +220,7 @@ fs::path follow_links(const fs::path& path) {
 
 struct FileSet::Pending {
   OpenFile file;
-  fs::path path, target;  ///< the name that was given, and what it leads to
+  fs::path path, target;  ///< the name given, and what it resolves to
 };
 
 FileSet::FileSet() = default;
@@ -298,7 +298,7 @@ RegularFile open_regular_file(const fs::path& path) {
   if (!fs::exists(path, code))
     throw Error(place, "no such file" + printable(did_you_mean(path.string(), file_names_beside(path))));
   // Checked before opening, because opening some devices triggers an action; checked again on the descriptor, because
-  // the name may lead elsewhere by then.
+  // the name may refer to something else by then.
   if (!fs::is_regular_file(path, code)) throw Error(place, "not a regular file");
   OpenFile file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY), {});
   if (file.descriptor() < 0) throw Error(place, "cannot be read; check its permissions");

@@ -26,14 +26,14 @@ bool lies_in(const fs::path& path, const fs::path& folder) {
 }
 
 Error no_such_file(const fs::path& path) {
-  return Error({path.string()}, "no such file in the scene's folder; with --sandbox no others are read");
+  return Error({path.string()}, "no such file in the scene's folder; --sandbox allows no others");
 }
 
 }  // namespace
 
 bool is_lfs_pointer(const fs::path& path) {
   constexpr std::string_view beginning = "version https://git-lfs.github.com/spec/";
-  constexpr std::uintmax_t largest = 1024;  // by Git LFS's specification
+  constexpr std::uintmax_t largest = 1024;  // according to Git LFS's specification
   std::error_code code;
   const std::uintmax_t size = fs::file_size(path, code);
   if (code || size < beginning.size() || size > largest) return false;
@@ -45,14 +45,13 @@ bool is_lfs_pointer(const fs::path& path) {
 namespace {
 
 void refuse_lfs_pointer(const fs::path& path) {
-  if (is_lfs_pointer(path))
-    throw Error({path.string()}, "only a pointer of Git LFS is here; git lfs pull fetches the file");
+  if (is_lfs_pointer(path)) throw Error({path.string()}, "only a Git LFS pointer; git lfs pull fetches the file");
 }
 
 }  // namespace
 
 fs::path FileAccess::checked(const fs::path& path) const {
-  // A zero byte would cut the name short where it is opened.
+  // A zero byte would truncate the name when the file is opened.
   if (path.native().find('\0') != std::string::npos) throw Error({printable(path.string())}, "no such file");
   std::error_code code;
   if (is_sandboxed()) {
@@ -83,7 +82,7 @@ bool equal_but_case(const std::string& a, const std::string& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(), [&](char x, char y) { return lower(x) == lower(y); });
 }
 
-// The first of the folder's entries that are called `name` but for case.
+// The first of the folder's entries that equals `name` except for case.
 std::optional<fs::path> entry_but_case(const fs::path& folder, const fs::path& name) {
   std::optional<fs::path> first;
   std::error_code code;
@@ -94,20 +93,20 @@ std::optional<fs::path> entry_but_case(const fs::path& folder, const fs::path& n
   return first;
 }
 
-// With the separators of this machine.
+// Replaces backslashes by slashes.
 fs::path with_slashes(const fs::path& name) {
   std::string text = name.string();
   std::replace(text.begin(), text.end(), '\\', '/');
   return text;
 }
 
-// True for names that lead out of the scene's folder: they tell of folders of the machine on which the scene was made.
+// True for names that lead out of the scene's folder: they refer to the machine on which the scene was made.
 bool leads_outside(const fs::path& name) {
   const std::string text = name.string();
   return text.starts_with('/') || text.starts_with("../") || (text.size() > 1 && text[1] == ':');
 }
 
-// Where a scene's file may be, by names relative to its folder, the likeliest first.
+// Possible locations of a scene's file, relative to its folder, the most likely first.
 std::vector<fs::path> likely_names(const fs::path& name) {
   const fs::path named = with_slashes(name);
   std::vector<fs::path> names;
@@ -122,7 +121,7 @@ std::vector<fs::path> likely_names(const fs::path& name) {
   return names;
 }
 
-// `name` in `folder`, of which parts may differ in case. It may be missing.
+// `name` in `folder`, with parts matched regardless of case. It may not exist.
 fs::path but_case(const fs::path& folder, const fs::path& name, const FileAccess& access) {
   fs::path found = folder;
   for (const fs::path& part : name) {

@@ -13,8 +13,7 @@
 
 namespace lanthorn {
 
-/// Memory in pages of 2 MiB where there is much of it and the system has them: it is given out, and addresses are
-/// looked up, by the page.
+/// Allocates large blocks in 2 MiB pages where the system has them: fewer page faults and TLB misses.
 template <class T>
 struct LargePageAllocator {
   using value_type = T;  // NOLINT(readability-identifier-naming): the standard's name
@@ -28,7 +27,7 @@ struct LargePageAllocator {
     const std::size_t alignment = alignment_of(count);
     void* const memory = ::operator new(count * sizeof(T), std::align_val_t(alignment));
 #ifdef __linux__
-    if (alignment == page) madvise(memory, count * sizeof(T), MADV_HUGEPAGE);  // a wish: it may be refused
+    if (alignment == page) madvise(memory, count * sizeof(T), MADV_HUGEPAGE);  // a hint that the system may ignore
 #endif
     return static_cast<T*>(memory);
   }

@@ -26,7 +26,7 @@ namespace fs = std::filesystem;
 constexpr std::array<std::string_view, 12> fast_sets{"sse4_2",   "avx",      "f16c",  "fma",  "avx2", "avx512f",
                                                      "avx512vl", "avx512dq", "asimd", "fphp", "sve",  "sve2"};
 
-// The level of the x86-64 psABI whose instructions this library may contain.
+// The x86-64 psABI level whose instructions this library may contain.
 constexpr const char* compiled_for =
 #if defined(__AVX512F__) && defined(__AVX512BW__) && defined(__AVX512CD__) && defined(__AVX512DQ__) && \
     defined(__AVX512VL__)
@@ -47,7 +47,7 @@ std::string trimmed(const std::string& text) {
   return begin == std::string::npos ? std::string() : text.substr(begin, text.find_last_not_of(blanks) - begin + 1);
 }
 
-// "key : value" lines.
+// Parses a line "key : value".
 std::optional<NamedText> named_text(const std::string& line) {
   const std::size_t colon = line.find(':');
   if (colon == std::string::npos) return {};
@@ -62,7 +62,7 @@ void read_flags(const std::string& text, std::vector<std::string>& sets) {
 }
 
 void read_processor(const fs::path& root, MachineInfo& machine) {
-  std::set<std::pair<std::string, std::string>> cores;  // socket and number
+  std::set<std::pair<std::string, std::string>> cores;  // socket and core number
   std::string socket;
   std::ifstream in(root / "proc/cpuinfo");
   for (std::string line; std::getline(in, line);) {
@@ -103,7 +103,7 @@ std::string first_line(const fs::path& file) {
   return line;
 }
 
-// Intel's hybrid processors have a list of threads for each kind.
+// Intel's hybrid processors list the threads of each kind of core.
 void read_core_kinds(const fs::path& root, MachineInfo& machine) {
   for (const auto& [folder, name] : {std::pair{"cpu_core", "performance"}, std::pair{"cpu_atom", "efficiency"}})
     if (const unsigned threads = length_of_list(first_line(root / "sys/devices" / folder / "cpus")))
@@ -118,7 +118,7 @@ std::vector<fs::path> sorted_entries(const fs::path& folder) {
   return entries;
 }
 
-// NVIDIA's driver tells a name. Others tell the numbers of vendor and device on the bus.
+// NVIDIA's driver reports a name; other drivers report vendor and device numbers.
 void read_gpus(const fs::path& root, MachineInfo& machine) {
   for (const fs::path& gpu : sorted_entries(root / "proc/driver/nvidia/gpus")) {
     std::ifstream in(gpu / "information");

@@ -8,7 +8,7 @@
 
 namespace lanthorn {
 
-/// What /proc and /sys below `root` say of the processor, the memory, limits of control groups, and GPUs.
+/// Reads processor, memory, control group limits and GPUs from /proc and /sys below `root`.
 MachineInfo machine_from_files(const std::filesystem::path& root);
 
 }  // namespace lanthorn

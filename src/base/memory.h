@@ -12,11 +12,11 @@
 
 namespace lanthorn {
 
-/// Bytes that this process can still allocate: the least of what the machine, its control groups (base/control_group.h)
-/// and its address-space limit (ulimit -v) leave. nullopt if none of them is known.
+/// Bytes that this process can still allocate: the minimum of what the machine, its control groups
+/// (base/control_group.h) and its address-space limit (ulimit -v) leave; nullopt if none of them is known.
 std::optional<std::uint64_t> available_memory();
 
-/// "1.5 GiB"; whole bytes below a KiB.
+/// "1.5 GiB"; whole bytes below one KiB.
 std::string memory_text(double bytes);
 
 /// Throws Error, "WHAT takes SIZE of memory, but there are only ...", if `bytes` exceeds the available memory. Requests

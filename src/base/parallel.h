@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// With threads.cpp the only file that includes TBB. Every parallel computation in Lanthorn is a loop over chunks whose
-// bounds do not depend on the number of threads, so results do not either.
+// The only file besides threads.cpp that includes TBB. Every parallel computation in Lanthorn is a loop over chunks
+// whose bounds do not depend on the number of threads, so results do not either.
 #pragma once
 
 #include <tbb/blocked_range.h>
@@ -25,16 +25,16 @@ struct Stopped {};
 namespace detail {
 inline thread_local const std::atomic<bool>* stop_flag = nullptr;
 
-/// The tasks of a loop treat denormal numbers as its caller does. Without a context of its own, a loop treats them as
-/// its thread did when it first used TBB; if that was within Embree, which flushes them to zero, results would differ.
+/// Makes a loop's tasks treat denormal numbers as its caller does. Without its own context, a loop would treat them as
+/// its thread did on first using TBB; if that was inside Embree, which flushes them to zero, results would differ.
 struct LoopContext {
   tbb::task_group_context of_tasks;
   LoopContext() { of_tasks.capture_fp_settings(); }
 };
 }  // namespace detail
 
-/// While it lives, the parallel loops that its thread starts, and all loops nested in them, throw `Stopped` between
-/// chunks once the flag is set (by any thread or a signal handler). Null: loops cannot be stopped.
+/// During its lifetime, the parallel loops that its thread starts, and all loops nested in them, throw `Stopped`
+/// between chunks once the flag is set (by any thread or a signal handler). Null: loops cannot be stopped.
 class StopScope {
  public:
   explicit StopScope(const std::atomic<bool>* flag) : before_(std::exchange(detail::stop_flag, flag)) {}
@@ -68,7 +68,7 @@ void parallel_for(Index begin, Index end, Body&& body) {
 }
 
 /// Splits [0, count) into chunks of `chunk` items (the last may be shorter) and calls `body(chunk_index, begin, end)`
-/// for each, in any order and on any thread. Chunk bounds depend on `count` and `chunk` alone.
+/// for each, in any order and on any thread. Chunk bounds depend only on `count` and `chunk`.
 template <class Body>
 void parallel_chunks(std::size_t count, std::size_t chunk, Body&& body) {
   const std::size_t chunks = (count + chunk - 1) / chunk;
@@ -86,7 +86,7 @@ void parallel_chunks(std::size_t count, std::size_t chunk, Body&& body) {
       context.of_tasks);
 }
 
-/// Sorts values in parallel. They must all differ, so that the result does not depend on the threads.
+/// Sorts values in parallel. They must be distinct, so that the result does not depend on the threads.
 template <class Values>
 void parallel_sort(Values& values) {
   tbb::parallel_sort(values.begin(), values.end());

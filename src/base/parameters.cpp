@@ -21,7 +21,7 @@ Parameters::Parameters(const std::vector<ParameterInfo>& known, const std::map<s
       names.reserve(known.size());
       for (const ParameterInfo& p : known) names.push_back(p.name);
       if (known.empty())
-        throw Error(fmt::format("--set {}={}: integrator '{}' has no parameters; -i names a method that has", name,
+        throw Error(fmt::format("--set {}={}: integrator '{}' has no parameters; -i selects another method", name,
                                 value, integrator));
       const std::string meant = did_you_mean(name, names);
       throw Error(fmt::format("--set {}={}: integrator '{}' has no such parameter{}", name, value, integrator,

@@ -33,7 +33,7 @@ class Parameters {
   std::map<std::string, std::string> values_;
 };
 
-/// The value of a parameter that takes one of several words. Throws Error that lists them for any other word.
+/// The value of a parameter that takes one of several words. Throws Error, listing them, for any other word.
 template <class Value, std::size_t n>
 Value choice(const Parameters& parameters, const char* name,
              const std::array<std::pair<const char*, Value>, n>& known) {

@@ -9,11 +9,11 @@
 
 namespace lanthorn {
 
-/// Objects whose memory is worth keeping, lent to one user at a time. Any thread may borrow one.
+/// Reusable objects with expensive memory, each lent to one user at a time. Any thread may borrow.
 template <class T>
 class Pool {
  public:
-  /// Gives the object back at its end.
+  /// Returns the object in its destructor.
   class Loan {
    public:
     Loan(Pool& pool, std::unique_ptr<T> item) : pool_(pool), item_(std::move(item)) {}
@@ -28,7 +28,7 @@ class Pool {
     std::unique_ptr<T> item_;
   };
 
-  /// One that is free, as its last user left it, or a new one.
+  /// Returns a free object in the state its last user left it, or a new one.
   Loan borrow() {
     const std::lock_guard lock(mutex_);
     if (free_.empty()) return {*this, std::make_unique<T>()};

@@ -24,7 +24,7 @@ constexpr const char* another_folder = "set TMPDIR to another folder";
 
 std::string reason(int code) { return std::generic_category().message(code); }
 
-// Some file systems have no nameless files: there the name is removed at once.
+// Some file systems do not support unnamed files: there the name is removed immediately.
 int open_nameless(const fs::path& folder) {
   const int file = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
   if (file >= 0 || (errno != EOPNOTSUPP && errno != EISDIR && errno != ENOENT)) return file;
@@ -47,7 +47,7 @@ fs::path scratch_folder() {
 ScratchFile::ScratchFile(fs::path folder) : folder_(std::move(folder)), descriptor_(open_nameless(folder_)) {
   if (descriptor_ < 0)
     throw Error({folder_.string()},
-                fmt::format("no temporary file can be made here: {}; {}", reason(errno), another_folder));
+                fmt::format("cannot create a temporary file here: {}; {}", reason(errno), another_folder));
 }
 
 ScratchFile::~ScratchFile() { ::close(descriptor_); }

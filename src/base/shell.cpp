@@ -12,7 +12,7 @@ namespace lanthorn {
 
 namespace {
 
-// $'...' with all but printable ASCII as octal numbers.
+// $'...' with everything except printable ASCII as octal escapes.
 std::string escaped_word(const std::string& text) {
   std::string word = "$'";
   for (const char c : text) {

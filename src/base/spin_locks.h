@@ -9,8 +9,8 @@
 
 namespace lanthorn {
 
-/// Locks for the items of an array, each of which serves a group of neighbours. For critical sections of some
-/// nanoseconds that seldom meet: a thread that waits tries again. A copy has locks of its own, none of which is taken.
+/// Locks for the items of an array; each lock covers groups of neighbouring items. For critical sections of a few
+/// nanoseconds that rarely collide: a waiting thread spins. A copy gets its own locks, all free.
 class SpinLocks {
  public:
   SpinLocks() : locks_(std::make_unique<Lock[]>(count)) {}
@@ -18,7 +18,7 @@ class SpinLocks {
   SpinLocks& operator=(const SpinLocks&) { return *this; }
   ~SpinLocks() = default;
 
-  /// Holds the lock of item `index` while it lives.
+  /// Holds the lock of item `index` during its lifetime.
   class Guard {
    public:
     Guard(const SpinLocks& locks, std::size_t index) : lock_(locks.locks_[index / group % count].flag) {
@@ -33,9 +33,9 @@ class SpinLocks {
   };
 
  private:
-  static constexpr std::size_t count = 1021;  // a prime: groups in one column of a picture have different locks
+  static constexpr std::size_t count = 1021;  // a prime, so that groups in one column of a picture use different locks
   static constexpr std::size_t group = 16;
-  struct alignas(64) Lock {  // a cache line each: threads that take neighbouring locks do not disturb one another
+  struct alignas(64) Lock {  // one cache line each: avoids false sharing
     std::atomic_flag flag;
   };
   std::unique_ptr<Lock[]> locks_;

@@ -12,7 +12,7 @@ namespace lanthorn {
 
 namespace {
 
-constexpr int longest = 32;  // characters of a file's text that a message shows
+constexpr int longest = 32;  // maximum number of characters of a file's text in a message
 
 // The UTF-8 character at the start of a text; `bytes` is 0 if there is none.
 struct Character {

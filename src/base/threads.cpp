@@ -43,18 +43,18 @@ unsigned startable_threads(unsigned wanted) {
     try {
       threads.reserve(wanted);
       while (threads.size() < wanted) threads.emplace_back([&] { counted.wait(); });
-    } catch (const std::exception&) {  // std::system_error or std::bad_alloc: no more threads
+    } catch (const std::exception&) {  // std::system_error or std::bad_alloc: no more threads available
     }
     started = static_cast<unsigned>(threads.size());
     counted.count_down();
   }
-  // The system still counts a thread for a moment after it has been joined.
+  // The system may still count a thread for a moment after it has been joined.
   for (int i = 0; i < 100 && threads_of_this_process() > before; ++i)
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   return started;
 }
 
-// Four were seen on two cores.
+// Observed: four on two cores.
 unsigned threads_of_image_libraries() { return 2 * std::max(2u, std::thread::hardware_concurrency()); }
 
 namespace {
@@ -62,7 +62,7 @@ namespace {
 unsigned most_threads() { return static_cast<unsigned>(tbb::this_task_arena::max_concurrency()); }
 
 // TBB throws if it cannot start a thread that its limit allows, even while a limit is being lifted. If threads are
-// short, a limit is therefore set for good.
+// scarce, a permanent limit is therefore set.
 std::size_t available_threads(unsigned threads) {
   const unsigned workers = std::min(threads, most_threads()) - 1;
   const unsigned left = threads_of_image_libraries(), started = startable_threads(workers + left);
@@ -78,13 +78,13 @@ std::size_t available_threads(unsigned threads) {
 
 namespace {
 
-// The limits of all `ThreadLimit`s that live, oldest first. TBB itself would take the least of them.
+// The limits of all live `ThreadLimit`s, oldest first. TBB itself would apply the smallest of them.
 struct Limits {
   std::mutex mutex;
   std::list<std::size_t> living;
   std::optional<tbb::global_control> control;
 
-  // Replaces TBB's limit by the newest. The caller holds the mutex.
+  // Makes TBB use the newest limit. The caller holds the mutex.
   void apply() {
     control.reset();
     if (!living.empty()) control.emplace(tbb::global_control::max_allowed_parallelism, living.back());
@@ -115,7 +115,7 @@ ThreadLimit::~ThreadLimit() {
   limits().apply();
 }
 
-unsigned allowed_threads() { return most_threads(); }  // TBB looks at the affinity
+unsigned allowed_threads() { return most_threads(); }  // TBB takes CPU affinity into account
 
 std::string version_of_tbb() { return TBB_runtime_version(); }
 

@@ -7,22 +7,22 @@
 
 namespace lanthorn {
 
-/// Number of threads, at most `wanted`, that can be started besides this one; starts them briefly to find out. Less
-/// than `wanted` if the system limits the threads of a user or a container, or if their stacks do not fit into memory.
+/// Number of threads, at most `wanted`, that can be started besides this one; determined by starting them briefly. Less
+/// than `wanted` if the system limits the threads of a user or container, or if their stacks do not fit into memory.
 unsigned startable_threads(unsigned wanted);
 
-/// Number of threads that are left to the libraries behind images (image/image_codec.h), which start theirs when they
-/// are loaded, and end the program if they cannot.
+/// Number of threads reserved for the libraries behind image codecs (image/image_codec.h), which start their threads
+/// when loaded, and end the program if they cannot.
 unsigned threads_of_image_libraries();
 
 /// Number of hardware threads that this process may run on (CPU affinity).
 unsigned allowed_threads();
 
-/// Number of threads that use so many cores for as many CPU seconds a second as `quota` grants.
+/// Number of threads that use up to `cores` cores within a quota of `quota` CPU seconds per second.
 unsigned threads_for(unsigned cores, std::optional<double> quota);
 
-/// Number of threads that keep this process's share of the machine busy: those that it may have, or fewer if a control
-/// group (container) grants less CPU time; a share of a core counts as one.
+/// Number of threads that fully use this process's share of the machine: all allowed threads, or fewer if a control
+/// group (container) grants less CPU time; a fraction of a core counts as one.
 unsigned usable_threads();
 
 std::string version_of_tbb();

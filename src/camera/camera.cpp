@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 // References:
-//   Pharr, Jakob, Humphreys 2023, "Physically Based Rendering" 4e, ch. 5 (which ray a film position means).
+// Pharr, Jakob, Humphreys 2023, "Physically Based Rendering" 4e, ch. 5 (rays of film positions).
 //   Kolb, Mitchell, Hanrahan 1995, "A Realistic Camera Model for Computer Graphics".
 //   Veach 1997, §8.3 and §10.3 (importance of a lens, its sampling from the scene).
 #include "camera/camera.h"
@@ -20,7 +20,7 @@ constexpr double double_pi = std::numbers::pi;
 
 double cube(double x) { return x * x * x; }
 
-// Panoramas of both layouts have y up; the maps have z up.
+// Panoramas in both layouts have y up; the mappings have z up.
 DVec3 swap_yz(const DVec3& v) { return {v.x, v.z, v.y}; }
 
 // World-space area per unit area of the orthographic film plane.
@@ -38,7 +38,7 @@ AnimatedTransform framing(const description::Camera& camera, int width, int heig
   const float tangent = std::tan(to_radians(perspective->fov / 2)) / margin;
   const float distance =
       half.z + std::max(half.x / (tangent * std::max(aspect, 1.0f)), half.y / (tangent * std::max(1 / aspect, 1.0f)));
-  const Transform move = translate({centre.x, centre.y, centre.z - (distance > 0 ? distance : 1)});  // of a point: 1
+  const Transform move = translate({centre.x, centre.y, centre.z - (distance > 0 ? distance : 1)});  // 1 for a point
   const AnimatedTransform& to_world = camera.camera_to_world;
   return {to_world.start * move, to_world.end * move, to_world.start_time, to_world.end_time};
 }
@@ -157,7 +157,7 @@ CameraRay Camera::sample_ray(const Vec2& raster, const Vec2& u_lens, float time)
   return result;
 }
 
-// The footprint of a pixel for one point of the lens: the shorter of its extents. A realistic camera has none.
+// Sets the footprint of a pixel for one lens point: the shorter of its extents. Realistic cameras have none.
 void Camera::set_footprint(const DVec3& direction, Ray& ray) const {
   const double pixel = std::fmin(std::fabs(pixel_step_.x), std::fabs(pixel_step_.y));
   switch (kind_) {
@@ -171,7 +171,7 @@ void Camera::set_footprint(const DVec3& direction, Ray& ray) const {
       ray.spread = static_cast<float>(
           std::fmin(double_pi / height_, 2 * double_pi / width_ * std::hypot(direction.x, direction.z)));
       break;
-    case Kind::equal_area:  // its pixels are squares in the mean, and at most twice as long as wide
+    case Kind::equal_area:  // its pixels are squares on average, and at most twice as long as wide
       ray.spread = static_cast<float>(0.7 * std::sqrt(4 * double_pi / (1.0 * width_ * height_)));
       break;
     case Kind::realistic:
@@ -179,8 +179,8 @@ void Camera::set_footprint(const DVec3& direction, Ray& ray) const {
   }
 }
 
-// Density per solid angle of directions at an angle to the axis, for film positions uniform over the whole film. The
-// screen of area A at z = 1 subtends dw = cos^3 dA. For the thin lens the same holds at its plane of focus.
+// Density per solid angle of directions at this angle to the axis, for film positions uniform over the whole film. The
+// screen of area A at z = 1 subtends dw = cos^3 dA. For a thin lens the same holds at its plane of focus.
 double Camera::direction_density(double cos) const {
   return 1 / (std::fabs(screen_size_.x * screen_size_.y) * cube(cos));
 }
@@ -215,14 +215,14 @@ std::optional<Camera::FilmHit> Camera::film_hit(const LensRay& from_scene) const
   return FilmHit{glm::dvec2(film), rear->direction};
 }
 
-// Flux through the lens's front that reaches the film on any path inside the lens: the density of that path is not
-// needed.
+// Flux through the lens's front that reaches the film on any path inside the lens, so that no density of the internal
+// path is needed.
 std::optional<Camera::Sight> Camera::sight_through_lens(const DVec3& local, const Vec2& u_lens) const {
   const double radius = lens_.front_radius();
   const LensSystem::FrontPoint front = lens_.front_point(radius * glm::dvec2(sample_concentric_disk(u_lens)));
   const DVec3 way = front.position - local;
   const double facing = -glm::dot(glm::normalize(way), front.normal);
-  // A ray that meets the front surface from behind has already crossed it: it belongs to another front point.
+  // A ray that hits the front surface from behind has already crossed it: it belongs to another front point.
   if (!(facing > 0)) return {};
   const std::optional<FilmHit> hit = film_hit({local, way});
   if (!hit) return {};
@@ -275,10 +275,9 @@ std::optional<CameraConnection> Camera::connect(const Point& p, const Vec2& u_le
   return c;
 }
 
-// Etendue is conserved: the density of a ray per area and per projected solid angle is the same in front of and behind
-// the lens.
+// Etendue is conserved: a ray's density per area and projected solid angle is the same in front of and behind the lens.
 CameraPdf Camera::lens_pdf(const DVec3& origin, const DVec3& direction) const {
-  // Rays from sample_ray start on the front surface; starting slightly before it, they meet it again.
+  // Rays from sample_ray start on the front surface; moved slightly forward, they hit it again.
   const LensRay from_scene{origin + 1e-3 * lens_.front_radius() * direction, -direction};
   const std::optional<FilmHit> hit = film_hit(from_scene);
   if (!hit || !sees(raster(-hit->film))) return {};
@@ -315,7 +314,7 @@ float Camera::time(float u) const { return lerp(u, shutter_open_, shutter_close_
 float Camera::density_at(const Ray& ray, float distance) const {
   const float pixels = static_cast<float>(width_) * static_cast<float>(height_);
   if (kind_ != Kind::orthographic) return pixels * pdf(ray).direction / (distance * distance);
-  // With a fixed lens sample all rays are parallel.
+  // For a fixed lens sample all rays are parallel.
   std::optional<Affine> moved;
   const Affine& map = to_world_.at(ray.time, moved);
   const double cos = glm::normalize(map.inverse_vector(DVec3(ray.direction))).z;

@@ -14,7 +14,7 @@
 
 namespace lanthorn {
 
-/// A camera ray for a film position. Its footprint is that of a pixel.
+/// A camera ray for a film position, with the footprint of a pixel.
 struct CameraRay {
   Ray ray;
   /// Pixel value = radiance along the ray × this weight. 1 for cameras that measure radiance. A realistic camera
@@ -29,19 +29,19 @@ struct CameraConnection {
   Direction towards{0};  ///< from the point to the lens
   Point lens_point{0};
   float distance = 0;  ///< metres to the lens point
-  /// W_e |cos at the lens| / (pdf of the lens point per area * distance²). Multiply it by the radiance that the point
-  /// sends towards the lens and by |cos| at the point: the product is the contribution to the sum over pixels. It is
-  /// normalised so that a pixel's value is its mean radiance (realistic camera: irradiance).
+  /// W_e |cos at the lens| / (pdf of the lens point per area * distance²). Times the radiance that the point sends
+  /// towards the lens and |cos| at the point, this is the contribution to the sum over pixels. Normalised so that a
+  /// pixel's value is its mean radiance (realistic camera: irradiance).
   float importance = 0;
 };
 
-/// Densities of camera rays (for MIS): per area of the lens, and per solid angle.
+/// Densities of camera rays, for MIS: per area of the lens, and per solid angle.
 struct CameraPdf {
   float position = 0;
   float direction = 0;
 };
 
-/// Camera to world, for a film of this size: of a camera with a subject, the place from which it frames that.
+/// Camera-to-world transform for a film of this size, including the framing of the camera's subject.
 AnimatedTransform framing(const description::Camera& camera, int width, int height);
 
 /// A perspective or orthographic camera (both with thin lens), a spherical or a realistic camera. It moves if its
@@ -61,8 +61,8 @@ class Camera {
   /// Densities with which `sample_ray`, for raster positions uniform over the whole film, samples this ray. For a
   /// realistic camera only their product is meaningful; 0 if the lens blocks the ray.
   CameraPdf pdf(const Ray& ray) const;
-  /// Density with which the rays of one pixel arrive at `distance` along `ray`, per area perpendicular to it. The rays
-  /// are uniform over the pixel and share the lens sample of `ray`. For MIS; 0 if the lens blocks the ray.
+  /// Density, per area perpendicular to `ray`, of a pixel's rays at `distance` along it. These rays are uniform over
+  /// the pixel and share the lens sample of `ray`. For MIS; 0 if the lens blocks the ray.
   float density_at(const Ray& ray, float distance) const;
 
   /// Time in the shutter interval for u in [0,1).
@@ -90,7 +90,7 @@ class Camera {
   // The point at which a ray from the scene reaches the film, and its direction there.
   struct FilmHit {
     glm::dvec2 film{0.0};
-    DVec3 from_pupil{0.0};  // unit, from the exit pupil to the film
+    DVec3 from_pupil{0.0};  // unit length, from the exit pupil to the film
   };
   std::optional<FilmHit> film_hit(const LensRay& from_scene) const;
   CameraPdf lens_pdf(const DVec3& origin, const DVec3& direction) const;

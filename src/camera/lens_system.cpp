@@ -51,7 +51,7 @@ LensSystem::LensSystem(const description::RealisticCamera& camera, double film_r
   }
   constexpr double like_air = 1e-3;
   if (std::fabs(surfaces_.back().eta_film - 1) > like_air)
-    throw Error(location, "behind the last element of the lens there must be air");
+    throw Error(location, "the medium behind the last element of the lens must be air");
   focus(camera.focus_distance, location);
   bound_exit_pupils(film_radius);
 }
@@ -91,7 +91,7 @@ void LensSystem::focus(double distance, const SourceLocation& location) {
   const Cardinal lens = cardinal_points();
   focal_length_ = lens.focal_length;
   if (!(focal_length_ > 0) || !std::isfinite(focal_length_))
-    throw Error(location, "the lens does not gather light: it has no focal length above 0");
+    throw Error(location, "the lens is not converging: its focal length is not positive");
   const double between = distance + lens.film_side - lens.scene_side;
   const double discriminant = between * between - 4 * between * focal_length_;
   if (!(between > 0) || !(discriminant >= 0))
@@ -104,7 +104,7 @@ void LensSystem::focus(double distance, const SourceLocation& location) {
     throw Error(location, "to focus on " + std::to_string(distance) + " m the lens would have to touch the film");
 }
 
-// Traces a ray through one surface; returns false if it is blocked.
+// Traces a ray through one surface; returns false if the ray is blocked.
 template <LensSystem::Towards towards>
 bool LensSystem::pass(const Surface& s, LensRay& ray) {
   const DVec3 o = ray.origin, d = ray.direction;
@@ -162,8 +162,8 @@ LensSystem::FrontPoint LensSystem::front_point(const glm::dvec2& disk) const {
   return p;
 }
 
-// Largest distance from the axis at which rays, from film points up to this distance, through the rim of the last
-// surface meet the plane of its vertex.
+// Largest distance from the axis, in the vertex plane of the last surface, of rays through that surface's rim from film
+// points up to this distance.
 double LensSystem::pupil_reach(double film_distance) const {
   const Surface& s = surfaces_.back();
   const double stretch = s.z / rim_z(s);
@@ -174,8 +174,8 @@ double LensSystem::pupil_reach(double film_distance) const {
   return reach;
 }
 
-// Bounds of the rays of a grid over `searched` that pass the lens, for film points in an interval of distances. Widened
-// by a cell and a half, more than the pupil changes between the film points tried.
+// Bounds of the rays of a grid over `searched` that pass the lens, for film points in an interval of distances.
+// Enlarged by 1.5 cells, more than the pupil changes between the film points tried.
 std::optional<LensSystem::Pupil> LensSystem::search_pupil(const Pupil& searched, double near, double far) const {
   constexpr int cells = 48;
   constexpr double margin = 1.5;
@@ -195,7 +195,7 @@ std::optional<LensSystem::Pupil> LensSystem::search_pupil(const Pupil& searched,
   return Pupil{pupil.low - margin * cell, pupil.high + margin * cell};
 }
 
-// Searches twice: a fine grid over the small region found by a coarse grid gives tighter bounds.
+// Two passes: a fine grid over the small region found by a coarse grid gives tighter bounds.
 LensSystem::Pupil LensSystem::bound_exit_pupil(double near, double far) const {
   const double reach = pupil_reach(far);
   const Pupil all{glm::dvec2(-reach), glm::dvec2(reach)};

@@ -34,8 +34,8 @@ class LensSystem {
   /// Traces a ray in the opposite direction: returns the ray that leaves the rear.
   std::optional<LensRay> towards_film(const LensRay& ray) const;
 
-  /// Bounds of the exit pupil: a rectangle of the plane z = rear_z(), for a film point on the x axis at this distance
-  /// from the film's centre; it rotates with other film points. Contains every point that light passes.
+  /// Bounds of the exit pupil: a rectangle in the plane z = rear_z(), for a film point on the x axis at this distance
+  /// from the film's centre; it rotates with other film points. Contains every point that transmits light.
   struct Pupil {
     glm::dvec2 low{0.0}, high{0.0};
     double area() const { return (high.x - low.x) * (high.y - low.y); }
@@ -45,7 +45,7 @@ class LensSystem {
   /// The point of the front surface above a point of the disk of radius `front_radius()`.
   struct FrontPoint {
     DVec3 position{0.0};
-    DVec3 normal{0.0, 0.0, 1.0};  ///< unit, towards the scene
+    DVec3 normal{0.0, 0.0, 1.0};  ///< unit length, towards the scene
   };
   FrontPoint front_point(const glm::dvec2& disk) const;
   double front_radius() const { return surfaces_.front().aperture_radius; }

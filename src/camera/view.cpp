@@ -17,14 +17,14 @@ namespace lanthorn {
 namespace {
 
 constexpr int largest_side = 1 << 16;
-constexpr std::uint64_t most_pixels = std::uint64_t{1} << 31;  // pixel numbers have 32 bits
+constexpr std::uint64_t most_pixels = std::uint64_t{1} << 31;  // pixel indices have 32 bits
 
-// Memory that such a picture would need, as text if it is large.
+// The memory that a large picture would need, as text; empty for small pictures.
 std::string too_large_for_memory(int width, int height) {
   if (width < largest_side && height < largest_side) return {};
   const double bytes =
       static_cast<double>(width) * height * static_cast<double>(Film::stride({}) * sizeof(std::int64_t));
-  return fmt::format("; its sums alone would take {} of memory", memory_text(bytes));
+  return fmt::format("; its sums would take {} of memory", memory_text(bytes));
 }
 
 std::array<int, 2> choose_resolution(const description::Film& film, const ViewOptions& options) {
@@ -57,13 +57,13 @@ PixelWindow choose_window(const description::Film& film, const std::array<int, 2
   const PixelWindow window{pixel(film.crop[0], width), pixel(film.crop[2], height), pixel(film.crop[1], width),
                            pixel(film.crop[3], height)};
   if (window.width() <= 0 || window.height() <= 0)
-    throw Error(fmt::format("{}the crop window that the scene's film asks for holds no pixel of {} x {}",
+    throw Error(fmt::format("{}the crop window of the scene's film contains no pixel of {} x {}",
                             options.resolution ? fmt::format("--resolution {}x{}: ", width, height) : "", width,
                             height));
   return window;
 }
 
-// Reach of the pixel filter beyond the centre of a pixel at the film's edge.
+// How far the pixel filter extends beyond the centre of a pixel at the film's edge.
 Vec2 filter_margin(const description::Filter& filter) {
   return {std::max(0.0f, filter.radius.x), std::max(0.0f, filter.radius.y)};
 }
@@ -71,7 +71,7 @@ Vec2 filter_margin(const description::Filter& filter) {
 }  // namespace
 
 PixelWindow View::filter_reach() const {
-  const Vec2 beyond = filter.radius() - Vec2(0.5f);  // of a pixel's edges
+  const Vec2 beyond = filter.radius() - Vec2(0.5f);  // beyond a pixel's edges
   const auto below = [](int edge, float reach) {
     return std::max(0, static_cast<int>(std::floor(static_cast<float>(edge) - reach)));
   };

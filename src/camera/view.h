@@ -24,9 +24,9 @@ struct View {
   Sensor sensor;
   float imaging_ratio = 1;  ///< pixel value / radiance (realistic camera: irradiance)
 
-  /// The full film. What is measured or learned of it by pilot paths is the same for every window.
+  /// The full film. Quantities that pilot paths measure or learn over it are the same for every window.
   PixelWindow film() const { return {0, 0, camera.width(), camera.height()}; }
-  /// The pixels of the film that samples of the window's pixels fall in: the window and as far as the filter reaches.
+  /// The pixels of the film in which samples of the window's pixels fall: the window, enlarged by the filter's reach.
   PixelWindow filter_reach() const;
   /// Index of a pixel in the full film: the key of its random numbers, independent of the window.
   std::uint32_t pixel_key(int x, int y) const {

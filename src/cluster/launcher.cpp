@@ -7,8 +7,8 @@
 
 namespace lanthorn {
 
-// Open MPI sets the first variable, MPICH, Intel MPI and srun --mpi=pmi2 set the second, MVAPICH the third, and srun
-// the last. SLURM_NTASKS is not in the list because batch scripts, whose commands run once, have it too.
+// Open MPI sets the first variable; MPICH, Intel MPI and srun --mpi=pmi2 the second; MVAPICH the third; srun the last.
+// SLURM_NTASKS is not used because batch scripts, whose commands run once, also have it.
 std::optional<Launcher> find_launcher(const std::function<const char*(const char*)>& variable) {
   for (const char* const name : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "MV2_COMM_WORLD_SIZE", "SLURM_STEP_NUM_TASKS"}) {
     const char* const text = variable(name);

@@ -16,7 +16,7 @@ namespace {
 
 #ifdef LANTHORN_MPI_MODULE
 const MpiFunctions& load() {
-  // RTLD_GLOBAL, because plug-ins of MPI look for MPI's symbols among the global ones.
+  // RTLD_GLOBAL, because MPI's plug-ins look up MPI's symbols globally.
   void* const module = dlopen(LANTHORN_MPI_MODULE, RTLD_LAZY | RTLD_GLOBAL);
   void* const symbol = module != nullptr ? dlsym(module, mpi_functions_symbol) : nullptr;
   if (symbol == nullptr) throw Error(std::string("the module for MPI cannot be loaded: ") + dlerror());
@@ -25,7 +25,7 @@ const MpiFunctions& load() {
 #else
 const MpiFunctions& load() {
   throw Error(
-      "a launcher of MPI has started several processes, but this program is built without MPI "
+      "an MPI launcher has started several processes, but this program is built without MPI "
       "(-DLANTHORN_BUILD_MPI=ON)");
 }
 #endif
@@ -47,7 +47,7 @@ std::optional<TeamLink> join_mpi() {
     throw Error(std::string("MPI does not start: ") + problem.what());
   }
   throw Error(
-      fmt::format("{} says that there are {} processes, but Open MPI finds this one alone: each would render "
+      fmt::format("{} indicates {} processes, but Open MPI finds only this one: each would render "
                   "the whole picture; start them with mpirun, or srun --mpi=pmix",
                   launcher->variable, launcher->size));
 }

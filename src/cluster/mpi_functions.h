@@ -10,7 +10,7 @@
 namespace lanthorn {
 
 struct MpiFunctions {
-  /// Starts MPI. Throws std::runtime_error if it cannot.
+  /// Starts MPI. Throws std::runtime_error on failure.
   TeamLink (*join)();
   void (*leave)();
   void (*abort)(int exit_code);

@@ -56,17 +56,17 @@ Halves black(const Tile& tile) {
   return halves;
 }
 
-// Light is never negative.
+// Light cannot be negative.
 Halves at_least_0(Halves light) {
   for (ColorPlanes& half : light)
     for (Plane& plane : half) plane.fill([&](std::size_t i) { return std::max(0.0f, plane[i]); });
   return light;
 }
 
-// Adds the features of a layer's halves.
+// Function that adds the features of a layer's halves.
 using AddFeatures = void(const Halves&, const Shares&, std::array<FeaturePlanes, 2>&);
 
-// At the resolution of the picture, half of it and a quarter.
+// Surroundings at full, half and quarter resolution.
 std::vector<Surroundings> surroundings_of(const NoisyPicture& picture, const Tile& tile, AddFeatures& add_features) {
   constexpr std::size_t level_count = 3;
   std::vector<Surroundings> levels{{.features = {}, .demodulation = {}, .scale = picture.scale_of(tile)}};
@@ -77,7 +77,7 @@ std::vector<Surroundings> surroundings_of(const NoisyPicture& picture, const Til
   return levels;
 }
 
-// Writes the pixels of the tile to a channel.
+// Writes the tile's pixels to a channel.
 void write(const Plane& plane, const Tile& tile, std::size_t channel, Image& to) {
   for (int y = 0; y < tile.height; ++y) {
     const float* const from = plane.row(tile.y - tile.outer_y + y) + tile.x - tile.outer_x;
@@ -122,7 +122,7 @@ class Denoiser {
     write_error(tile, light, result, levels[0].scale);
   }
 
-  // As the film sums up its layers.
+  // Sums up the layers as the film does.
   void write_sum(const Tile& tile) {
     for (int y = tile.y; y < tile.y + tile.height; ++y)
       for (int x = tile.x; x < tile.x + tile.width; ++x)
@@ -154,7 +154,7 @@ class Denoiser {
       write(standard_error, tile, (1 + layers_.size()) * color_channels + c, denoised_);
   }
 
-  // Means over blocks of pixels, as independent values.
+  // Means over blocks of pixels, which are treated as independent values.
   void add_to_estimate(const Tile& tile, const Plane& error, const Plane& bias, const Halves& result,
                        const ErrorScale& of_errors) {
     constexpr int block = 16;
@@ -178,7 +178,7 @@ class Denoiser {
   }
 
   void estimate() {
-    constexpr double fewest_passes = 2, confidence_z = 1.28;  // 90 % of a normal distribution are below it
+    constexpr double fewest_passes = 2, confidence_z = 1.28;  // 90th percentile of the normal distribution
     const auto count = static_cast<double>(noisy_.pixel_count()), blocks = static_cast<double>(blocks_.size());
     Block sum;
     double squares = 0;
@@ -197,8 +197,8 @@ class Denoiser {
     if (noisy_.fewest_passes() < fewest_passes) e.doubt = "there are too few passes";
   }
 
-  // The estimate is too small, because the least of several is taken and the second guide knows both halves. True
-  // errors are mostly 1.1 to 1.5 times as large (48 renders of 4 to 64 passes).
+  // Correction of the estimate, which is too small because it takes the least of several candidates and the second
+  // guide knows both halves. True errors are mostly 1.1 to 1.5 times as large (48 renders of 4 to 64 passes).
   static constexpr float optimism = 1.3f;
 
   struct Block {
@@ -215,7 +215,7 @@ class Denoiser {
 void require_halves(const Image& picture) {
   if (!can_denoise(picture))
     throw Error(
-        "the picture has no layers `noise`, by which its noise is known; .exr files that lanthorn renders have them");
+        "the picture has no layers `noise`, which describe its noise; .exr files that lanthorn renders have them");
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ Plane variance_of_mean(const Halves& light, std::size_t channel, const Shares& s
   const Plane &a = light[0][channel], &b = light[1][channel];
   return Plane::of(a.width(), a.height(), [&](std::size_t i) { return shares[0] * shares[1] * sqr(a[i] - b[i]); });
 }
-// Summed over channels, and smoothed.
+// As above, summed over channels and smoothed.
 Plane variance_of_mean(const Halves& light, const Shares& shares, int radius) {
   Plane sum = variance_of_mean(light, 0, shares);
   for (std::size_t c = 1; c < color_channels; ++c) {
@@ -39,7 +39,7 @@ Halves halved(const Halves& light) {
   return out;
 }
 
-// `fine` with the low frequencies of `coarse`, which has half its resolution.
+// `fine` with its low frequencies replaced by those of `coarse`, which has half its resolution.
 Halves joined(const Halves& fine, const Halves& coarse) {
   Halves out = fine;
   for (std::size_t h = 0; h < 2; ++h)
@@ -52,7 +52,7 @@ Halves joined(const Halves& fine, const Halves& coarse) {
   return out;
 }
 
-// A variance that is much less than any that is seen: the guide may be black, and without noise.
+// A variance far below any visible one, for guides that are black and without noise.
 float least_variance(const ColorPlanes& light) {
   constexpr double part = 1e-6, tiny = 1e-30;
   double sum = 0;
@@ -70,7 +70,7 @@ Halves demodulated(const Halves& light, const ColorPlanes& factors) {
   return out;
 }
 
-// Each half is guided by the other of `compared`, whose noise is independent of its own.
+// Each half is guided by the other half of `compared`, whose noise is independent of its own.
 Halves regress_crosswise(const Halves& light, const Halves& compared, const std::array<FeaturePlanes, 2>& features,
                          const Shares& shares, int variance_radius, const RegressionSettings& settings) {
   Halves result = light;
@@ -84,11 +84,11 @@ Halves regress_crosswise(const Halves& light, const Halves& compared, const std:
   return result;
 }
 
-// Both halves are guided by the mean of what they were without noise.
+// Both halves are guided by the mean of their first results.
 Halves regress_again(const Halves& light, const Halves& before, const Shares& shares, const Surroundings& around,
                      const RegressionSettings& settings) {
   constexpr int variance_radius = 2;
-  constexpr float unseen = 3e-5f;  // of the square of the light
+  constexpr float unseen = 3e-5f;  // relative to the square of the light
   Guide guide{{}, variance_of_mean(before, shares, variance_radius)};
   for (std::size_t c = 0; c < color_channels; ++c) guide.color[c] = mean_of(before, c, shares);
   guide.variance.fill([&](std::size_t i) { return guide.variance[i] + unseen * around.scale.light2[i]; });
@@ -97,8 +97,8 @@ Halves regress_again(const Halves& light, const Halves& before, const Shares& sh
   return result;
 }
 
-// Adds the results of `filter(level)` at the first level, with low frequencies of the second, of the second and third
-// ...
+// Adds the results of `filter(level)` at the first level: alone, with low frequencies from the second level, from the
+// second and third, and so on.
 template <class Filter>
 void add_pyramid(std::size_t levels, Filter&& filter, std::vector<Halves>& candidates) {
   std::vector<Halves> filtered;
@@ -110,7 +110,7 @@ void add_pyramid(std::size_t levels, Filter&& filter, std::vector<Halves>& candi
   }
 }
 
-// For each pixel the candidate of least error around it.
+// For each pixel, the candidate with the least error around it.
 Halves choose(const Halves& light, const std::vector<Halves>& candidates, const Shares& shares,
               const ErrorScale& scale) {
   constexpr int error_radius = 4, border_radius = 2;  // pixels
@@ -143,7 +143,7 @@ std::vector<Halves> pyramid_of(const Halves& light, std::size_t levels) {
   return pyramid;
 }
 
-// The best of the first regressions.
+// The best result of the first regressions.
 Halves regress_once(const Halves& light, const Shares& shares, const std::vector<Surroundings>& levels,
                     const RegressionSettings& settings) {
   constexpr int variance_radius = 3;
@@ -174,7 +174,7 @@ Plane squared_error(const Halves& light, const Halves& result, const Shares& sha
     for (std::size_t c = 0; c < color_channels; ++c) {
       const float a = seen(light[0][c], i), b = seen(light[1][c], i), da = seen(result[0][c], i),
                   db = seen(result[1][c], i);
-      const float noise = sqr(a - b);  // wa of it is the variance of b, wb of it that of a
+      const float noise = sqr(a - b);  // weighted by wa it is the variance of b, by wb that of a
       sum += wa * (sqr(da - b) - wa * noise) + wb * (sqr(db - a) - wb * noise) - wa * wb * sqr(da - db);
     }
     return sum / (static_cast<float>(color_channels) * scale.light2[i]);

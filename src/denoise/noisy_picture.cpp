@@ -81,7 +81,7 @@ NoisyPicture::NoisyPicture(const Image& picture) : picture_(picture) {
   check_sum(light);
   const auto own = all > 0 ? std::clamp(static_cast<float>(first / all), 0.0f, 1.0f) : 0.0f;
   if (own == 0 || own == 1)
-    throw Error("a picture of a single pass cannot be denoised: the noise is the difference of passes");
+    throw Error("a picture of a single pass cannot be denoised: the noise is measured from differences between passes");
   shares_ = {own, 1 - own};
   fewest_passes_ = std::min(own, 1 - own) * all / static_cast<double>(pixel_count());
   mean_ = static_cast<float>(light / static_cast<double>(pixel_count()));
@@ -101,7 +101,7 @@ void NoisyPicture::check_sum(double light) const {
   }
   if (std::fabs(sum - light) > rounding * std::fabs(light))
     throw Error(
-        fmt::format("the layers whose noise is known ({}) have {:.3g} times the light of color; expected all of it",
+        fmt::format("the layers with known noise ({}) contain {:.3g} times the light of color; expected all of it",
                     fmt::join(layers, ", "), sum / light));
 }
 
@@ -115,7 +115,7 @@ Plane NoisyPicture::read(const Tile& tile, const std::string& name) const {
   return plane;
 }
 
-// All channels at once: they lie beside each other in memory.
+// Reads all channels at once, since they are adjacent in memory.
 Halves NoisyPicture::read_halves(const Tile& tile, const std::string& layer,
                                  const std::array<const char*, 3>& names) const {
   Halves halves;
@@ -154,7 +154,7 @@ ErrorScale NoisyPicture::scale_of(const Tile& tile) const {
 }
 
 ColorPlanes NoisyPicture::demodulation_of(const std::array<FeaturePlanes, 2>& features) const {
-  constexpr float dark = 0.1f;  // surfaces that are darker reflect light by more than their albedo
+  constexpr float dark = 0.1f;  // darker surfaces reflect more light than their albedo suggests
   ColorPlanes factors;
   for (std::size_t c = 0; c < color_channels; ++c) {
     const Plane &a = features[0].values[c], &b = features[1].values[c];

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// A rendered picture as the denoiser reads it: tile by tile, as halves of the passes.
+// A rendered picture as input of the denoiser: tile by tile, split into halves of the passes.
 #pragma once
 
 #include <array>
@@ -15,54 +15,55 @@ namespace lanthorn::denoising {
 
 inline constexpr std::array<const char*, 3> components{"R", "G", "B"};
 
-/// Three channels that light is regressed over.
+/// Three channels on which light is regressed.
 struct FeatureLayer {
   const char* name;
   std::array<const char*, 3> components;
 };
-/// The albedo is the first.
+/// The albedo must be the first.
 inline constexpr std::array<FeatureLayer, 3> feature_layers{FeatureLayer{"albedo", {"R", "G", "B"}},
                                                             FeatureLayer{"normal", {"X", "Y", "Z"}},
                                                             FeatureLayer{"position", {"X", "Y", "Z"}}};
 
 bool has_layer(const Image& picture, const std::string& layer, const std::array<const char*, 3>& names);
-/// The layers of light whose halves are known.
+/// The light layers whose halves are known.
 std::vector<std::string> light_layers(const Image& picture);
-/// True if all layers are there that `NoisyPicture` reads.
+/// True if all layers exist that `NoisyPicture` reads.
 bool has_halves(const Image& picture);
-/// True if the light of this layer is in others, too.
+/// True if other layers already contain this layer's light.
 bool is_repeated(const std::string& layer);
 
-/// Pixels that are written, and those around them that they are denoised with.
+/// The pixels that are written, and the larger region from which they are denoised.
 struct Tile {
   int x, y, width, height;
   int outer_x, outer_y, outer_width, outer_height;
 };
-/// They cover a picture of this size.
+/// Tiles that cover a picture of this size.
 std::vector<Tile> tiles_of(int width, int height);
 
-/// Reads pixels that are not finite as black.
+/// Access to the picture's channels; non-finite pixels are read as black.
 class NoisyPicture {
  public:
-  /// `picture` has halves and lives longer. Throws Error if a half has no passes, or if layers are missing.
+  /// `picture` must have halves and outlive this object. Throws Error if a half has no passes, or if layers are
+  /// missing.
   explicit NoisyPicture(const Image& picture);
 
   const Image& image() const { return picture_; }
   std::size_t pixel_count() const { return picture_.pixels.size() / picture_.channel_count(); }
   const Shares& shares() const { return shares_; }
-  double fewest_passes() const { return fewest_passes_; }  ///< of a half
+  double fewest_passes() const { return fewest_passes_; }  ///< of the smaller half
 
-  /// A channel of the tile with its margin.
+  /// A channel of the tile including its margin.
   Plane read(const Tile& tile, const std::string& name) const;
   Halves read_halves(const Tile& tile, const std::string& layer, const std::array<const char*, 3>& names) const;
-  /// As `ErrorEstimate` counts errors: what is ten times as bright as the picture's mean is white.
+  /// As in `ErrorEstimate`; values above ten times the picture's mean are clamped to it.
   ErrorScale scale_of(const Tile& tile) const;
   /// Factors that divide light by the albedo of these features.
   ColorPlanes demodulation_of(const std::array<FeaturePlanes, 2>& features) const;
 
  private:
   std::size_t channel_of(const std::string& name) const { return *picture_.find_channel(name); }
-  // Layers may be missing from files that other programs have written. `light`: of color, all pixels.
+  // Checks that the layers add up, because other programs may have omitted some. `light`: sum of color over all pixels.
   void check_sum(double light) const;
 
   const Image& picture_;

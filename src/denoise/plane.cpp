@@ -49,10 +49,10 @@ Plane halved(const Plane& plane) {
 
 namespace {
 
-// Where the centre of pixel x lies between those of the pixels of half the size.
+// Position of pixel x between the pixels of the picture of half the size.
 struct Between {
   int low, high;
-  float share;  // of `high`
+  float share;  // weight of `high`
   Between(int x, int count) {
     const float at = (static_cast<float>(x) - 0.5f) / 2;
     const float floor = std::floor(at);

@@ -57,11 +57,11 @@ class Plane {
   std::vector<float> values_;
 };
 
-/// Means over squares of 2 radius + 1 pixels, as far as they are in the picture.
+/// Means over squares of (2 radius + 1)² pixels, clipped to the picture.
 Plane box_filtered(const Plane& plane, int radius);
-/// Half as wide and high, rounded up: means of 2 x 2 pixels.
+/// Half the width and height, rounded up: means of 2 x 2 pixels.
 Plane halved(const Plane& plane);
-/// Bilinear, from half the size to this one.
+/// Bilinear upsampling from half the size to this one.
 Plane doubled(const Plane& plane, int width, int height);
 
 }  // namespace lanthorn::denoising

@@ -13,16 +13,16 @@ namespace {
 
 constexpr int tile_size = 32;
 constexpr std::size_t size(int count) { return static_cast<std::size_t>(count); }
-constexpr std::size_t group = 3;        // features of one scale
+constexpr std::size_t group = 3;        // features that share a scale
 constexpr std::size_t most_terms = 10;  // the constant and the features
 constexpr std::size_t columns = 2 * Lanes::width;
-constexpr int span = static_cast<int>(columns);  // of weights in a row of a neighbourhood; those beyond it are 0
+constexpr int span = static_cast<int>(columns);  // weights in a row of a neighbourhood; unused ones are 0
 static_assert(most_terms + color_channels <= columns);
 
 // The constant, the features and the light at a pixel.
 using Observation = std::array<float, columns>;
 
-// A plane with a border that mirrors it.
+// A plane with a mirrored border.
 class PaddedPlane {
  public:
   PaddedPlane() = default;
@@ -95,8 +95,8 @@ class Regression {
     sums_.fill(weight_sums_);
   }
 
-  // Tiles of one phase are so far apart that their neighbourhoods do not overlap: a pixel's sums are added up in the
-  // same order for any number of threads.
+  // Tiles of the same phase are so far apart that their neighbourhoods do not overlap: a pixel's sums are accumulated
+  // in the same order for any number of threads.
   void run() {
     const int across = (width_ + tile_size - 1) / tile_size, down = (height_ + tile_size - 1) / tile_size;
     for (const auto& [first_x, first_y] : {std::pair{0, 0}, {1, 0}, {0, 1}, {1, 1}}) {
@@ -108,7 +108,7 @@ class Regression {
   }
 
   ColorPlanes result() const {
-    constexpr float own = 1e-2f;  // weight of a pixel's own light, for pixels that are like no other
+    constexpr float own = 1e-2f;  // weight of a pixel's own light, for pixels that resemble no others
     ColorPlanes result = light_;
     for (std::size_t c = 0; c < color_channels; ++c)
       result[c].for_each_row([&](int y) {
@@ -120,7 +120,7 @@ class Regression {
   }
 
  private:
-  // Reaches patches of all centres that a tile may have, in the picture or not.
+  // Covers the patches of all centres that a tile may have, inside the picture or not.
   int border() const { return settings_.window + settings_.patch + tile_size; }
   std::size_t index(int x, int y) const { return size(y) * size(width_) + size(x); }
 
@@ -132,7 +132,7 @@ class Regression {
     for (std::size_t c = 0; c < color_channels; ++c) v[most_terms + c] = light_[c][pixel];
   }
 
-  // Weights of the neighbourhood of a centre, row by row.
+  // Index of the weights of a centre's neighbourhood, row by row.
   std::size_t weights_of(int column, int row) const {
     return (size(row) * size(points_) + size(column)) * size(side_) * size(span);
   }
@@ -148,7 +148,7 @@ class Regression {
       }
   }
 
-  // Squared differences of pixels to those (dx, dy) farther, over their variance.
+  // Squared differences between pixels and those at offset (dx, dy), divided by their variance.
   void compare(int x, int y, int dx, int dy, int count, float* out) const {
     std::array<const float*, color_channels> a, b;
     for (std::size_t c = 0; c < color_channels; ++c) a[c] = color_[c].at(x, y), b[c] = color_[c].at(x + dx, y + dy);
@@ -160,7 +160,7 @@ class Regression {
     }
   }
 
-  // The weights that the centres of a tile give to the pixels (dx, dy) farther.
+  // The weights that a tile's centres give to the pixels at offset (dx, dy).
   void weigh_shift(int x0, int y0, int dx, int dy, std::vector<float>& weights) const {
     const int patch = 2 * settings_.patch + 1, extent = settings_.stride * (points_ - 1) + patch;
     constexpr int most = tile_size + 8;
@@ -217,8 +217,8 @@ class Regression {
     return moments;
   }
 
-  // What is added to a feature's sum of squares: its noise, and a small part of the squares that its group has, so that
-  // features that hardly vary, or vary together, are not trusted to tell more than they do.
+  // Regularisation added to a feature's sum of squares: its noise, and a small part of its group's squares, so that
+  // features that hardly vary, or vary together, are not over-trusted.
   std::array<double, most_terms> ridge_of(const Moments& moments, std::size_t center) const {
     constexpr double small = 1e-4, share_of_group = 1e-3, tiny = 1e-30;
     const auto all = static_cast<double>(moments.sums[0][0]);
@@ -234,7 +234,7 @@ class Regression {
     return ridge;
   }
 
-  // Normal equations, by Cholesky's factorisation; each term scaled to a sum of squares of 1.
+  // Solves the normal equations by Cholesky factorisation; each term is scaled to a sum of squares of 1.
   Coefficients solve(const Moments& moments, std::size_t center) const {
     const std::array<double, most_terms> ridge = ridge_of(moments, center);
     std::array<double, most_terms> scale{};
@@ -271,7 +271,7 @@ class Regression {
     return coefficients;
   }
 
-  // Whole rows at once, with weights of 0 beyond the picture.
+  // Processes whole rows, with weights of 0 outside the picture.
   void predict(int x, int y, const float* weights, const Coefficients& coefficients) {
     const int left = x - settings_.window;
     const Observation& origin = observations_[index(x, y)];
@@ -298,7 +298,7 @@ class Regression {
   RegressionSettings settings_;
   int width_, height_, side_;
   std::size_t terms_;
-  int points_;  // in a row of a tile
+  int points_;  // centres in a row of a tile
   PaddedPlane variance_;
   std::vector<PaddedPlane> color_, values_;
   std::vector<Observation> observations_;

@@ -20,10 +20,10 @@ inline float linear_from_srgb(float x) { return x <= 0.04045f ? x / 12.92f : std
 /// Narkowicz (2015), "ACES filmic tone mapping curve": [0, inf) to [0, 1.03]; not clamped. x >= 0 and finite.
 inline float filmic_curve(float x) { return x * (2.51f * x + 0.03f) / (x * (2.43f * x + 0.59f) + 0.14f); }
 
-/// AgX (Sobotka 2022, "AgX", the script that makes its configuration), linear to display values, with components >= 0
-/// and finite. Colours count in primaries that lie a fifth of the way nearer to white: with w the share of each primary
-/// in the sum X + Y + Z of white, x' = 0.8 x + 0.2 w.x. Their logarithms from 10 stops below middle grey (0.18) to 6.5
-/// above it pass a sigmoid, which has the slope 2 in its middle, and the primaries go back.
+/// AgX (Sobotka 2022, "AgX", the script that makes its configuration), linear to display values, for finite components
+/// >= 0. Colours are expressed in primaries moved a fifth of the way towards white: with w the share of each primary in
+/// white's sum X + Y + Z, x' = 0.8 x + 0.2 w.x. Their logarithms, from 10 stops below middle grey (0.18) to 6.5 above
+/// it, pass through a sigmoid with slope 2 at its middle; then the primaries are restored.
 inline Rgb agx(const Rgb& linear) {
   constexpr float inset = 0.2f, darkest = -10, brightest = 6.5f, middle_grey = 0.18f;
   const auto white_part = [](const Rgb& c) { return 0.2120f * c.r + 0.3921f * c.g + 0.3959f * c.b; };
@@ -58,7 +58,7 @@ inline Rgb to_display(const Rgb& linear, const DisplaySettings& display) {
   const auto encode = [&](float x) {
     x *= gain;
     if (!(x > 0)) return 0.0f;
-    // Both curves have reached 1 long before this limit; larger numbers would overflow in the filmic curve.
+    // Both curves reach 1 long before this limit; larger numbers would overflow in the filmic curve.
     x = std::fmin(x, 1e4f);
     if (display.curve == ToneCurve::filmic) x = filmic_curve(x);
     return srgb_from_linear(std::fmin(x, 1.0f));

@@ -17,8 +17,8 @@ namespace {
 
 constexpr std::size_t window_radius = 3;  // pixels; windows are squares
 constexpr std::size_t rows_per_task = 16;
-constexpr double dark = 0.01;          // of the square of the mean, in the denominator of relative errors
-constexpr double confidence_z = 1.28;  // 90 % of a normal distribution are below it
+constexpr double dark = 0.01;          // times the squared mean, in the denominator of relative errors
+constexpr double confidence_z = 1.28;  // 90th percentile of the normal distribution
 
 // A number for each pixel.
 class PixelPlane {
@@ -67,17 +67,17 @@ class PixelPlane {
     return sum(value) / static_cast<double>(size());
   }
 
-  /// The middle rows, at most so many.
+  /// The middle rows, at most `rows` of them.
   PixelPlane middle(std::size_t rows) const {
     const std::size_t count = std::min(rows, height_), first = (height_ - count) / 2 * width_;
     return of(width_, count, [&](std::size_t i) { return (*this)[first + i]; });
   }
 
-  /// Means over the squares of 2 radius + 1 pixels around each pixel, as far as they are in the picture.
+  /// Means over squares of (2 radius + 1)² pixels around each pixel, clipped to the picture.
   PixelPlane smoothed(std::size_t radius = window_radius) const { return along_rows(radius).along_columns(radius); }
 
-  /// Means over the squares of window_radius + 1 pixels whose first pixel this is; those at the right and lower border
-  /// begin earlier.
+  /// Means over squares of (window_radius + 1)² pixels that start at each pixel; at the right and lower border they
+  /// start earlier.
   PixelPlane corners() const {
     constexpr std::size_t extent = window_radius + 1;
     const std::size_t across = std::min(extent, width_), down = std::min(extent, height_);
@@ -96,7 +96,7 @@ class PixelPlane {
     });
     return out;
   }
-  /// Of the four such squares with this pixel in a corner, that of least `value`.
+  /// Of the four such squares with this pixel in a corner, the one with the least `value`.
   template <class Value>
   std::size_t choose_corner(std::size_t x, std::size_t y, Value&& value) const {
     const std::size_t left = x - std::min(x, window_radius), up = y - std::min(y, window_radius);
@@ -107,7 +107,7 @@ class PixelPlane {
   }
 
  private:
-  // Positions around `at` that are in the picture.
+  // The positions around `at` that are in the picture.
   struct Span {
     std::size_t begin, end;
     Span(std::size_t at, std::size_t radius, std::size_t extent)
@@ -147,8 +147,8 @@ class PixelPlane {
 
 constexpr double square(double x) { return x * x; }
 
-// Mean and variance of the noise around each pixel: over its window, or, if the window has an edge, over the corner of
-// it that is most even (Kuwahara's filter). Corners of nothing but noise differ little from the window.
+// Mean and variance of the noise around each pixel: over its window or, if the window contains an edge, over its most
+// uniform corner (Kuwahara's filter). In pure noise, corners differ little from the window.
 struct Surroundings {
   PixelPlane mean, variance;
   std::vector<std::uint8_t> is_edge;
@@ -173,8 +173,8 @@ struct Surroundings {
   }
 };
 
-// How many times as large the variance of a sum of squares of this plane is as if its pixels were independent: normal
-// variables of correlation ρ have squares of correlation ρ². Rows and columns are taken to be alike.
+// Factor by which correlation between pixels increases the variance of a sum of squares of this plane: normal variables
+// with correlation ρ have squares with correlation ρ². Assumes the same correlation along rows and columns.
 double correlation_factor(const PixelPlane& all_noise) {
   constexpr std::size_t farthest = 24, enough = 1 << 16;  // pixels
   const PixelPlane noise = all_noise.middle(std::max<std::size_t>(1, enough / all_noise.width()));
@@ -187,7 +187,7 @@ double correlation_factor(const PixelPlane& all_noise) {
           noise.sum([&](std::size_t i) { return position(i) + lag < extent ? noise[i] * noise[i + lag * step] : 0.0; });
       const double pairs =
           static_cast<double>(noise.size()) * static_cast<double>(extent - lag) / static_cast<double>(extent);
-      // The square of an estimated correlation is too large by the variance of the estimate.
+      // The square of an estimated correlation is biased upwards by the variance of the estimate.
       sum += 2 * std::max(0.0, square(product / (pairs * all)) - 1 / pairs);
     }
     return sum;
@@ -199,7 +199,7 @@ double correlation_factor(const PixelPlane& all_noise) {
 
 // Sums over channels, per pixel.
 struct PictureSums {
-  PixelPlane noise, bias;  // relative variance and square of the bias, at most 1
+  PixelPlane noise, bias;  // relative variance and squared bias, at most 1
   double spikes = 0, light = 0;
   double correlation = 1;
 
@@ -237,15 +237,15 @@ class ErrorMeasurement {
 
   PixelPlane make(auto&& value) const { return PixelPlane::of(width_, height_, value); }
 
-  // Relative squares, with the picture's mean: at most 1.
+  // A square relative to the true value, regularised by the picture's mean; at most 1.
   double over(double squared, double truth) const {
     const double scale = square(truth) + dark2_;
     return scale > 0 ? std::min(1.0, squared / scale) : 0.0;
   }
 
-  // What a pixel says of the truth by itself. A bright path in one half makes the pixel too bright and the halves
-  // differ by as much, so that the difference would look small beside the pixel. Where one half has more than twice the
-  // other's light, the median of the halves and the surroundings leaves such a path out.
+  // A pixel's own estimate of the true value. A bright path in one half makes the pixel too bright, and the halves
+  // differ by as much, so that the difference would look small relative to the pixel. Where one half has more than
+  // twice the other's light, the median of the halves and the surroundings excludes such a path.
   static double own_truth(double light, double first, double second, double around) {
     const auto [least, most] = std::minmax(first, second);
     return most > 2 * least ? std::clamp(around, least, most) : light;
@@ -257,7 +257,7 @@ class ErrorMeasurement {
                      second = PixelPlane::of(pictures_.halves[1].color, c);
     const PixelPlane variance = make([&](std::size_t i) { return share_ * square(first[i] - second[i]); });
     const Surroundings around(light, variance);
-    // What both halves have is structure, with noise of its own; what one has is noise.
+    // Deviations common to both halves are structure with its own noise; deviations of a single half are noise.
     constexpr std::size_t near = 1;  // pixels
     const auto off = [&](const PixelPlane& half, std::size_t i) { return half[i] - around.mean[i]; };
     const PixelPlane both = make([&](std::size_t i) { return off(first, i) * off(second, i); }).smoothed(near);
@@ -282,13 +282,13 @@ class ErrorMeasurement {
       result_.standard_error.pixels[i * channels + c] = static_cast<float>(std::sqrt(noise[i]));
   }
 
-  // Squares of single pixels, as they are: the limit of 1 then takes as much of them as of the errors.
+  // Uses the squares of single pixels: the limit of 1 then truncates them as it truncates the errors.
   void add_noise(const PixelPlane& light, const PixelPlane& variance, const PixelPlane& truth,
                  const Surroundings& around) {
     const PixelPlane off = make([&](std::size_t i) { return square(light[i] - around.mean[i]); });
     const PixelPlane spread = off.smoothed();
     const PixelPlane distance = make([&](std::size_t i) { return over(off[i], around.mean[i]); }).smoothed();
-    // The limit of 1 of each value takes much of the window's spread, and the spread is noise.
+    // Clamping each value to 1 removes much of the window's spread, if the spread is noise.
     const auto is_spiky = [&](std::size_t i) {
       return !around.is_edge[i] && spread[i] < 2 * around.variance[i] &&
              distance[i] < 0.5 * spread[i] / (square(around.mean[i]) + dark2_);
@@ -321,12 +321,12 @@ class ErrorMeasurement {
     const auto mean_of = [](const PixelPlane& p) { return p.mean([&](std::size_t i) { return p[i]; }); };
     const auto squares_of = [](const PixelPlane& p) { return p.sum([&](std::size_t i) { return square(p[i]); }); };
     const double noise2 = mean_of(sums_.noise), bias2 = std::max(0.0, mean_of(sums_.bias));
-    // Of the square of a normal variable, two thirds of the mean square are its variance. The picture's own error
-    // varies as much as the estimate of its mean does.
+    // For a normal variable, the variance of its square is two thirds of the mean fourth power. The picture's own error
+    // varies as much as the estimate of its mean.
     const double square_sum = squares_of(sums_.noise);
     const double of_noise = std::sqrt(2 * sums_.correlation * square_sum * 2 / 3) / pixels;
     const double of_bias = std::sqrt(sums_.correlation * squares_of(sums_.bias)) / pixels;
-    constexpr double of_method = 2 * 0.02;  // measured: bench/error, `path` where caustics make its noise
+    constexpr double of_method = 2 * 0.02;  // measured with bench/error, for `path` where caustics cause its noise
     ErrorEstimate& e = result_.estimate;
     e.noise = std::sqrt(noise2);
     e.bias = std::sqrt(bias2);
@@ -335,9 +335,9 @@ class ErrorMeasurement {
     e.doubt = doubt_of(square_sum > 0 ? 3 * square(pixels * noise2) / (sums_.correlation * square_sum) : pixels);
   }
 
-  // `independent`: number of independent squares that the noise is known from.
+  // `independent`: number of independent squares from which the noise is estimated.
   std::string doubt_of(double independent) const {
-    constexpr std::uint64_t fewest_passes = 2;  // of each half
+    constexpr std::uint64_t fewest_passes = 2;  // in each half
     constexpr double fewest_squares = 20;
     const ErrorEstimate& e = result_.estimate;
     if (std::min(pictures_.passes[0], pictures_.passes[1]) < fewest_passes) return "there are too few passes";

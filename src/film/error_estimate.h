@@ -15,26 +15,26 @@ namespace lanthorn {
 struct PictureHalves {
   Image picture{};
   std::array<HalfPicture, 2> halves{};
-  std::array<std::uint64_t, 2> passes{};  ///< of each half
+  std::array<std::uint64_t, 2> passes{};  ///< number in each half
 };
 
-/// What the halves say of the picture's error.
+/// Error estimates derived from the halves.
 struct MeasuredError {
   ErrorEstimate estimate;
-  Image standard_error;  ///< of R, G, B
-  Image bias;            ///< signed, of R, G, B: the picture is too bright by so much
+  Image standard_error;  ///< for R, G, B
+  Image bias;            ///< signed, for R, G, B: by how much the picture is too bright
 };
 
-/// The halves differ by noise alone: their difference d has variance σ²/n₁ + σ²/n₂, and the picture has σ²/(n₁ + n₂),
-/// so that n₁ n₂ / (n₁ + n₂)² d² estimates the picture's variance without bias, whatever the correlation of pixels.
-/// Such squares, over those of the truth, are averaged over the picture; the layer `standard_error` has means of few
-/// pixels. The truth is the mean of a window that has no edge (Kuwahara et al. 1976), and of the distance to it the
-/// part that both halves have. Where spikes make the variance, most pixels are nearer to the truth than it says: there
-/// the distance to the mean of the window counts.
+/// The halves differ only by noise: their difference d has variance σ²/n₁ + σ²/n₂, and the picture has σ²/(n₁ + n₂), so
+/// that n₁ n₂ / (n₁ + n₂)² d² is an unbiased estimate of the picture's variance, whatever the correlation of pixels.
+/// These squares, divided by those of the true values, are averaged over the picture; the layer `standard_error` has
+/// means over a few pixels. The true value is estimated by the mean of a window without edges (Kuwahara et al. 1976),
+/// plus the part of the deviation from it that both halves share. Where rare bright samples dominate the variance, most
+/// pixels are closer to the true value than it suggests: there the deviation from the window's mean is used.
 ///
-/// The halves' estimates of the bias have independent noise, so that their product estimates the square of the bias.
+/// The halves' estimates of the bias have independent noise, so that their product estimates the squared bias.
 ///
-/// A function of the pictures, the same for any number of threads.
+/// Depends only on the pictures, not on the number of threads.
 MeasuredError measure_error(const PictureHalves& pictures);
 
 }  // namespace lanthorn

@@ -13,15 +13,15 @@ namespace lanthorn {
 
 namespace {
 
-constexpr float darkest_albedo = 0.01f;  // a division by less would show noise
-constexpr double fewest_lit = 0.01;      // share of the pixels
+constexpr float darkest_albedo = 0.01f;  // dividing by less would amplify noise
+constexpr double fewest_lit = 0.01;      // fraction of the pixels
 
 float brightest(const Image& layer, std::size_t i) {
   return std::max({layer.pixels[i], layer.pixels[i + 1], layer.pixels[i + 2]});
 }
 
-// Light that arrives at the surfaces in the picture: what they scatter, divided by their albedo. One value for each
-// pixel with a lit surface.
+// Illumination of the visible surfaces: the light that they scatter, divided by their albedo. One value for each pixel
+// with a lit surface.
 std::vector<float> incident_light(const Image& image) {
   const auto direct = select_layer(image, "direct"), indirect = select_layer(image, "indirect"),
              caustic = select_layer(image, "caustic"), albedo = select_layer(image, "albedo");
@@ -45,7 +45,7 @@ std::vector<float> colours(const Image& image) {
   return values;
 }
 
-// The brightness that a tenth of the values exceed, black ones left out. Empty if fewer than `fewest` are left.
+// The brightness exceeded by a tenth of the values, ignoring black ones. nullopt if fewer than `fewest` remain.
 std::optional<float> bright_level(std::vector<float> values, double fewest) {
   std::erase_if(values, [](float x) { return !(x > 0) || !std::isfinite(x); });
   if (values.empty() || static_cast<double>(values.size()) < fewest) return {};

@@ -18,9 +18,9 @@ namespace lanthorn {
 namespace {
 
 constexpr int largest_radiance_bits = 40;
-constexpr double number_steps = 0x1p28;  // and positions: less precise but larger range, for kilometres and millimetres
+constexpr double number_steps = 0x1p28;  // also for positions: coarser but larger range, from millimetres to kilometres
 
-// Slot of the hits among a pixel's sample sums, after those of its light.
+// Slot of the hit count among a pixel's sample sums, after those of its light.
 constexpr std::size_t hit_slot = feature_channels;
 template <class Value>
 constexpr double steps_of = is_number<Value> || std::is_same_v<Value, Position> ? number_steps : unit_steps;
@@ -51,7 +51,7 @@ void add_color(std::vector<std::string>& channels, const std::string& layer) {
   for (const char* component : {".R", ".G", ".B"}) channels.push_back(layer + component);
 }
 
-// Of the light layers, features and samples.
+// Channels of the light layers, features and samples.
 std::vector<std::string> surface_channels(const FilmContents& contents) {
   std::vector<std::string> names;
   for (const std::string& layer : contents.light) add_color(names, layer);
@@ -386,7 +386,7 @@ void Film::merge(const Film& other) {
 
 std::size_t Film::plane_count() const { return stride(contents_); }
 
-// The film's own arrays, or those of a constant one, which the caller does not change.
+// The sums of the film itself, or of a const film, which the caller does not modify.
 template <class Sums, class Self>
 Film::PlanePlace<Sums> Film::find_plane(Self& film, std::size_t index) {
   assert(index < film.plane_count());

@@ -25,10 +25,10 @@
 
 namespace lanthorn {
 
-/// Maximum number of light layers of a film with those that repeat light, and of parts of its decomposition.
+/// Maximum number of light layers of a film, including repeated ones, and of parts of its decomposition.
 inline constexpr std::size_t most_light_layers = 8;
 
-/// A second decomposition of the light of a film, besides its light layers.
+/// A second decomposition of a film's light, besides its light layers.
 struct Decomposition {
   std::vector<std::string>
       parts{};           ///< names of the parts' layers, in the order of PixelSample::parts; empty: no decomposition
@@ -46,21 +46,21 @@ struct Decomposition {
 
 /// One sample of a pixel.
 struct PixelSample {
-  /// Radiance in each of the film's light layers, then in those that repeat light; may be negative.
+  /// Radiance in each of the film's light layers, then in the repeated layers; may be negative.
   std::array<Rgb, most_light_layers> light{};
   std::array<Rgb, most_light_layers> parts{};  ///< the same light in the film's decomposition, if it has one
-  Rgb bias{};                                  ///< estimate of the expected error of the light, if the film keeps it
+  Rgb bias{};                                  ///< estimate of the expected error of the light, if the film stores it
   Features features{};
-  /// The sum of the light layers, for films with spectral buckets.
+  /// Sum of the light layers, for films with spectral buckets.
   std::optional<SpectralRadiance> spectrum{};
-  float weight = 1;  ///< weight of the sample from `Filter::sample`; `Film::add` multiplies it in, not the caller
+  float weight = 1;  ///< from `Filter::sample`; `Film::add` multiplies by it, the caller does not
 };
 
 /// Quantities that a film accumulates. Every film also has the layers of `Features`, and samples.
 struct FilmContents {
   /// Names of the light layers, 1 to most_light_layers. `color` is their exact sum, by definition.
   std::vector<std::string> light{"light"};
-  /// Names of further layers, which hold a part of the same light once more. `color` does not count them.
+  /// Names of further layers, which hold a part of the same light again. `color` excludes them.
   std::vector<std::string> repeated{};
   Decomposition decomposition{};
   bool splats = false;  ///< `splat` will be called
@@ -70,15 +70,15 @@ struct FilmContents {
   friend bool operator==(const FilmContents&, const FilmContents&) = default;
 };
 
-/// The passes of a render in two halves, whose difference shows the noise of the picture. Of passes 2k and 2k + 1, each
-/// half has one: by the parity of the ones in the pass's number (Thue & Morse), so that what is ordered by bit
-/// reversal, such as the parts of the shutter interval, is as even in each half as in all. Eye paths and wavelengths of
-/// each half have random numbers of their own.
+/// Splits the passes of a render into two halves, whose difference measures the noise of the picture. Each half gets
+/// one of the passes 2k and 2k + 1, by the parity of the ones in the pass's number (Thue & Morse), so that quantities
+/// ordered by bit reversal, such as the parts of the shutter interval, are as evenly distributed in each half as in
+/// all. Eye paths and wavelengths of each half have their own random numbers.
 enum class FilmHalf : std::uint8_t { first, second };
 inline FilmHalf half_of_pass(std::uint64_t pass) {
   return std::popcount(pass) % 2 == 0 ? FilmHalf::first : FilmHalf::second;
 }
-/// The number of a pass among those of its half.
+/// The index of a pass within its half.
 inline std::uint64_t number_in_half(std::uint64_t pass) { return pass / 2; }
 
 /// R, G, B of one half of the passes.
@@ -95,8 +95,8 @@ struct HalfPicture {
 /// stay unbiased. Weights and features use 2^40 steps per unit, features that are numbers or positions 2^28.
 ///
 /// Spectral buckets, if present, hold the mean radiance of all light within them, per nanometre. A value at a
-/// wavelength counts with 1 / (4 pdf width). The buckets of samples are divided by the sum of these counts, so that a
-/// constant spectrum stays constant however few wavelengths were drawn. The buckets of splats are divided by the number
+/// wavelength is weighted by 1 / (4 pdf width). Buckets of samples are divided by the sum of these weights, so that a
+/// constant spectrum stays constant however few wavelengths were sampled. Buckets of splats are divided by the number
 /// of passes instead.
 class Film {
  public:
@@ -112,7 +112,7 @@ class Film {
   const std::optional<SpectralBuckets>& buckets() const { return contents_.buckets; }
   /// Radiance is stored in steps of 2^exponent.
   int step_exponent() const { return step_exponent_; }
-  /// Bytes held.
+  /// Memory used, in bytes.
   std::size_t memory() const {
     std::size_t integers = parts_.capacity() + spectra_.capacity() + spectral_splats_.capacity();
     for (const Half& half : halves_) integers += half.samples.capacity() + half.splats.capacity();
@@ -122,7 +122,8 @@ class Film {
   /// Sets the processing of later samples and splats. Not saved: it belongs to the view.
   void set_sensor(const Sensor& sensor) { sensor_ = sensor; }
 
-  /// Sets where this film, a crop window, lies in a full film of this width, so that it rounds as that does. Not saved.
+  /// Sets the position of this film, a crop window, in a full film of this width, so that it rounds as the full film
+  /// does. Not saved.
   void set_window(const PixelWindow& window, int full_width) {
     window_ = window;
     full_width_ = full_width;
@@ -132,17 +133,16 @@ class Film {
   /// this order: R, G, B (color); the light layers by their names (emission.R ... caustic.B, media.R ...); albedo.R ..
   /// B; normal.X .. Z (mean, not unit length); position.X .. Z; depth.Z (mean over hits, 0 without hits); samples (sum
   /// of weights); the parts of the decomposition by their names (technique.hit.R ..., term.A.R ...), its splats and its
-  /// shares (in red, green and blue the luminance share of the first, second and third group); the spectral buckets by
-  /// their centres (S0.360,5nm
-  /// ...). Pixels without samples are 0, and so are buckets in which no wavelength was drawn. `balance`: factors
-  /// of the colours of light; the other channels are as measured.
+  /// shares (red, green and blue are the luminance shares of the first, second and third group); the spectral buckets
+  /// by their centres (S0.360,5nm ...). Pixels without samples are 0, and so are buckets in which no wavelength was
+  /// sampled. `balance`: factors applied to the colours of light; other channels are unaffected.
   Image resolve(std::uint64_t passes, const Rgb& balance = {1, 1, 1}) const;
   /// Only R, G, B of `resolve`, for previews.
   Image resolve_color(std::uint64_t passes, const Rgb& balance = {1, 1, 1}) const;
-  /// The light layers and features of the first half of the passes, and its samples, as `resolve` names them. `passes`:
-  /// of this half.
+  /// The light layers and features of the first half of the passes, and its samples, named as by `resolve`. `passes`:
+  /// number in this half.
   Image resolve_first_half(std::uint64_t passes, const Rgb& balance = {1, 1, 1}) const;
-  /// R, G, B of one half of the passes, of which there are `passes`, and its estimate of the bias, if the film has one.
+  /// R, G, B of one half, which has `passes` passes, and its estimate of the bias, if the film has one.
   HalfPicture resolve_half(FilmHalf half, std::uint64_t passes, const Rgb& balance = {1, 1, 1}) const;
 
   FilmReport report() const;
@@ -155,15 +155,15 @@ class Film {
   // The raw sums, one plane of `pixel_count` integers per quantity, for saving.
   std::size_t plane_count() const;
   std::vector<std::int64_t> plane(std::size_t index) const;
-  /// A part of a plane: as many pixels as `out` has, from pixel `first` on.
+  /// A part of a plane: `out.size()` pixels, starting at pixel `first`.
   void copy_sums(std::size_t plane, std::size_t first, std::span<std::int64_t> out) const;
-  /// Adds to a part of a plane. The values are clamped to the limit of the sums. Several threads may add to different
-  /// pixels or planes.
+  /// Adds to a part of a plane, clamping to the limit of the sums. Several threads may add to different pixels or
+  /// planes.
   void add_sums(std::size_t plane, std::size_t first, std::span<const std::int64_t> values);
-  /// Adds the counts of a report; `saturated` is not stored but counted.
+  /// Adds the counts of a report except `saturated`, which is counted from the sums.
   void add_report(const FilmReport& report);
 
-  /// A film of known step exponent, for loading: equivalent to a largest radiance of 2^(exponent + 40).
+  /// A film with a given step exponent, for loading: equivalent to a largest radiance of 2^(exponent + 40).
   static Film with_exponent(int width, int height, int step_exponent, const FilmContents& contents = {});
   /// Integers per pixel of a film with these contents.
   static std::size_t stride(const FilmContents& contents);
@@ -173,13 +173,13 @@ class Film {
 
   struct Problem {
     std::uint64_t count = 0;
-    /// Low 32 bits of the pass << 32 | pixel: one word, so that threads can agree on the minimum.
+    /// Low 32 bits of the pass << 32 | pixel: one word, so that threads can atomically compute the minimum.
     std::uint64_t first = ~std::uint64_t{0};
   };
   static void add_problem(Problem& sum, const Problem& more);
   using LightMeans = std::array<double, most_light_layers * 3>;  ///< 0 for missing layers
   static constexpr std::size_t surface_slots =
-      feature_channels + 2;  ///< of a sample, after its light: with hits, weights
+      feature_channels + 2;  ///< of a sample, after its light: including hits and weights
   static constexpr std::size_t most_slots = (most_light_layers + 1) * 3 + surface_slots;  ///< of a sample
   using SampleValues = std::array<double, most_slots>;                                    ///< times the sample's weight
   using SampleSums = std::array<std::int64_t, most_slots>;
@@ -194,7 +194,7 @@ class Film {
 
   std::uint32_t pixel_of_full_film(std::uint32_t pixel) const;
   void write_spectrum(std::uint32_t pixel, std::uint64_t passes, float* out) const;
-  /// The array of sums that holds a plane, and the plane's place in it.
+  /// The array of sums that holds a plane, and the plane's position in it.
   template <class Sums>
   struct PlanePlace {
     Sums* sums;
@@ -204,7 +204,7 @@ class Film {
   static PlanePlace<Sums> find_plane(Self& film, std::size_t index);
   template <class Body>
   void for_each_pixel(Body&& body) const;
-  /// Of one pixel. None for splats: the film has none.
+  /// Sums of one pixel; splats are 0 if the film has none.
   struct PixelSums {
     SampleSums samples;
     SplatSums splats;
@@ -239,7 +239,7 @@ class Film {
   std::vector<std::int64_t> parts_;            ///< parts_stride() per pixel, or empty
   std::vector<std::int64_t> spectra_;          ///< per pixel the buckets and then their weights, or empty
   std::vector<std::int64_t> spectral_splats_;  ///< the buckets of each pixel, or empty
-  SpinLocks pixel_locks_;                      ///< of all sums but those of splats
+  SpinLocks pixel_locks_;                      ///< for all sums except splats
 };
 
 }  // namespace lanthorn

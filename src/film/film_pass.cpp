@@ -25,7 +25,7 @@ constexpr double dither_below = 0x1p12;
 // Slot numbers are hashed for stochastic rounding: slots of samples, then of splats, of spectral values, and of parts.
 constexpr unsigned parts_slot = 64;
 
-// Share of the value at wavelength i in its bucket: 1 / (4 pdf width).
+// Weight of the value at wavelength i in its bucket: 1 / (4 pdf width).
 double bucket_share(const SpectralRadiance& value, std::size_t i, const SpectralBuckets& buckets) {
   return 0.25 / (static_cast<double>(value.pdf[i]) * static_cast<double>(buckets.width()));
 }
@@ -82,7 +82,7 @@ bool FilmPass::add_ordinary(std::int64_t* sums, const Values& values, Stride str
   return true;
 }
 
-// The sample's values in the order of the sums, times its weight. `factor`: of its light, by the sensor's limit.
+// The sample's values in the order of the sums, times its weight. `factor`: scales its light, by the sensor's limit.
 FilmPass::Values FilmPass::values_of(const PixelSample& sample, float factor) const {
   const double weight = static_cast<double>(sample.weight);
   // The absolute value, because weights of both signs could cancel in a mean over hits only.

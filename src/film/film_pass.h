@@ -11,12 +11,11 @@
 
 namespace lanthorn {
 
-/// What one pass adds to a film, which must outlive it. All functions may be called by any thread at any time, those of
-/// several passes too: sums do not depend on the order.
+/// Adds the contributions of one pass to a film, which must outlive it. Any thread may call any function at any time,
+/// also for several passes at once: sums do not depend on the order.
 class FilmPass {
  public:
-  /// `splat_share`: the share of the pass's light that splats bring in full: 1 / parts if the pass is rendered in
-  /// parts.
+  /// `splat_share`: weight of splats, 1 / parts if the pass is rendered in parts that each splat the pass's full light.
   FilmPass(Film& film, std::uint64_t pass, float splat_share = 1)
       : film_(film),
         pass_(pass),
@@ -28,21 +27,21 @@ class FilmPass {
   /// Adds a sample to a pixel (row-major index in the crop window).
   void add(std::uint32_t pixel, const PixelSample& sample) const;
 
-  /// Adds to the light layer of this index (those that repeat light come last). `value`: radiance, already divided by
-  /// the number of light paths of the pass, or of its part, and multiplied by the filter's weight; `Film::resolve`
-  /// divides by the number of passes. The film must have splats.
+  /// Adds to the light layer of this index (repeated layers come last). `value`: radiance, already divided by the
+  /// number of light paths of the pass, or of its part, and multiplied by the filter's weight; `Film::resolve` divides
+  /// by the number of passes. The film must have splats.
   void splat(std::uint32_t pixel, std::size_t layer, const Rgb& value) const;
-  /// Adds the same light to the spectral buckets, which the film must have. `weight`: the filter's weight, multiplied
-  /// in here.
+  /// Adds the same light to the spectral buckets, which the film must have. `weight`: the filter's weight, applied
+  /// here.
   void splat_spectrum(std::uint32_t pixel, const SpectralRadiance& value, float weight) const;
 
-  /// Prefetches the sums of a pixel to which a sample is about to be added. If the film is larger than the caches,
-  /// waiting for the sums takes longer than adding to them.
+  /// Prefetches the sums of a pixel to which a sample will soon be added. If the film exceeds the caches, waiting for
+  /// the sums takes longer than adding to them.
   [[gnu::always_inline]] void prefetch(std::uint32_t pixel) const {
     prefetch(half_.samples, film_.samples_stride(), pixel);
     if (!film_.parts_.empty()) prefetch(film_.parts_, film_.parts_stride(), pixel);
   }
-  /// The same for what will be splatted.
+  /// Prefetches the sums to which light will be splatted.
   [[gnu::always_inline]] void prefetch_splats(std::uint32_t pixel) const {
     prefetch(half_.splats, film_.splats_stride(), pixel);
   }

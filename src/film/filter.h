@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 // Pixel reconstruction filters. Pixel samples importance-sample the filter (Ernst et al. 2006, "Filter importance
-// sampling"): each sample belongs to one pixel only. Only splats of light tracing evaluate the filter.
+// sampling"): each sample belongs to a single pixel. Only splats of light tracing evaluate the filter.
 #pragma once
 
 #include <algorithm>
@@ -55,7 +55,7 @@ struct FilterSample {
   float weight = 1;   ///< of the sample: +w or -w, w = ∫ |f| / ∫ f (1 for filters without negative lobes)
 };
 
-/// A filter prepared for sampling and evaluation; a value of a few kB (tables for all shapes but the box).
+/// A filter prepared for sampling and evaluation; occupies a few kB (tables for all shapes except the box).
 class Filter {
  public:
   /// Box filter over one pixel.

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Section numbers are those of Andersson et al. 2020.
+// Section numbers refer to Andersson et al. 2020.
 #include "lanthorn/flip.h"
 
 #include <algorithm>
@@ -99,7 +99,7 @@ Plane<float> convolved_along(const Plane<float>& in, const Kernel& kernel, int d
   return out;
 }
 
-/// Convolution with a separable filter; pixels beyond the edge repeat the edge.
+/// Convolution with a separable filter; edge pixels are repeated beyond the edge.
 Plane<float> convolved(const Plane<float>& in, const Kernel& horizontal, const Kernel& vertical) {
   return convolved_along(convolved_along(in, horizontal, 1, 0), vertical, 0, 1);
 }

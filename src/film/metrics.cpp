@@ -146,7 +146,7 @@ Agreement agreement_with_reference(const Image& reference, const Image& sem, std
   const std::vector<double> squared_sem = tile_means(sem, [](double s) { return s * s; });
   const TileStatistics run = tile_statistics(runs);
 
-  // Standard errors from few runs are unreliable: none counts as less than half their median.
+  // Standard errors from few runs are unreliable: each is clamped to at least half their median.
   std::vector<double> run_error(r.size());
   std::transform(run.squared_error.begin(), run.squared_error.end(), run_error.begin(),
                  [](double s) { return std::sqrt(s); });

@@ -17,7 +17,7 @@ struct PixelWindow {
   Vec2 corner() const { return {static_cast<float>(x0), static_cast<float>(y0)}; }
   /// Row-major index of the pixel that contains this film position, or of the nearest one.
   std::uint32_t pixel_at(const Vec2& raster) const {
-    // Clamped before conversion: light from beside the camera may have positions outside the range of integers.
+    // Clamped before conversion: light from outside the view may have positions outside the range of integers.
     const auto x = static_cast<int>(std::clamp(raster.x, static_cast<float>(x0), static_cast<float>(x1 - 1)));
     const auto y = static_cast<int>(std::clamp(raster.y, static_cast<float>(y0), static_cast<float>(y1 - 1)));
     return static_cast<std::uint32_t>((y - y0) * width() + x - x0);

@@ -11,22 +11,21 @@ namespace lanthorn {
 
 /// Processing of light by the film before it is accumulated.
 struct Sensor {
-  std::optional<RgbMatrix> balance;  ///< linear map of colours; none: unchanged
-  /// Limit of the CIE XYZ components of a sample. A sample with a larger component is scaled down to it, which reduces
-  /// noise and loses energy, as pbrt-v4's "maxcomponentvalue". Splats are not limited, because each is one of many.
+  std::optional<RgbMatrix> balance;  ///< linear map of colours; nullopt: unchanged
+  /// Limit of the CIE XYZ components of a sample, as pbrt-v4's "maxcomponentvalue". A sample with a larger component is
+  /// scaled down to it, which reduces noise but loses energy. Splats are not limited, because each is one of many.
   std::optional<float> largest_component;
 
-  /// Limit of the components of what a path adds to a pixel, emission that is seen directly left out. Against
-  /// fireflies; loses energy.
+  /// Clamps each path's contribution to a pixel, except for directly visible lights: removes fireflies, biased.
   std::optional<float> path_limit{};
 
-  /// Factor by which such light of a path is scaled down.
+  /// Factor that clamps a path's light to `path_limit`.
   float path_factor(const Rgb& light) const {
     if (!path_limit) return 1;
     const float largest = max_component(light);
     return largest > *path_limit ? *path_limit / largest : 1.0f;
   }
-  /// Factor by which a sample of this colour is scaled down.
+  /// Factor that clamps a sample's colour to `largest_component`.
   float clamp_factor(const Rgb& color) const {
     if (!largest_component) return 1;
     static const RgbMatrix to_xyz = rec709_to_xyz();

@@ -12,7 +12,7 @@ namespace {
 GLuint make_buffer(std::size_t bytes, const void* content) {
   GLuint name = 0;
   glCreateBuffers(1, &name);
-  // Buffers without bytes are errors.
+  // OpenGL rejects empty buffers.
   glNamedBufferStorage(name, static_cast<GLsizeiptr>(std::max<std::size_t>(bytes, 16)), bytes > 0 ? content : nullptr,
                        GL_DYNAMIC_STORAGE_BIT);
   return name;
@@ -22,7 +22,7 @@ GLuint make_buffer(std::size_t bytes, const void* content) {
 
 Buffer::Buffer(std::size_t bytes) : object_(make_buffer(bytes, nullptr)), bytes_(bytes) {}
 
-// Content of 1 to 15 bytes would be read beyond its end; it is written instead.
+// OpenGL would read content of 1 to 15 bytes beyond its end; it is written separately instead.
 Buffer::Buffer(std::span<const std::byte> content)
     : object_(make_buffer(content.size(), content.size() < 16 ? nullptr : content.data())), bytes_(content.size()) {
   if (bytes_ < 16) write(0, content);

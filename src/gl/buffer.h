@@ -12,12 +12,12 @@ namespace lanthorn::gl {
 
 inline void delete_buffer(GLuint name) { glDeleteBuffers(1, &name); }
 
-/// Memory of the GPU, of fixed size.
+/// A fixed-size buffer in GPU memory.
 class Buffer {
  public:
   Buffer() = default;
   explicit Buffer(std::size_t bytes);
-  /// Holds a copy of the values.
+  /// Makes a copy of the values.
   template <class T>
   explicit Buffer(const std::vector<T>& values) : Buffer(std::as_bytes(std::span(values))) {}
   explicit Buffer(std::span<const std::byte> content);
@@ -46,11 +46,11 @@ class Buffer {
   std::size_t bytes_ = 0;
 };
 
-/// Two buffers in turn, for what is written anew in each frame: what the GPU still reads of the frame before is not
-/// overwritten (McGuire & Luebke 2009, fig. 3). With one buffer, frames of llvmpipe (Mesa 22.3) differed.
+/// Two buffers used alternately, for data rewritten in each frame: does not overwrite data of the previous frame that
+/// the GPU still reads (McGuire & Luebke 2009, fig. 3). With one buffer, frames of llvmpipe (Mesa 22.3) differed.
 class AlternatingBuffer {  // NOLINT(readability-identifier-naming): of a variable that the compiler makes
  public:
-  /// The values become the current buffer, which has room for at least one value.
+  /// Writes the values to the next buffer, which becomes current and has room for at least one value.
   template <class T>
   void write(const std::vector<T>& values);
   const Buffer& current() const { return buffers_[now_]; }
@@ -60,7 +60,7 @@ class AlternatingBuffer {  // NOLINT(readability-identifier-naming): of a variab
   int now_ = 0;
 };
 
-/// Makes `buffer` hold at least so many bytes; its content is undefined then.
+/// Ensures that `buffer` holds at least `bytes`; its content is then undefined.
 void reserve(Buffer& buffer, std::size_t bytes);
 
 template <class T>

@@ -19,7 +19,7 @@ namespace {
 
 constexpr int needed_version = 45;
 
-/// A way to get at a display.
+/// A way to access a display.
 struct Platform {
   std::string name;
   EGLenum kind = 0;
@@ -61,7 +61,7 @@ std::vector<Platform> platforms() {
   return all;
 }
 
-/// An initialised display with a current context, or what is wrong with the platform.
+/// An initialised display with a current context, or the reason why the platform failed.
 struct Attempt {
   EGLDisplay display = EGL_NO_DISPLAY;
   EGLContext context = EGL_NO_CONTEXT;
@@ -77,7 +77,7 @@ Attempt make_context(EGLDisplay display) {
   EGLint count = 0;
   if (!eglChooseConfig(display, wanted.data(), &config, 1, &count) || count == 0)
     return {display, EGL_NO_CONTEXT, "no configuration for OpenGL"};
-  // The last pair, by which drivers say that they were reset, is left out where it is not known.
+  // The last pair, with which drivers report resets, is omitted where it is unknown.
   std::array<EGLint, 11> attributes{EGL_CONTEXT_MAJOR_VERSION,
                                     needed_version / 10,
                                     EGL_CONTEXT_MINOR_VERSION,
@@ -157,7 +157,7 @@ Context& Context::operator=(Context&& other) noexcept {
   return *this;
 }
 
-// The display stays initialised: EGL counts its users no more than once.
+// The display stays initialised, because EGL does not count its users.
 Context::~Context() {
   if (context_ == nullptr) return;
   if (eglGetCurrentContext() == context_) eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);

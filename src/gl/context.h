@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// An OpenGL 4.5 core context without window or display, by EGL.
+// An OpenGL 4.5 core context without window or display, created with EGL.
 #pragma once
 
 #include <string>
@@ -9,27 +9,27 @@
 
 namespace lanthorn::gl {
 
-/// There is no usable OpenGL here; the message says what was found.
+/// OpenGL is not usable here; the message says what was found.
 class Unavailable : public Error {
  public:
   using Error::Error;
 };
 
-/// Who draws.
+/// The OpenGL driver.
 struct Driver {
-  std::string platform;  ///< how the context was made: "EGL device", "EGL surfaceless"
-  std::string renderer;  ///< OpenGL's own name, e.g. "llvmpipe (LLVM 15.0.6, 256 bits)"
+  std::string platform;  ///< how the context was created: "EGL device", "EGL surfaceless"
+  std::string renderer;  ///< OpenGL's name for it, e.g. "llvmpipe (LLVM 15.0.6, 256 bits)"
   std::string version;
-  bool software = false;  ///< the CPU draws
+  bool software = false;  ///< true if the CPU draws
 };
 
-/// The driver of the current context, whoever has made it. Throws Unavailable if it has no OpenGL 4.5 core.
+/// The driver of the current context, whoever created it. Throws Unavailable if it lacks OpenGL 4.5 core.
 Driver current_driver(std::string platform);
 
-/// A context of its own. Current on the thread that made it, until another is made current.
+/// Owns a context, which is current on the thread that created it until another one is made current.
 class Context {
  public:
-  /// Tries the devices that EGL lists, real ones first, then Mesa's platform without surfaces. Throws Unavailable.
+  /// Tries the devices that EGL lists, hardware first, then Mesa's surfaceless platform. Throws Unavailable.
   static Context headless();
 
   Context(Context&& other) noexcept;
@@ -47,7 +47,7 @@ class Context {
   Driver driver_;
 };
 
-/// Makes a context current for a scope, and the one before it afterwards.
+/// Makes a context current for a scope, then restores the previous one.
 class CurrentScope {
  public:
   explicit CurrentScope(const Context& context);
@@ -56,7 +56,7 @@ class CurrentScope {
   ~CurrentScope();
 
  private:
-  void *display_, *context_, *draw_, *read_;  // those before; null: none
+  void *display_, *context_, *draw_, *read_;  // the previous ones; null: none
 };
 
 }  // namespace lanthorn::gl

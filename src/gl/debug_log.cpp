@@ -12,8 +12,7 @@ namespace lanthorn::gl {
 
 namespace {
 
-// Drivers also report what they would have liked otherwise (performance, portability, old functions); the frame is
-// right all the same.
+// Ignores other messages (performance, portability, deprecated functions), which do not affect the frame.
 void APIENTRY note(GLenum /*source*/, GLenum type, GLuint /*id*/, GLenum /*severity*/, GLsizei length,
                    const GLchar* text, const void* log) {
   if (type != GL_DEBUG_TYPE_ERROR && type != GL_DEBUG_TYPE_UNDEFINED_BEHAVIOR) return;

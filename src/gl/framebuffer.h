@@ -11,12 +11,12 @@ namespace lanthorn::gl {
 
 inline void delete_framebuffer(GLuint name) { glDeleteFramebuffers(1, &name); }
 
-/// Textures to draw into. They must outlive the framebuffer, or stay unused by it.
+/// Textures as render targets. They must outlive the framebuffer's use.
 class Framebuffer {
  public:
   Framebuffer() = default;
-  /// Draws into the colours, in this order, with `depth` (null: none). Of arrays, `layer` is drawn into. Throws Error
-  /// if OpenGL cannot draw into these.
+  /// Draws into the colours, in this order, with `depth` (null: none). For texture arrays, draws into `layer`. Throws
+  /// Error if OpenGL cannot draw into these textures.
   explicit Framebuffer(std::initializer_list<const Texture*> colours, const Texture* depth = nullptr, int layer = 0);
 
   GLuint name() const { return object_.name(); }

@@ -8,7 +8,7 @@
 
 namespace lanthorn::gl {
 
-/// Owns the name of an OpenGL object; 0: none. The context in which it was made must be current when it is destroyed.
+/// Owns the name of an OpenGL object; 0: none. The context that created it must be current when it is destroyed.
 template <void (*destroy)(GLuint)>
 class Object {
  public:

@@ -35,7 +35,7 @@ std::string_view first_line(std::string_view& text) {
   return line;
 }
 
-// Lines keep their numbers in messages: "1(7)" is line 7 of the second file of the list.
+// Keeps line numbers for messages: "1(7)" is line 7 of the second file of the list.
 void expand(const ShaderFiles::Texts& texts, std::string_view file, std::vector<std::string>& seen, std::string& out) {
   const auto found = texts.find(file);
   if (found == texts.end()) throw Error(fmt::format("there is no shader '{}'", file));

@@ -12,13 +12,13 @@
 
 namespace lanthorn::gl {
 
-/// Texts of shaders by file name. A line #include "name" stands for the text of that file, once.
+/// Shader sources by file name. A line #include "name" is replaced by the text of that file, once.
 class ShaderFiles {
  public:
   using Texts = std::map<std::string, std::string, std::less<>>;
   explicit ShaderFiles(Texts texts) : texts_(std::move(texts)) {}
 
-  /// A file with what it includes. Throws Error if a file is not there.
+  /// A file with everything that it includes. Throws Error if a file is missing.
   std::string text(std::string_view file) const;
 
  private:
@@ -27,18 +27,18 @@ class ShaderFiles {
 
 inline void delete_program(GLuint name) { glDeleteProgram(name); }
 
-/// Linked shaders, with their uniforms by name.
+/// A linked shader program, with its uniforms by name.
 class Program {
  public:
   Program() = default;
-  /// Throws Error with file and OpenGL's messages if a shader is wrong. `defines`: lines put before each of them.
+  /// Throws Error with file and OpenGL's messages if a shader is invalid. `defines`: lines placed before each shader.
   Program(const ShaderFiles& files, std::string_view vertex, std::string_view fragment, std::string_view defines = {});
   static Program compute(const ShaderFiles& files, std::string_view file, std::string_view defines = {});
 
   GLuint name() const { return object_.name(); }
   void use() const { glUseProgram(name()); }
 
-  // Sets a uniform; nothing happens if the shaders do not use it.
+  // Sets a uniform; does nothing if the shaders do not use it.
   void set(const char* uniform, int value) const;
   void set(const char* uniform, std::uint32_t value) const;
   void set(const char* uniform, float value) const;

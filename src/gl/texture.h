@@ -14,13 +14,13 @@ namespace lanthorn::gl {
 
 inline void delete_texture(GLuint name) { glDeleteTextures(1, &name); }
 
-/// How a texture's texels are exchanged with the CPU.
+/// How texels are exchanged with the CPU.
 struct TexelType {
   GLenum format = GL_RGBA;  ///< GL_RED, GL_RGBA, GL_RGBA_INTEGER, GL_DEPTH_COMPONENT ...
   GLenum type = GL_FLOAT;
 };
 
-/// A 2D texture, an array of them, or a 3D texture, of fixed size. Looked up at the nearest texel and clamped at its
+/// A 2D texture, an array of 2D textures, or a 3D texture, of fixed size. Sampling uses the nearest texel and clamps at
 /// edges, unless `filter` says otherwise.
 class Texture {
  public:
@@ -33,13 +33,13 @@ class Texture {
   GLuint name() const { return object_.name(); }
   int width() const { return width_; }
   int height() const { return height_; }
-  int layers() const { return layers_; }  ///< or depth
+  int layers() const { return layers_; }  ///< for a volume, its depth
   int levels() const { return levels_; }
   /// `layer`: of an array.
   void write(TexelType type, const void* texels, int level = 0, int layer = 0);
-  /// A rectangle of a texture that is no array.
+  /// Writes a rectangle of a 2D texture.
   void write_part(TexelType type, const void* texels, int x, int y, int width, int height);
-  /// All texels of a level, row by row from OpenGL's lower end, layer by layer. Waits for the GPU.
+  /// All texels of a level, row by row from OpenGL's bottom row, layer by layer. Waits for the GPU.
   void read(TexelType type, std::span<std::byte> texels, int level = 0) const;
   template <class T>
   std::vector<T> read(TexelType type, int channels) const {
@@ -50,12 +50,12 @@ class Texture {
   }
   /// GL_NEAREST, GL_LINEAR ..., GL_CLAMP_TO_EDGE, GL_REPEAT ...
   void filter(GLenum minify, GLenum magnify, GLenum wrap) const;
-  /// All levels become 0.
+  /// Sets all levels to 0.
   void clear() const;
   void generate_mipmaps() const { glGenerateTextureMipmap(name()); }
-  /// For samplers of shaders.
+  /// Binds the texture to a sampler unit.
   void bind(GLuint unit) const { glBindTextureUnit(unit, name()); }
-  /// For images of shaders; all layers.
+  /// Binds all layers to an image unit.
   void bind_image(GLuint unit, GLenum access, GLenum format, int level = 0) const {
     glBindImageTexture(unit, name(), level, has_layers() ? GL_TRUE : GL_FALSE, 0, access, format);
   }
@@ -69,17 +69,17 @@ class Texture {
   GLenum target_ = GL_TEXTURE_2D;
 };
 
-/// Throws Error if this driver's shaders would not see so many texels of a buffer: "WHAT take N texels, and this OpenGL
-/// driver has M at most; expected REMEDY".
+/// Throws Error if shaders of this driver cannot access this many texels of a buffer: "WHAT take N texels, and this
+/// OpenGL driver has M at most; expected REMEDY".
 void require_buffer_texels(std::size_t texels, std::string_view what, std::string_view remedy);
 
-/// What shaders read of a buffer by texelFetch.
+/// A buffer that shaders read with texelFetch.
 class BufferTexture {
  public:
   BufferTexture() = default;
   /// `format`: sized, e.g. GL_RGBA32UI.
   explicit BufferTexture(GLenum format);
-  /// For samplers of shaders. See `require_buffer_texels`.
+  /// Binds the buffer to a sampler unit. See `require_buffer_texels`.
   void bind(GLuint unit, const Buffer& buffer) const;
 
  private:

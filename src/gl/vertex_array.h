@@ -12,7 +12,7 @@ inline void delete_vertex_array(GLuint name) { glDeleteVertexArrays(1, &name); }
 
 using VertexArray = Object<delete_vertex_array>;
 
-/// Without attributes. OpenGL draws nothing unless a vertex array is bound, even if shaders make all vertices.
+/// An empty vertex array. OpenGL draws nothing unless one is bound, even if shaders generate all vertices.
 inline VertexArray make_vertex_array() {
   GLuint name = 0;
   glCreateVertexArrays(1, &name);

@@ -18,7 +18,7 @@ namespace lanthorn {
 
 namespace {
 
-// The cosine needs no more texels than this across a face.
+// The cosine kernel needs no more texels than this across a face.
 constexpr int size_for_irradiance = 64;
 constexpr int least_source_size = 128;
 
@@ -36,7 +36,7 @@ void check_settings(const IblSettings& settings) {
                             settings.smallest_size, settings.specular_size));
 }
 
-// As fine as the image, but no finer than twice what is asked for.
+// As fine as the image, but no finer than twice the requested size.
 int source_size(const Environment& environment, const IblSettings& settings) {
   const int asked = settings.specular ? settings.specular_size : size_for_irradiance;
   int size = least_source_size;
@@ -85,7 +85,7 @@ void describe_suns(const Environment& environment, Ibl& ibl) {
   ibl.sun_share = {share(0, ibl.mean.r), share(1, ibl.mean.g), share(2, ibl.mean.b)};
 }
 
-/// Reports shares of the work, by the number of texels times samples.
+/// Reports the completed fraction of the work, measured in texels times samples.
 class Progress {
  public:
   Progress(const std::function<void(double)>& report, double total) : report_(report), total_(total) {}
@@ -99,7 +99,7 @@ class Progress {
 double texels_of(int size) { return static_cast<double>(cube_faces) * size * size; }
 
 int samples_of_level(int size, const IblSettings& settings) {
-  // Narrow lobes need fewer samples, and are those of many texels.
+  // Narrow lobes need fewer samples per texel and have more texels.
   int samples = settings.samples;
   for (int s = size; s > settings.smallest_size && samples > settings.samples / 4; s /= 2) samples /= 2;
   return std::max(samples, 1);

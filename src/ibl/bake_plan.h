@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// What `bake_ibl` filters, and into which maps: the same for the CPU and for the GPU
+// What `bake_ibl` filters, and into which maps; shared by the CPU and the GPU baker
 // (realtime/techniques/splitsum/environment_baker.h).
 #pragma once
 
@@ -15,15 +15,15 @@ namespace lanthorn {
 struct LevelPlan {
   int size = 1;
   float roughness = 0, alpha = 0;
-  int samples = 0;  ///< of the lobe; 0: mirrors
+  int samples = 0;  ///< of the lobe; 0: mirror
 };
-/// Levels of the specular map, from the mirrors on.
+/// Levels of the specular map, starting with the mirror.
 std::vector<LevelPlan> specular_levels(const IblSettings& settings);
 
-/// The environment without its suns, as fine as the settings need it.
+/// The environment without its suns, at the resolution that the settings need.
 CubePyramid source_of(const Environment& environment, const IblSettings& settings);
 
-/// All light of the environment as points, as fine as the cosine needs them.
+/// All light of the environment as points, at the resolution that the cosine kernel needs.
 std::vector<PointFlux> irradiance_points(const CubePyramid& source, const Environment& environment);
 
 }  // namespace lanthorn

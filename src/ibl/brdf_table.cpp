@@ -9,30 +9,32 @@
 //   A(v) = ∫ F D G2 / (4 n·l n·v)  n·l dl,
 //
 // with the distribution D of microfacet normals h, half way between v and l, and the masking G2 of both directions.
-// Light comes from l by facets of the normal h, so integrate over h instead. Mirroring v about h turns l twice as fast
-// as h: dl = 4 v·h dh, and
+// Light from l is reflected by facets with normal h, so integrate over h instead. Mirroring v about h turns l twice as
+// fast as h: dl = 4 v·h dh, and
 //
 //   A(v) = ∫ F G2 D(h) v·h / n·v dh.
 //
 // # Its sampling
-// The normals that are visible from v have the density D_v(h) = G1(v) D(h) v·h / n·v (Heitz 2018, eq. 3). With h drawn
-// from it, all but masking and Fresnel term cancel: A is the mean of F G2 / G1. Schlick's Fresnel term splits the mean:
+// The normals visible from v have the density D_v(h) = G1(v) D(h) v·h / n·v (Heitz 2018, eq. 3). With h sampled from
+// it, everything except masking and Fresnel cancels: A is the mean of F G2 / G1. Schlick's Fresnel term splits the
+// mean:
 //
 //   F = F0 + (1 - F0) c,     c = (1 - v·h)^5,     A = F0 scale + bias,
 //   scale = mean of (1 - c) G2 / G1,     bias = mean of c G2 / G1.
 //
-// Both depend on n·v and alpha alone: the table.
+// Both depend only on n·v and alpha: the table.
 //
-// Visible normals are drawn as by Dupuy & Benyoub 2023. Scaling x and y by alpha turns the distribution into that of a
-// hemisphere's normals, and v into v'. A parallel beam from v' hits the hemisphere's points by their projected areas,
-// which is how visible they are, and a sphere mirrors a beam evenly into all directions; the upper hemisphere into the
-// cap z > -v'_z. So draw the mirrored ray u evenly from that cap. The normal is half way between u and v':
+// Visible normals are sampled as by Dupuy & Benyoub 2023. Scaling x and y by alpha turns the distribution into that of
+// a hemisphere's normals, and v into v'. A parallel beam from v' hits points of the hemisphere in proportion to their
+// projected areas, that is, to their visibility. A sphere mirrors a parallel beam uniformly into all directions; the
+// upper hemisphere mirrors it into the cap z > -v'_z. So sample the mirrored ray u uniformly in that cap. The normal is
+// half way between u and v':
 //
 //   h' = u + v',     h = (alpha h'_x, alpha h'_y, h'_z) / its length.
 //
-// The azimuth of u and its height z = height (1 + v'_z) - v'_z are uniform, since zones of a sphere that are equally
-// high have equal areas. With v in the plane y = 0, the sign of h_y changes neither v·h nor n·l: half a turn of
-// azimuths is enough, and of h_y only the square is needed.
+// The azimuth of u and its height z = height (1 + v'_z) - v'_z are uniform, since zones of a sphere of equal height
+// have equal areas. With v in the plane y = 0, the sign of h_y affects neither v·h nor n·l: half a turn of azimuths
+// suffices, and only the square of h_y is needed.
 //
 // # Its weight
 // Smith's masking has G1(v) = 1 / (1 + Λ(v)), and G2 = 1 / (1 + Λ(v) + Λ(l)) where heights are correlated (Heitz 2014,
@@ -56,7 +58,7 @@ namespace lanthorn {
 
 namespace {
 
-constexpr std::size_t columns = 32;  // at a time, see point_sums.h
+constexpr std::size_t columns = 32;  // processed together, see point_sums.h
 using Columns = std::array<float, columns>;
 
 struct Sums {

@@ -6,8 +6,8 @@
 
 namespace lanthorn {
 
-/// A visible normal of the microsurface, in the space in which it is a hemisphere (Dupuy & Benyoub 2023): uniform in
-/// azimuth and in the height above the lower end of the visible cap.
+/// A visible normal of the microsurface, in the space in which the microsurface is a hemisphere (Dupuy & Benyoub 2023):
+/// uniform in azimuth and in the height above the lower end of the visible cap.
 struct CapSample {
   float cos_phi, height;
 };

@@ -31,7 +31,7 @@ SpectrumBatch sum_rows(const Environment& environment, int begin, int end, int p
                        const DirectionBatch& at) {
   SpectrumBatch sums;
   for (int y = begin; y < end; ++y) {
-    // Sums of one row at a time, so that small numbers are not lost in large ones.
+    // Sums up each row separately, so that small numbers are not lost in large ones.
     SpectrumBatch row;
     environment.for_points_of_row(y, pieces, [&](const PointFlux& point) { add_point(point, kernel, at, row); });
     for (std::size_t c = 0; c < 4; ++c)
@@ -68,7 +68,7 @@ std::vector<CubeTexel> checked_texels(const Environment& environment, int size, 
   std::vector<CubeTexel> texels;
   const int total = cube_faces * size * size;
   for (int i = 0; i < count; ++i) {
-    // The golden ratio spreads them.
+    // The golden ratio distributes the texels evenly.
     const double place = (i + 0.5) / std::numbers::phi;
     const int t = std::min(static_cast<int>((place - std::floor(place)) * total), total - 1);
     texels.push_back({t / (size * size), t % size, t / size % size});
@@ -94,7 +94,7 @@ BrdfSums integrate_brdf(double cos, double alpha) {
   const auto masking = [&](double c) { return std::sqrt(alpha2 + (1 - alpha2) * c * c); };
   BrdfSums sums;
   for (int i = 0; i < steps; ++i) {
-    // The share x of the normals' projected area lies below tan². More steps towards grazing normals.
+    // A fraction x of the normals' projected area lies below tan². Steps are denser towards grazing normals.
     const double u = (i + 0.5) / steps, x = 1 - sqr(1 - u), dx = 2 * (1 - u) / steps;
     const double tan2 = alpha2 * x / (1 - x), h_z = 1 / std::sqrt(1 + tan2), h_x = std::sqrt(1 - h_z * h_z);
     for (int k = 0; k < turns; ++k) {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// What the maps should hold, from all texels of the image, to measure their errors by.
+// Reference values of the maps, from all texels of the image, to measure the maps' errors.
 #pragma once
 
 #include <vector>
@@ -10,17 +10,17 @@
 
 namespace lanthorn {
 
-/// The texels of a cube map of this size that are checked: that which faces the brightest texel of the environment
-/// first, the others spread over the map.
+/// The texels to check in a cube map of this size: first the one that faces the brightest texel of the environment,
+/// then others spread over the map.
 std::vector<CubeTexel> checked_texels(const Environment& environment, int size, int count);
 
-/// Sums of the cosine over the environment, normalised.
+/// Cosine-weighted sums over the environment, normalised.
 std::vector<Spectrum> integrate_cosine(const Environment& environment, const std::vector<Direction>& directions);
-/// The same of a GGX lobe. Texels that are wide for it are divided.
+/// The same for a GGX lobe. Texels that are wide relative to the lobe are subdivided.
 std::vector<Spectrum> integrate_lobe(const Environment& environment, const std::vector<Direction>& directions,
                                      float alpha, LobeWeight weight);
 
-/// R and G of `brdf_table` by a sum over all normals of the microsurface, where the table takes visible ones.
+/// R and G of `brdf_table`, by summing over all normals of the microsurface instead of sampling visible ones.
 struct BrdfSums {
   double scale = 0, bias = 0;
 };

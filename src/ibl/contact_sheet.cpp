@@ -17,7 +17,7 @@ namespace {
 
 constexpr int tile = 96, gap = 4;
 
-// Characters of 3 x 5 dots, row by row from the top: those that labels need.
+// Characters of 3 x 5 dots, row by row from the top: only those that labels need.
 struct Glyph {
   char character;
   std::array<std::uint8_t, 5> rows;
@@ -36,7 +36,7 @@ constexpr std::array<Glyph, 30> glyphs{{
 }};
 constexpr int margin = 11 * advance;
 
-// Nothing for a space.
+// Empty for a space.
 std::array<std::uint8_t, 5> rows_of(char character) {
   for (const Glyph& glyph : glyphs)
     if (glyph.character == character) return glyph.rows;
@@ -54,7 +54,7 @@ class Sheet {
       write(faces[static_cast<std::size_t>(face)], margin + gap + face * (tile + gap), gap);
   }
 
-  /// A row of six tiles; `at(face, place)` gives the colours.
+  /// A row of six tiles; `at(face, place)` returns the colours.
   template <class Colour>
   void add_row(std::string_view name, std::string_view more, Colour&& at) {
     const int top = line_height + gap + row_ * (tile + gap);

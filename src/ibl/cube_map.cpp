@@ -13,11 +13,11 @@ namespace lanthorn {
 
 namespace {
 
-// A direction as a face sees it: `major` along the face's axis.
+// A direction in a face's coordinates; `major` is the component along the face's axis.
 struct FaceCoordinates {
   float s, t, major;
 };
-// The OpenGL specification, table of the selection of cube map faces.
+// From the OpenGL specification, table of cube map face selection.
 FaceCoordinates on_face(int face, const Vec3& d) {
   switch (face) {
     case 0:
@@ -86,7 +86,7 @@ CubeMap::CubeMap(int size)
 
 void CubeMap::close_seams() {
   const int last = size_ - 1;
-  // Just beyond the edge, so that the place along it is the same on both faces.
+  // Slightly beyond the edge, so that the position along it is the same on both faces.
   constexpr float beyond = 1e-5f;
   const auto neighbour = [&](int face, float x, float y) {
     return texel(cube_texel(cube_point(cube_direction(face, {x, y})), size_));

@@ -36,9 +36,9 @@ std::optional<EnvironmentLayout> layout_of(const Image& image) {
 
 namespace {
 
-// Light is a sun's if it is so many times brighter than the mean of the rest.
+// Light belongs to a sun if it is this many times brighter than the mean of the rest.
 constexpr float sun_contrast = 20;
-// At most so many points `finest_sun_spacing` apart.
+// Limits the number of sun points, at a spacing of `finest_sun_spacing`.
 constexpr std::uint64_t most_sun_points = 1024;
 constexpr float finest_sun_spacing = 0.006f;
 
@@ -46,7 +46,7 @@ bool is_usable(float x) { return x >= 0 && x <= largest_environment_radiance; }
 float usable(float x) { return is_usable(x) ? x : 0.0f; }
 float luminance_of(const Spectrum& s) { return luminance(Rgb{s[0], s[1], s[2]}); }
 
-// Bins of floats by exponent and the first three bits of the mantissa: an eighth of an octave each.
+// Histogram bins of floats by exponent and the first three bits of the mantissa: an eighth of an octave each.
 struct LuminanceHistogram {
   static constexpr int shift = 20;
   struct Bin {
@@ -73,7 +73,7 @@ struct LuminanceHistogram {
     }
     unusable += other.unusable;
   }
-  /// Mean over the sphere of values that are cut at `limit`.
+  /// Mean over the sphere of values clamped to `limit`.
   double mean_below(float limit) const {
     double flux = 0, omega = 0;
     for (const Bin& bin : bins) {
@@ -84,7 +84,7 @@ struct LuminanceHistogram {
   }
 };
 
-// The fixed point of "sun_contrast times the mean of what is below".
+// The fixed point of threshold = sun_contrast * mean_below(threshold).
 float contrast_threshold(const LuminanceHistogram& histogram) {
   constexpr int most_iterations = 50;
   float threshold = std::numeric_limits<float>::max();
@@ -137,7 +137,7 @@ Environment::Environment(const Image& image) : image_(image) {
 
 float Environment::texels_per_face() const {
   if (layout_ == EnvironmentLayout::equirectangular) return static_cast<float>(width()) / 4;
-  // A square has the area of the sphere, a face a sixth of it.
+  // The octahedral square represents the whole sphere, a cube face a sixth of it.
   if (layout_ == EnvironmentLayout::octahedral) return static_cast<float>(width()) / std::sqrt(6.0f);
   return static_cast<float>(height());
 }
@@ -179,7 +179,7 @@ float Environment::solid_angle_of_cell(float x, float y, float cell) const {
   if (layout_ == EnvironmentLayout::octahedral) return 4 * pi * sqr(cell) / (w * h);
   if (layout_ == EnvironmentLayout::equirectangular)
     return 4 * pi * cell / w * std::sin(pi * y / h) * std::sin(0.5f * pi * cell / h);
-  // Its area over the cube of its distance; the error is of the order of its width squared.
+  // Its area divided by the cube of its distance; the error is of the order of its width squared.
   const float s = 2 * std::fmod(x, h) / h - 1, t = 2 * y / h - 1, distance2 = 1 + s * s + t * t;
   return 4 * sqr(cell / h) / (distance2 * std::sqrt(distance2));
 }
@@ -229,7 +229,7 @@ std::vector<PointFlux> Environment::sun_points(float spacing) const {
   const float texel_width = 0.5f * pi / texels_per_face();
   const int pieces = std::max(1, static_cast<int>(std::lround(texel_width / spacing)));
   const float step = 1 / static_cast<float>(pieces);
-  // Cells of a cube as wide as the spacing. Ordered, so that sums are the same everywhere.
+  // Grid cells as wide as the spacing. An ordered map makes sums reproducible.
   const int cells = std::max(1, static_cast<int>(0.5f * pi / spacing));
   std::map<std::array<int, 3>, std::pair<Vec3, Spectrum>> merged;
   for (const Sun& sun : suns_) {
@@ -270,13 +270,13 @@ Spectrum Environment::radiance_without_suns(const Direction& direction) const {
   const float left = std::floor(place.x), top = std::floor(place.y);
   const float fx = place.x - left, fy = place.y - top;
   const int w = width(), h = height();
-  // The face of a cube; the others have one.
+  // The face of a cube; other layouts have a single one.
   const int face_width = layout_ == EnvironmentLayout::cube ? h : w;
   const int face_begin = std::clamp(static_cast<int>(place.x + 0.5f), 0, w - 1) / face_width * face_width;
   const auto at = [&](int x, int y) {
     if (layout_ == EnvironmentLayout::equirectangular) return texel_without_sun((x + w) % w, std::clamp(y, 0, h - 1));
     if (layout_ == EnvironmentLayout::octahedral) {
-      // Beyond an edge lies the same edge, reversed.
+      // Beyond an edge the layout continues with the same edge, reversed.
       if (x < 0 || x >= w) return texel_without_sun(std::clamp(x, 0, w - 1), std::clamp(h - 1 - y, 0, h - 1));
       if (y < 0 || y >= h) return texel_without_sun(w - 1 - x, std::clamp(y, 0, h - 1));
       return texel_without_sun(x, y);

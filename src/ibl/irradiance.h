@@ -10,8 +10,8 @@
 namespace lanthorn {
 
 /// All light of the environment as points: the texels of a map, each with its solid angle as the fourth component of
-/// its flux, and the suns, without one. Sums of a kernel over them divided by that of the fourth component are
-/// normalised: a white environment gives 1.
+/// its flux, and the suns, without one. A kernel's sums over them are normalised by dividing by the sum of the fourth
+/// component: a white environment gives 1.
 std::vector<PointFlux> points_of(const CubeMap& map, const Environment& environment);
 
 /// (1/pi) ∫ L cos dω for all normals, by a sum over all points.

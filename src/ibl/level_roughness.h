@@ -6,7 +6,7 @@
 
 namespace lanthorn {
 
-/// Roughness of the level at x, a fraction of the last level's number; and the inverse.
+/// Roughness of the level at x = level / last level; and the inverse.
 float level_roughness(float x, RoughnessMapping mapping);
 float level_of_roughness(float roughness, RoughnessMapping mapping);
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Sums of kernels over many points of light for many directions at once. The loops over directions are what compilers
-// turn into vector instructions, which they may not do to sums.
+// Sums of kernels over many points of light for many directions at once. Compilers vectorise loops over directions;
+// they may not vectorise floating-point sums.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@
 
 namespace lanthorn {
 
-/// As many directions as are worked on together.
+/// Number of directions processed together.
 inline constexpr std::size_t batch_size = 32;
 using FloatBatch = std::array<float, batch_size>;
 
@@ -39,7 +39,7 @@ void add_point(const PointFlux& point, const Kernel& kernel, const DirectionBatc
   for (std::size_t i = 0; i < batch_size; ++i) {
     const float dx = at.x[i] - point.direction.x, dy = at.y[i] - point.direction.y, dz = at.z[i] - point.direction.z;
     const float distance2 = dx * dx + dy * dy + dz * dz;
-    // Of unit vectors; the distance is exact where the cosine is near 1.
+    // For unit vectors; the distance is accurate where the cosine is near 1.
     weight[i] = kernel(1 - 0.5f * distance2, distance2);
   }
   for (std::size_t c = 0; c < 4; ++c)
@@ -51,8 +51,7 @@ struct CosineKernel {
   float operator()(float cos, float /*not needed*/) const { return cos > 0 ? cos : 0.0f; }
 };
 
-/// Calls `body(directions, set)` for all texels of a cube map, `batch_size` at a time; `set(sums)` stores what it has
-/// found.
+/// Calls `body(directions, set)` for all texels of a cube map, `batch_size` at a time; `set(sums)` stores the results.
 template <class Body>
 void for_texel_batches(CubeMap& map, Body&& body) {
   const auto n = static_cast<std::size_t>(map.size()), count = cube_faces * n * n;

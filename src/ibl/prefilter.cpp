@@ -15,26 +15,26 @@ namespace lanthorn {
 
 namespace {
 
-// The cosine n·l of the direction mirrored by GGX's normal of the random number u; the density is D n·h, and 1 for u.
+// The cosine n·l of the direction mirrored by a GGX normal sampled with u; its density is D n·h.
 float reflected_cosine(float alpha, float u) {
   const float cos2 = (1 - u) / (1 + (alpha * alpha - 1) * u);
   return 2 * cos2 - 1;
 }
 
-// Ratio of the solid angles of a texel of the level and of the sample. Twice as much blurs more than it smooths.
+// Ratio of the solid angles of the level's texel and of the sample. Twice as much blurs more than it smooths.
 constexpr float footprint = 1;
 
 struct FrameBatch {
   DirectionBatch s, t, n;
 };
 
-// Where look-ups fall in a map: the first of four texels and the place among them.
+// Texture look-ups in a map: the first of four texels and the position between them.
 struct Lookups {
   alignas(64) std::array<std::int32_t, batch_size> first{};
   alignas(64) FloatBatch x{}, y{};
 };
 
-// `cube_point` without branches: only choices between numbers, which become vector instructions.
+// `cube_point` without branches: only selections between numbers, which vectorise.
 struct FacePoint {
   int face;
   float s, t, major;
@@ -81,8 +81,8 @@ void add_sample(const CubeMap& map, const FrameBatch& frames, const LobeSample& 
 
 }  // namespace
 
-// A spiral whose angle turns by the golden ratio: points of low discrepancy, even in all directions. Sorted by level,
-// which the order of the spiral does.
+// A spiral whose angle advances by the golden ratio: low discrepancy, and isotropic. The spiral's order is also the
+// order of levels.
 std::vector<LobeSample> sample_lobe(const Lobe& lobe, const CubePyramid& source) {
   const float alpha = lobe.alpha;
   const int count = lobe.samples;

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t bands = 4;
 
-// Of the clamped cosine, over pi [R01 eqs. 8 and 9].
+// Coefficients of the clamped cosine, divided by pi [R01 eqs. 8 and 9].
 constexpr std::array<double, bands> cosine_lobe{1, 2.0 / 3, 1.0 / 4, 0};
 
 std::size_t band_of(std::size_t i) { return i < 1 ? 0 : i < 4 ? 1 : i < 9 ? 2 : 3; }
@@ -43,10 +43,10 @@ float least_irradiance(const ShMaps& sh) {
   return least;
 }
 
-// A window this strong leaves the mean alone.
+// A window this strong leaves only the mean.
 constexpr double strongest_window = 1e3;
 
-// Bisection: the irradiance's minimum grows with the window.
+// Bisection: the minimum of the irradiance increases with the window.
 void window_irradiance(ShMaps& sh) {
   const auto is_positive = [&](double lambda) {
     sh.irradiance = irradiance_of(sh.radiance, lambda);
@@ -78,7 +78,7 @@ struct ProjectionSums {
 };
 
 ProjectionSums sum_of_row(const Environment& environment, int y) {
-  // In floats, which vector instructions hold more of, but few at a time: rounding errors of equal terms add up.
+  // Floats allow wider vector instructions than doubles, but only short sums: rounding errors of equal terms add up.
   constexpr int at_a_time = 64;
   alignas(64) std::array<std::array<float, bands * bands>, 3> sums{};
   int terms = 0;

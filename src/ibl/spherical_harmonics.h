@@ -11,11 +11,11 @@
 
 namespace lanthorn {
 
-/// Real spherical harmonics of order 3 as polynomials of the direction, by l² + l + m.
+/// Real spherical harmonics of order 3 as polynomials of the direction, at index l² + l + m.
 std::array<float, 16> sh_basis(const Vec3& d);
 
-/// Projection by a sum over all texels of the image, suns included. `windowed`: with the weakest window that leaves no
-/// irradiance below 0.
+/// Projection by a sum over all texels of the image, suns included. `windowed`: applies the weakest window that leaves
+/// no irradiance below 0.
 ShMaps project_to_sh(const Environment& environment, bool windowed);
 
 }  // namespace lanthorn

@@ -28,7 +28,7 @@ IblSettings split_sum_settings(const Image& environment) {
   settings.samples = 1024;
   settings.mapping = mapping;
   settings.weight = LobeWeight::masking;
-  // Levels close in roughness, since what lies between them is interpolated.
+  // Closely spaced roughness levels, since values between them are interpolated.
   settings.smallest_size = 4;
   return settings;
 }

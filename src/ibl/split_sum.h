@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Split-sum shading by the maps of an environment (docs/methods/ibl.md).
+// Split-sum shading with the maps of an environment (docs/methods/ibl.md).
 #pragma once
 
 #include <vector>
@@ -10,18 +10,18 @@
 
 namespace lanthorn {
 
-/// The maps that shading needs of an equirectangular image.
+/// The maps that shading needs, for an equirectangular image.
 IblSettings split_sum_settings(const Image& environment);
 inline constexpr int split_sum_table_size = 128;
 
 class SplitSum {
  public:
-  /// Bakes all that shading needs from an equirectangular image.
+  /// Bakes everything that shading needs from an equirectangular image.
   explicit SplitSum(const Image& environment);
 
   /// (1/pi) ∫ L cos dω.
   Spectrum irradiance(const Normal& n) const { return irradiance_.lookup(n); }
-  /// The environment in a rough mirror, towards its direction of reflection: trilinear.
+  /// Reflection of the environment in a rough mirror, for its direction of reflection: trilinear.
   Spectrum reflection(const Direction& r, float alpha) const;
 
   /// Reflection of a white environment: F0 scale + F90 bias.

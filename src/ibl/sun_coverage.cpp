@@ -12,11 +12,10 @@ namespace lanthorn {
 
 namespace {
 
-/// In the plane of a face, in units of the map's texels from the upper left corner.
+/// Corners in the plane of a face, in units of the map's texels from the upper left corner.
 using Polygon = std::vector<glm::dvec2>;
 
-/// The part of the polygon on the side of a line along an axis where sign · (coordinate - limit) >= 0 (Sutherland &
-/// Hodgman 1974).
+/// Clips the polygon to the half-plane sign · (coordinate - limit) >= 0 along an axis (Sutherland & Hodgman 1974).
 Polygon clipped(const Polygon& polygon, int axis, double sign, double limit) {
   Polygon kept;
   const auto side = [&](const glm::dvec2& p) { return sign * (p[axis] - limit); };
@@ -26,14 +25,14 @@ Polygon clipped(const Polygon& polygon, int axis, double sign, double limit) {
     if (from >= 0) kept.push_back(a);
     if ((from < 0) != (to < 0)) {
       glm::dvec2 crossing = a + from / (from - to) * (b - a);
-      crossing[axis] = limit;  // so that what fills a texel is exactly the texel
+      crossing[axis] = limit;  // so that a polygon that fills a texel becomes exactly the texel
       kept.push_back(crossing);
     }
   }
   return kept;
 }
 
-/// Solid angle of a polygon on a face of a map of `size`, sr: that of a fan of triangles (Van Oosterom & Strackee
+/// Solid angle of a polygon on a face of a map of `size`, sr: the sum over a triangle fan (Van Oosterom & Strackee
 /// 1983).
 double solid_angle_of(const Polygon& polygon, int size) {
   std::vector<glm::dvec3> corners;
@@ -50,12 +49,12 @@ double solid_angle_of(const Polygon& polygon, int size) {
   return std::fabs(sum);
 }
 
-/// A rectangle of the image, in its texels.
+/// A rectangle of the image, in texels.
 struct ImagePart {
   float x, y, width, height;
 };
 
-/// Directions along its border. Lines of constant height of equirectangular images are curves on a face.
+/// Directions along its border. Horizontal lines of equirectangular images are curves on a face.
 std::vector<Direction> outline_of(const Environment& environment, const ImagePart& part) {
   constexpr int steps = 4;  // along each side
   std::vector<Direction> outline;
@@ -73,7 +72,7 @@ std::vector<Direction> outline_of(const Environment& environment, const ImagePar
   return outline;
 }
 
-/// The outline in the plane of a face. Empty if it is not on this face: it must be small.
+/// The outline projected onto the plane of a face. Empty if it is not near this face; requires a small outline.
 Polygon on_face(const std::vector<Direction>& outline, int face, int size) {
   Polygon polygon;
   for (const Direction& d : outline) {
@@ -84,7 +83,7 @@ Polygon on_face(const std::vector<Direction>& outline, int face, int size) {
   return polygon;
 }
 
-/// Adds `excess` where the polygon lies on the face.
+/// Adds `excess` where the polygon covers the face.
 void add_polygon(const Polygon& polygon, const Spectrum& excess, int face, const std::vector<float>& solid_angles,
                  CubeMap& map) {
   if (polygon.empty()) return;
@@ -110,7 +109,7 @@ void add_polygon(const Polygon& polygon, const Spectrum& excess, int face, const
 
 void add_suns(const Environment& environment, CubeMap& map) {
   const std::vector<float> solid_angles = cube_solid_angles(map.size());
-  constexpr float widest = 0.1f;  // of a part, rad
+  constexpr float widest = 0.1f;  // widest part, rad
   const float texel_width = 0.5f * pi / environment.texels_per_face();
   const int parts = std::max(1, static_cast<int>(std::ceil(texel_width / widest)));
   const float step = 1 / static_cast<float>(parts);

@@ -26,7 +26,7 @@ constexpr std::uint32_t magic_number = 20000630, format_version = 2, has_long_na
 constexpr std::size_t longest_short_name = 31, longest_name = 255;
 constexpr std::int32_t type_half = 1, type_float = 2;
 constexpr unsigned char compression_zip = 3, increasing_y = 0;
-constexpr int lines_per_chunk = 16;  // of ZIP
+constexpr int lines_per_chunk = 16;  // of ZIP compression
 
 void append_text(Bytes& out, std::string_view text) {
   out.insert(out.end(), text.begin(), text.end());
@@ -41,7 +41,7 @@ void append_attribute(Bytes& out, std::string_view name, std::string_view type, 
   for (const auto& part : value) append_number(out, part);
 }
 
-// The order in the file is by name. Channels without a name would end the list of channels.
+// The file stores channels in order of their names. A channel without a name would end the list of channels.
 std::string channel_name(const std::string& name) { return name.empty() ? "Y" : name; }
 std::vector<std::size_t> sorted_channels(const Image& image) {
   std::vector<std::size_t> order(image.channel_count());
@@ -58,7 +58,7 @@ Bytes list_of_channels(const Image& image, const std::vector<std::size_t>& order
     append_text(list, channel_name(image.channels[c]));
     append_number(list, is_noise_channel(image.channels[c]) ? type_half : type_float);
     append_number(list, std::uint32_t{0});               // not for perceptually linear compression
-    for (int i = 0; i < 2; ++i) append_number(list, 1);  // a sample for each column and line
+    for (int i = 0; i < 2; ++i) append_number(list, 1);  // one sample per column and line
   }
   list.push_back(0);
   return list;
@@ -86,7 +86,7 @@ Bytes header_of(const Image& image, const std::vector<std::size_t>& order,
   const int full_width = window.full_width > 0 ? window.full_width : image.width;
   const int full_height = window.full_height > 0 ? window.full_height : image.height;
   append_attribute(header, "channels", "chlist", list_of_channels(image, order));
-  // Rec.709 and its white, D65: x and y of red, green, blue and white.
+  // Rec.709 and its white point D65: x and y of red, green, blue and white.
   append_attribute(header, "chromaticities", "chromaticities",
                    std::array{0.64f, 0.33f, 0.30f, 0.60f, 0.15f, 0.06f, 0.3127f, 0.3290f});
   append_attribute(header, "compression", "compression", std::array{compression_zip});
@@ -128,15 +128,15 @@ Bytes pixels_of_lines(const Image& image, const std::vector<std::size_t>& order,
   return bytes;
 }
 
-// Bytes at even places come before those at odd ones; then each byte is its difference from the one before, plus 128.
-// What does not become smaller is left as it was.
+// Reorders bytes (even positions before odd ones), replaces each byte by its difference from the previous one plus 128,
+// and compresses. Data that would not shrink is stored unchanged.
 Bytes compressed(const Bytes& raw) {
   Bytes split(raw.size());
   const std::size_t evens = (raw.size() + 1) / 2;
   for (std::size_t i = 0; i < evens; ++i) split[i] = raw[2 * i];
   for (std::size_t i = 0; i < raw.size() / 2; ++i) split[evens + i] = raw[2 * i + 1];
   for (std::size_t i = split.size(); i-- > 1;) split[i] = static_cast<unsigned char>(split[i] - split[i - 1] + 128);
-  constexpr int level = 4;  // as OpenEXR 3.1: higher ones cost more time than they save space
+  constexpr int level = 4;  // as in OpenEXR 3.1: higher levels cost more time than the space they save is worth
   uLongf size = compressBound(split.size());
   Bytes result(size);
   if (compress2(result.data(), &size, split.data(), split.size(), level) != Z_OK) throw std::bad_alloc();
@@ -156,7 +156,7 @@ std::vector<unsigned char> encode_openexr(const Image& image, const std::vector<
                 std::to_string(image.height) + " pixels with " + std::to_string(image.channel_count()) + " channels");
   Bytes file = header_of(image, order, attributes);
   std::vector<Bytes> chunks(static_cast<std::size_t>((image.height + lines_per_chunk - 1) / lines_per_chunk));
-  const StopScope not_stopped(nullptr);  // a picture is saved after a signal, too
+  const StopScope not_stopped(nullptr);  // a picture is also saved after a signal
   parallel_for(std::size_t{0}, chunks.size(), [&](std::size_t i) {
     const int begin = static_cast<int>(i) * lines_per_chunk;
     chunks[i] = compressed(pixels_of_lines(image, order, begin, std::min(begin + lines_per_chunk, image.height)));

@@ -16,7 +16,7 @@ void load_fallback_libraries(const fs::path& folder) {
   std::error_code ignored;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored))
     if (dlopen(entry.path().filename().c_str(), RTLD_LAZY | RTLD_LOCAL) == nullptr) missing.push_back(entry.path());
-  // All that the system has is loaded by now, also for those that need each other.
+  // All libraries that the system provides are loaded by now, including for those that need each other.
   for (const fs::path& library : missing) dlopen(library.c_str(), RTLD_LAZY | RTLD_LOCAL);
 }
 
@@ -25,7 +25,7 @@ fs::path folder_of_fallback_libraries() {
   if (dladdr(reinterpret_cast<const void*>(&folder_of_fallback_libraries), &own) == 0) return {};
   const fs::path beside = fs::path(own.dli_fname).parent_path();
   std::error_code ignored;
-  // The second one is for a library in glibc-hwcaps/x86-64-v3.
+  // The second path is for a library in glibc-hwcaps/x86-64-v3.
   for (const char* modules : {"lanthorn", "../../lanthorn"})
     if (fs::path folder = beside / modules / "fallback"; fs::is_directory(folder, ignored)) return folder;
   return {};

@@ -6,12 +6,12 @@
 
 namespace lanthorn {
 
-/// Loads the shared libraries of a folder whose names the system does not know, so that modules that need them find
-/// them loaded. Those of the system come first: drivers must not meet an older library of the same name.
+/// Loads the shared libraries of a folder that the system lacks, so that modules that need them find them loaded. The
+/// system's libraries take precedence: drivers must not meet an older library of the same name.
 void load_fallback_libraries(const std::filesystem::path& folder);
 
-/// The folder for them beside the modules of this library, which the relocatable archive has
-/// (scripts/bundle-libraries); empty if there is none.
+/// The folder of such libraries beside this library's modules, which the relocatable archive has
+/// (scripts/bundle-libraries); empty if it does not exist.
 std::filesystem::path folder_of_fallback_libraries();
 
 }  // namespace lanthorn

@@ -13,8 +13,8 @@
 
 namespace lanthorn {
 
-/// An OpenEXR file of scanlines, 32-bit floats, ZIP compression; the image's window is its data and display window.
-/// The same bytes for any number of threads. Throws Error if the format cannot hold the image.
+/// An OpenEXR file of scanlines, 32-bit floats, ZIP compression; the image's window is its data and display window. The
+/// bytes do not depend on the number of threads. Throws Error if the format cannot represent the image.
 std::vector<unsigned char> encode_openexr(const Image& image, const std::vector<ImageAttribute>& attributes);
 
 struct PngText {

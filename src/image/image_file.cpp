@@ -22,8 +22,8 @@ namespace {
 
 using namespace std::string_view_literals;
 
-// Plausible size of decoded data. Deflate compresses by at most 1032; other codecs compress flat pictures more, but a
-// bound is needed.
+// Limit for the size of decoded data. Deflate compresses by a factor of at most 1032; other codecs compress flat
+// pictures more, but some bound is needed.
 constexpr double always_plausible = 256 << 20, largest_ratio = 4096;
 
 struct Kind {
@@ -56,7 +56,7 @@ constexpr std::array kinds{
     Kind{"FOR4"sv, "iff"},
 };
 
-// Targa files have no magic number; the header has a colour map or none, and one of six types (Truevision 1991).
+// Targa files have no magic number; the header declares a colour map or none, and one of six types (Truevision 1991).
 bool may_be_targa(std::string_view bytes) {
   constexpr std::size_t header = 18;
   if (bytes.size() < header) return false;
@@ -131,7 +131,7 @@ void ImageFile::open(std::string_view first_bytes, std::uint64_t max_pixels, con
   const char* const format = format_of(first_bytes);
   if (format == nullptr)
     fail(
-        "is no image of a kind that is read (EXR, PNG, JPEG, HDR, PFM, PNM, TIFF, TGA, WebP, BMP, GIF, DDS, DPX, IFF, "
+        "is not a supported image (EXR, PNG, JPEG, HDR, PFM, PNM, TIFF, TGA, WebP, BMP, GIF, DDS, DPX, IFF, "
         "PSD)");
   format_ = format;
   if (const auto pixels = announced_pixels(first_bytes, format)) check_pixels(*pixels, 4, max_pixels);
@@ -149,7 +149,7 @@ void ImageFile::check_pixels(std::uint64_t pixels, std::uint64_t pixel_bytes, st
 
 void ImageFile::check_header(std::uint64_t max_pixels) const {
   const ImageHeader& header = image_.header;
-  if (header.deep) fail("is a deep image, which is not read");
+  if (header.deep) fail("is a deep image, which is not supported");
   if (header.depth > 1) fail("is a volume, not an image");
   if (header.width <= 0 || header.height <= 0 || header.channels.empty()) fail("is empty");
   const std::uint64_t pixels = static_cast<std::uint64_t>(header.width) * static_cast<std::uint64_t>(header.height);
@@ -170,7 +170,7 @@ void ImageFile::guarded(const std::function<void()>& body) const {
   } catch (const Error&) {
     throw;
   } catch (const std::bad_alloc&) {
-    fail("needs more memory than there is");
+    fail("needs more memory than is available");
   } catch (const std::exception& problem) {
     fail("cannot be read: " + one_line(problem.what()));
   }

@@ -16,15 +16,16 @@
 
 namespace lanthorn {
 
-/// An image file, open for reading its first part. Its first bytes determine the format, not its name, and
-/// only image formats are accepted: OpenImageIO would also open films, which may refer to other files, and raw data.
+/// An image file, open for reading its first part. Its first bytes, not its name, determine the format, and only image
+/// formats are accepted: OpenImageIO would also open films, which may refer to other files, and raw data.
 class ImageFile {
  public:
   /// `bytes`: the whole file, which must outlive this object. `what`: its name in messages ('image "a.png"'). Throws
   /// Error with `where` if the format is unknown, if the file is damaged, deep or a volume, if it has more than
   /// `max_pixels`, or if it announces more data than 256 MiB plus 4096 times its size.
   ImageFile(std::string_view bytes, std::string what, SourceLocation where, std::uint64_t max_pixels);
-  /// The same for a file on disk, at its beginning, which is not read into memory as a whole (Radiance pictures are).
+  /// As the first constructor for a file on disk, positioned at its start, which is not read into memory as a whole
+  /// (except Radiance pictures).
   ImageFile(const std::shared_ptr<std::FILE>& file, std::string what, SourceLocation where, std::uint64_t max_pixels);
 
   const ImageHeader& header() const { return image_.header; }
@@ -42,7 +43,7 @@ class ImageFile {
   void check_pixels(std::uint64_t pixels, std::uint64_t pixel_bytes, std::uint64_t max_pixels) const;
   void check_header(std::uint64_t max_pixels) const;
   void read(int channels, SampleType as, void* pixels);
-  /// Calls `body`; turns exceptions of a library into an Error of this file.
+  /// Calls `body`; turns a library's exceptions into an Error about this file.
   void guarded(const std::function<void()>& body) const;
   [[noreturn]] void fail(const std::string& problem) const;
 

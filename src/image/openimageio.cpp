@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The module behind `image_codec`. It uses nothing of the library but headers.
+// The module behind `image_codec`. It uses only headers of the library.
 #include <OpenImageIO/color.h>
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imagebuf.h>
@@ -18,7 +18,7 @@
 #include "image/image_codec.h"
 #include "image/openimageio_tiles.h"
 
-// As png.h declares them.
+// Declarations as in png.h.
 struct png_struct_def;
 using PngMessage = void (*)(png_struct_def*, const char* message);
 using SetPngMessages = void (*)(png_struct_def*, void* owner, PngMessage on_error, PngMessage on_warning);
@@ -28,7 +28,7 @@ namespace {
 
 std::atomic<PngMessage> take_png_error{nullptr};
 
-// OpenImageIO's function returns, after which libpng prints a line of its own. This one does not (png_error(3)).
+// libpng prints a line of its own if OpenImageIO's function returns; this one does not return (png_error(3)).
 void take_error_and_leave(png_struct_def* png, const char* message) {
   if (const PngMessage take = take_png_error) take(png, message);
   static const auto jump = reinterpret_cast<PngJump>(dlsym(RTLD_NEXT, "png_longjmp"));
@@ -37,8 +37,7 @@ void take_error_and_leave(png_struct_def* png, const char* message) {
 
 }  // namespace
 
-// Stands before libpng's function of this name where OpenImageIO calls it, because this module precedes libpng in the
-// order in which names are looked up.
+// Interposes libpng's function of this name for OpenImageIO's calls: symbol lookup finds this module before libpng.
 extern "C" void png_set_error_fn(png_struct_def* png, void* owner, PngMessage on_error, PngMessage on_warning) {
   static const auto set = reinterpret_cast<SetPngMessages>(dlsym(RTLD_NEXT, "png_set_error_fn"));
   take_png_error = on_error;
@@ -117,9 +116,9 @@ struct DiskInput {
       : stream(std::move(from)), source(stream.get(), OIIO::Filesystem::IOProxy::Read) {}
 };
 
-// OpenImageIO 2.4 looks up the names in ICC profiles by a map that all threads share, and each unknown name is added to
-// it without a lock (issue 3756; mended in later versions): one in 12 loads of a model with 16 JPEG files crashed.
-// Profiles are read with the header; pixels may be read at the same time.
+// Serialises opening files. OpenImageIO 2.4 looks up names in ICC profiles in a map shared by all threads and inserts
+// unknown names without a lock (issue 3756; fixed in later versions): one in 12 loads of a model with 16 JPEG files
+// crashed. Profiles are read with the header; pixels may be read concurrently.
 std::mutex opening;
 
 void read_rows(OIIO::ImageInput& file, int first, int end, int channels, const OIIO::TypeDesc& type, void* pixels) {
@@ -136,7 +135,7 @@ OpenImage open_input(const std::shared_ptr<Input>& input, const char* format) {
   const std::scoped_lock lock(opening);
   input->file = OIIO::ImageInput::create(format);
   OIIO::ImageSpec config, spec;
-  // Colours as the file stores them: premultiplied by alpha, they would be decoded wrongly.
+  // Colours as the file stores them: premultiplying by alpha first would decode them incorrectly.
   config["oiio:UnassociatedAlpha"] = 1;
   OIIO::Filesystem::IOProxy* proxy = &input->source;
   config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
@@ -170,7 +169,7 @@ std::vector<unsigned char> encode(const char* format, const CodecColors& colors,
   const bool is_tiff = std::string_view(format) == "tiff";
   spec.attribute("compression", is_tiff ? "zip" : "jpeg:95");
   spec.attribute("jpeg:subsampling", "4:4:4");
-  // A colour space makes a directory of Exif, for which OpenImageIO's TIFF writer would read what it has written.
+  // A colour space creates an Exif directory, for which OpenImageIO's TIFF writer would have to read its own output.
   if (!is_tiff) spec.attribute("oiio:ColorSpace", "sRGB");
   spec.attribute("ImageDescription", text);
   spec.attribute("Software", "Lanthorn");
@@ -182,7 +181,7 @@ std::vector<unsigned char> encode(const char* format, const CodecColors& colors,
   return memory.buffer();
 }
 
-// What configurations call our linear colours.
+// Names of linear Rec.709 in common configurations.
 std::string linear_rec709_of(const OIIO::ColorConfig& config) {
   const std::vector<std::string> spaces = config.getColorSpaceNames();
   for (const char* name : {"lin_rec709", "lin_srgb", "Linear Rec.709 (sRGB)", "Linear Rec.709", "Linear BT.709",
@@ -197,7 +196,7 @@ std::string listed(const std::vector<std::string>& names) {
   return text;
 }
 
-// The name, or the default for an empty one.
+// The name, or the default if it is empty.
 std::string chosen(const std::string& name, const std::vector<std::string>& names, const char* otherwise,
                    const char* kind) {
   const std::string choice = name.empty() && otherwise != nullptr ? otherwise : name;
@@ -209,7 +208,7 @@ std::string chosen(const std::string& name, const std::vector<std::string>& name
 void apply_view(const std::string& file, const std::string& wanted_display, const std::string& wanted_view, int width,
                 int height, float* colors) {
   OIIO::ColorConfig config(file);
-  if (config.has_error()) throw std::runtime_error("is no OpenColorIO configuration: " + config.geterror());
+  if (config.has_error()) throw std::runtime_error("is not an OpenColorIO configuration: " + config.geterror());
   const std::string display =
       chosen(wanted_display, config.getDisplayNames(), config.getDefaultDisplayName(), "display");
   const std::string view =
@@ -223,7 +222,7 @@ void apply_view(const std::string& file, const std::string& wanted_display, cons
 void use_one_thread() { OIIO::attribute("exr_threads", -1); }
 
 std::string version() {
-  const int number = OIIO::openimageio_version();  // of the library that was loaded
+  const int number = OIIO::openimageio_version();  // of the library loaded at run time
   return std::to_string(number / 10000) + '.' + std::to_string(number / 100 % 100) + '.' + std::to_string(number % 100);
 }
 

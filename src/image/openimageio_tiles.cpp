@@ -18,7 +18,7 @@ namespace {
 
 constexpr const char* image_attribute = "lanthorn:image";
 
-/// Gives OpenImageIO's cache the tiles of a TiledImage, whose address is an attribute of the configuration.
+/// Supplies OpenImageIO's cache with the tiles of a TiledImage, whose address is passed as a configuration attribute.
 class TileInput final : public OIIO::ImageInput {
  public:
   static OIIO::ImageInput* create() { return new TileInput; }
@@ -62,7 +62,7 @@ struct TileCache {
   std::unique_ptr<OIIO::ImageCache, void (*)(OIIO::ImageCache*)> tiles{
       OIIO::ImageCache::create(false), [](OIIO::ImageCache* cache) { OIIO::ImageCache::destroy(cache); }};
   std::mutex adding;
-  std::deque<CachedImage> images;  // a deque, so that addresses are stable
+  std::deque<CachedImage> images;  // a deque keeps addresses stable
 };
 
 TileCache& cache_of(void* cache) { return *static_cast<TileCache*>(cache); }
@@ -72,7 +72,7 @@ TileCache& cache_of(void* cache) { return *static_cast<TileCache*>(cache); }
 std::shared_ptr<void> make_tile_cache(std::uint64_t bytes) {
   auto cache = std::make_shared<TileCache>();
   cache->tiles->attribute("max_memory_MB", static_cast<float>(static_cast<double>(bytes) / (1 << 20)));
-  cache->tiles->attribute("max_open_files", 1 << 20);  // they are no files
+  cache->tiles->attribute("max_open_files", 1 << 20);  // these are not actual files
   return cache;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The module's cache of tiles: the functions of `ImageCodec` of these names.
+// The module's tile cache: implements the functions of `ImageCodec` with these names.
 #pragma once
 
 #include <cstdint>

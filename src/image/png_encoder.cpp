@@ -28,7 +28,7 @@ void append_chunk(PngBytes& out, std::string_view type, std::span<const unsigned
   append_big_endian(out, static_cast<std::uint32_t>(crc32_z(0, out.data() + start, out.size() - start)));
 }
 
-// §9.2: each row holds its differences from the row above (filter type 2, Up).
+// §9.2: each row stores its differences from the row above (filter type 2, Up).
 PngBytes filtered(std::span<const std::uint8_t> colors, std::size_t row) {
   constexpr unsigned char filter_up = 2;
   PngBytes result;
@@ -71,7 +71,7 @@ std::vector<unsigned char> encode_png_colors(int width, std::span<const std::uin
   append_chunk(file, "sRGB", {&perceptual, 1});
   for (const PngText& entry : texts) append_chunk(file, "iTXt", international_text(entry));
   const PngBytes data = deflated(filtered(colors, row));
-  constexpr std::size_t most = std::size_t{1} << 30;  // in a chunk
+  constexpr std::size_t most = std::size_t{1} << 30;  // per chunk
   for (std::size_t at = 0; at < data.size(); at += most)
     append_chunk(file, "IDAT", std::span(data).subspan(at, std::min(most, data.size() - at)));
   append_chunk(file, "IEND", {});

@@ -18,10 +18,10 @@ constexpr std::string_view ends_early = "ends before its last line";
 
 [[noreturn]] void fail_picture(std::string_view problem) { throw std::runtime_error(std::string(problem)); }
 
-/// Three mantissas and an exponent, or what stands in their place in the file.
+/// Three mantissas and an exponent, or a run-length code in their place.
 using Rgbe = std::array<unsigned char, 4>;
 
-/// Takes a file from front to back.
+/// Reads a file from front to back.
 class ByteReader {
  public:
   explicit ByteReader(std::string_view bytes) : rest_(bytes) {}
@@ -51,14 +51,14 @@ class ByteReader {
   std::string_view rest_;
 };
 
-/// An axis of the line of resolution: "-Y 512" counts 512 rows, downwards.
+/// An axis of the resolution line: "-Y 512" means 512 rows, downwards.
 struct Axis {
   char name = 0;
   bool decreasing = false;
   int count = 0;
 };
 
-/// The line of resolution: scanlines follow one another along `slow`, pixels of one along `fast`.
+/// The resolution line: scanlines follow one another along `slow`, the pixels of one along `fast`.
 struct Resolution {
   Axis slow, fast;
 };
@@ -67,12 +67,12 @@ Resolution parse_resolution(std::string_view line) {
   const auto axis = [&] {
     Axis result;
     if (line.size() < 3 || (line[0] != '+' && line[0] != '-') || (line[1] != 'X' && line[1] != 'Y') || line[2] != ' ')
-      fail_picture("has no line of resolution after its header");
+      fail_picture("has no resolution line after its header");
     result.decreasing = line[0] == '-';
     result.name = line[1];
     line.remove_prefix(3);
     const auto [end, error] = std::from_chars(line.data(), line.data() + line.size(), result.count);
-    if (error != std::errc() || result.count < 1) fail_picture("has a resolution that is no number above 0");
+    if (error != std::errc() || result.count < 1) fail_picture("has a resolution that is not a number above 0");
     line.remove_prefix(static_cast<std::size_t>(end - line.data()));
     return result;
   };
@@ -81,12 +81,12 @@ Resolution parse_resolution(std::string_view line) {
   if (line.starts_with(' ')) line.remove_prefix(1);
   resolution.fast = axis();
   if (!line.empty() || resolution.slow.name == resolution.fast.name)
-    fail_picture("has a line of resolution that names no width and height");
+    fail_picture("has a resolution line without width and height");
   return resolution;
 }
 
-// The header's other variables (EXPOSURE, COLORCORR, …) do not change the pixels, as in other programs that read these
-// files for light.
+// Ignores the header's other variables (EXPOSURE, COLORCORR, …), as other programs do that use these files for
+// lighting.
 Resolution read_header(ByteReader& in) {
   for (std::string_view line = in.line(); !line.empty(); line = in.line())
     if (line.starts_with("FORMAT=") && line != "FORMAT=32-bit_rle_rgbe")
@@ -94,7 +94,7 @@ Resolution read_header(ByteReader& in) {
   return parse_resolution(in.line());
 }
 
-// Components one after another, each in runs: n <= 128 bytes as they are, or n - 128 times the next one.
+// Components one after another, each in runs: n <= 128 literal bytes, or the next byte n - 128 times.
 void read_components(ByteReader& in, std::vector<Rgbe>& line) {
   for (std::size_t c = 0; c < 4; ++c)
     for (std::size_t i = 0; i < line.size();) {
@@ -109,8 +109,8 @@ void read_components(ByteReader& in, std::vector<Rgbe>& line) {
     }
 }
 
-// Pixels one after another. Mantissas of 1, 1, 1 repeat the pixel before as often as the fourth byte says; the bytes of
-// several such in a row are one number, least first.
+// Pixels one after another. Mantissas 1, 1, 1 repeat the previous pixel as often as the fourth byte says; consecutive
+// repeat codes form one number, least significant byte first.
 void read_pixels(ByteReader& in, const Rgbe& first, std::vector<Rgbe>& line) {
   Rgbe pixel = first;
   unsigned shift = 0;
@@ -129,13 +129,12 @@ void read_pixels(ByteReader& in, const Rgbe& first, std::vector<Rgbe>& line) {
 }
 
 void read_scanline(ByteReader& in, std::vector<Rgbe>& line) {
-  constexpr std::size_t shortest = 8, longest = 0x7FFF;  // of lines by component
+  constexpr std::size_t shortest = 8, longest = 0x7FFF;  // of lines stored by component
   const Rgbe first = in.rgbe();
   const bool by_component =
       line.size() >= shortest && line.size() <= longest && first[0] == 2 && first[1] == 2 && (first[2] & 0x80) == 0;
   if (!by_component) return read_pixels(in, first, line);
-  if ((std::size_t{first[2]} << 8 | first[3]) != line.size())
-    fail_picture("has a line of another length than the rest");
+  if ((std::size_t{first[2]} << 8 | first[3]) != line.size()) fail_picture("has a line of a different length");
   read_components(in, line);
 }
 
@@ -150,7 +149,8 @@ void read_colors(ByteReader in, const Resolution& resolution, std::size_t channe
   static const std::array<float, 256> factors = factors_of_exponents();
   const auto& [slow, fast] = resolution;
   const auto width = static_cast<std::ptrdiff_t>(slow.name == 'Y' ? fast.count : slow.count);
-  // From one pixel to the next in the file, in pixels of the picture, whose rows go from the top: X grows, Y falls.
+  // Step from one pixel of the file to the next, in pixels of the picture, whose rows go from the top: X increases, Y
+  // decreases.
   const auto step_along = [&](const Axis& axis) {
     return axis.name == 'X' ? (axis.decreasing ? -1 : 1) : axis.decreasing ? width : -width;
   };

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t balls_per_chunk = 1u << 15;
 
-// The box of a ball, enlarged by more than rounding can take from it or from the distance.
+// The box of a ball, enlarged by more than the rounding errors of the box and of the distance.
 Bounds box_of(const Ball& ball) {
   const Vec3 reach = Vec3(safe_reach(ball.radius)) + 0x1p-22f * glm::abs(ball.centre);
   return {ball.centre - reach, ball.centre + reach};

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Points with radii of their own, found from a position and along a ray: photons in media for estimates at a point
-// (Jensen & Christensen 1998) and for the beam radiance estimate (Jarosz, Zwicker & Jensen 2008).
+// Finds points with individual radii from a position or along a ray: photons in media for estimates at a point (Jensen
+// & Christensen 1998) and for the beam radiance estimate (Jarosz, Zwicker & Jensen 2008).
 #pragma once
 
 #include <array>
@@ -22,9 +22,9 @@
 
 namespace lanthorn {
 
-/// A bounding volume hierarchy of balls. Boxes and a test in single precision leave out what is clearly outside; double
-/// precision decides. What is found so are the balls for which the conditions below hold, up to the rounding of
-/// doubles. Balls exactly on the boundary count.
+/// A bounding volume hierarchy of balls. Boxes and a single-precision test exclude what is clearly outside; double
+/// precision decides. The result is the set of balls that satisfy the conditions below, up to rounding of doubles.
+/// Balls exactly on the boundary are included.
 class BallBvh {
  public:
   /// Balls must be finite, with radii >= 0, fewer than 2^32.
@@ -37,16 +37,16 @@ class BallBvh {
   template <class Visit>
   void for_each_containing(const Point& p, Visit&& visit) const;
 
-  /// Calls `visit(slot, t, dist2)` once for every ball whose centre's foot on the ray lies in [begin, end], at t, and
-  /// whose squared distance from there is at most its radius². These are discs that face the ray: nothing is found
-  /// beyond the ends, where an estimate across the ray would count too much.
+  /// Calls `visit(slot, t, dist2)` once for every ball whose centre projects onto the ray at t in [begin, end], with a
+  /// squared distance of at most its radius². These are discs that face the ray: nothing is found beyond the segment's
+  /// ends, where an estimate across the ray would overestimate.
   template <class Visit>
   void for_each_along(const RaySegment& ray, Visit&& visit) const;
 
   std::size_t size() const { return tree_.size(); }
   Ball ball(std::uint32_t slot) const { return tree_.leaf_of(slot).ball(slot % Lanes::width); }
   Point position(std::uint32_t slot) const { return ball(slot).centre; }
-  /// Balls and boxes, bytes.
+  /// Memory of balls and boxes, bytes.
   std::size_t memory_bytes() const { return tree_.memory_bytes(); }
 
  private:
@@ -94,8 +94,8 @@ template <class Visit>
 void BallBvh::for_each_along(const RaySegment& ray, Visit&& visit) const {
   const Point& o = ray.origin;
   const Direction& d = ray.direction;
-  // Slabs (Kay & Kajiya 1986). A direction of 0 becomes one so small that no finite ray leaves a slab; boxes are never
-  // flat. `far` is enlarged by what rounding can take from it (Ize 2013).
+  // Slab test (Kay & Kajiya 1986). A direction component of 0 is replaced by one so small that no finite ray leaves a
+  // slab; boxes are never flat. `far` is enlarged by the maximum rounding error (Ize 2013).
   const auto inverse = [](float x) { return std::fabs(x) < 1e-28f ? std::copysign(1e28f, x) : 1 / x; };
   const Vec3 inv(inverse(d.x), inverse(d.y), inverse(d.z));
   const LaneVec3 origin{o.x, o.y, o.z}, direction{d.x, d.y, d.z};
@@ -111,7 +111,7 @@ void BallBvh::for_each_along(const RaySegment& ray, Visit&& visit) const {
   const auto test = [&](const Leaf& leaf) {
     const LaneVec3 w = leaf.centre.load() - origin;
     const LaneVec3 across = w - dot(w, direction) * direction;
-    // (r + 2^-20 |w|)² <= (1 + 1/64) r² + 65 · 2^-40 |w|²: 2^-20 |w| is more than the error of `across`.
+    // (r + 2^-20 |w|)² <= (1 + 1/64) r² + 65 · 2^-40 |w|²: 2^-20 |w| exceeds the error of `across`.
     const Lanes radius(leaf.radius);
     return not_greater(dot(across, across), (1.0f + 0x1p-6f) * (radius * radius) + 65 * 0x1p-40f * dot(w, w) + 1e-36f);
   };

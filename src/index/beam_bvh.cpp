@@ -19,14 +19,14 @@ namespace {
 
 constexpr std::size_t beams_per_chunk = 1u << 15, cells_per_chunk = 1u << 4;
 
-// How far a beam is felt from a point of it that has been computed in single precision.
+// Reach of a beam from a point of it that was computed in single precision.
 float reach_of(const Beam& beam) {
   return safe_reach(beam.radius) + 0x1p-22f * (sum_of_sizes(beam.origin) + beam.length);
 }
 
 Bounds grown(const Bounds& box, float reach) { return {box.min - Vec3(reach), box.max + Vec3(reach)}; }
 
-// The three lowest sets of five bits, bit by bit in turns: neighbours have near codes (Morton 1966).
+// Interleaves the five lowest bits of three numbers: neighbours get similar codes (Morton 1966).
 std::uint32_t morton_code(const glm::ivec3& cell) {
   std::uint32_t code = 0;
   for (int bit = 0; bit < 5; ++bit)
@@ -35,9 +35,9 @@ std::uint32_t morton_code(const glm::ivec3& cell) {
   return code;
 }
 
-// Cubes at whose faces beams are cut.
+// Cubic cells at whose faces beams are cut.
 struct Grid {
-  static constexpr int most = 32;  // in a row
+  static constexpr int most = 32;  // per axis
   Point corner{0};
   float per_metre = 0;  // cells
   glm::ivec3 last{0};
@@ -49,8 +49,8 @@ struct Grid {
   }
 };
 
-// Of cells such that beams are cut into `pieces_per_beam` pieces in the mean: a beam passes a face for each cell that
-// it advances along each axis. Cells are not small against radii, which would not make bounds tighter.
+// A grid whose cells cut beams into `pieces_per_beam` pieces on average: a beam crosses a face for each cell that it
+// advances along each axis. Cells are not small compared to radii, since that would not tighten bounds.
 Grid grid_for(std::span<const Beam> beams) {
   constexpr double pieces_per_beam = 7;
   struct Sums {
@@ -84,9 +84,9 @@ Grid grid_for(std::span<const Beam> beams) {
   return {all.box.min, 1 / size, glm::ivec3(extent / size)};
 }
 
-// Calls `visit(begin, end, code)` for each piece of a beam: its points from begin to end (m; the last one's end is
-// infinite), and the code of its cell (Amanatides & Woo 1987). Pieces that are short against cells are left whole with
-// the next one.
+// Calls `visit(begin, end, code)` for each piece of a beam: its points from begin to end (m; the last end is infinite),
+// and the code of its cell (Amanatides & Woo 1987). Pieces that are short relative to cells are merged with the next
+// one.
 template <class Visit>
 void cut(const Beam& beam, const Grid& grid, Visit&& visit) {
   constexpr float shortest = 0.2f;
@@ -114,19 +114,19 @@ void cut(const Beam& beam, const Grid& grid, Visit&& visit) {
   visit(begin, infinity, morton_code(cell));
 }
 
-// A sort by codes, in two passes over chunks of things: counts of each code, then places.
+// Counting sort by code, in two passes over chunks of items: counts per code, then positions.
 class CountingSort {
  public:
   CountingSort(std::size_t things, std::size_t codes)
       : codes_(codes), counts_((things + beams_per_chunk - 1) / beams_per_chunk * codes) {}
 
-  /// By code, of a chunk.
+  /// Counts of a chunk, by code.
   std::span<std::uint32_t> chunk(std::size_t c) { return std::span(counts_).subspan(c * codes_, codes_); }
 
   struct Range {
     std::uint32_t begin = 0, end = 0;
   };
-  /// Makes places of the counts, where each code begins at a multiple of `unit`. Returns those of each code.
+  /// Turns counts into positions, with each code starting at a multiple of `unit`. Returns the range of each code.
   std::vector<Range> place(std::uint32_t unit) {
     std::vector<Range> ranges(codes_);
     std::uint32_t at = 0;
@@ -144,7 +144,7 @@ class CountingSort {
   std::vector<std::uint32_t> counts_;  ///< chunk by chunk
 };
 
-// The order of beams by the cells of their middles.
+// The order of beams by the cells of their midpoints.
 std::vector<std::uint32_t> sorted(std::span<const Beam> beams, const Grid& grid) {
   CountingSort sort(beams.size(), grid.codes());
   const auto code_of = [&](const Beam& beam) {
@@ -163,7 +163,7 @@ std::vector<std::uint32_t> sorted(std::span<const Beam> beams, const Grid& grid)
   return order;
 }
 
-// A piece by its ends, to be sorted within its cell.
+// A piece with its ends as the sort key within its cell.
 struct alignas(16) PieceEnds {
   std::array<float, 6> key;
   std::uint32_t number;
@@ -172,7 +172,7 @@ struct alignas(16) PieceEnds {
   Point last() const { return {key[3], key[4], key[5]}; }
 };
 
-// Pieces in opposite directions are as good as in one: all go upwards.
+// Orients all pieces upwards, since their direction does not matter.
 PieceEnds ends_of(const Beam& beam, float begin, float end, std::uint32_t number) {
   Point a = beam.origin + begin * beam.direction, b = beam.origin + std::min(end, beam.length) * beam.direction;
   if (beam.direction.y < 0) std::swap(a, b);
@@ -201,12 +201,12 @@ BeamBvh::LaneRay::LaneRay(const RaySegment& ray)
   v = {frame.t.x, frame.t.y, frame.t.z};
 }
 
-// Makes an index of beams: pieces sorted by cell, a tree of each cell, and an octree of these.
+// Builds an index of beams: pieces sorted by cell, a tree for each cell, and an octree of the cells.
 class BeamBvh::Builder {
  public:
   Builder(BeamBvh& index, const Grid& grid) : index_(index), grid_(grid) {}
 
-  /// From the index's beams.
+  /// Builds the index from its beams.
   void build() {
     cut_up();
     std::vector<Cell> cells = cells_with_pieces();
@@ -225,13 +225,13 @@ class BeamBvh::Builder {
   struct Cell {
     std::uint32_t code;
     CountingSort::Range pieces;
-    std::size_t first_node = 0;  ///< of those below its root
+    std::size_t first_node = 0;  ///< of the nodes below its root
     Hull hull{};
 
     std::size_t leaves() const { return leaves_for(pieces.end - pieces.begin); }
   };
 
-  // Memory that is used for cell after cell.
+  // Memory reused from cell to cell.
   struct Scratch {
     std::vector<Piece> unsorted;
     std::vector<PieceEnds> ends;
@@ -239,14 +239,14 @@ class BeamBvh::Builder {
   };
 
   static std::size_t leaves_for(std::size_t pieces) { return (pieces + Lanes::width - 1) / Lanes::width; }
-  // Below the root of a tree.
+  // Number of nodes below the root of a tree.
   static std::size_t inner_nodes(std::size_t leaves) {
     std::size_t sum = 0;
     for (std::size_t nodes = leaves_for(leaves); nodes > 1; nodes = leaves_for(nodes)) sum += nodes;
     return sum;
   }
 
-  // Cuts the beams up, and sorts the pieces by cell. Cells have leaves of their own.
+  // Cuts up the beams and sorts the pieces by cell. Cells do not share leaves.
   void cut_up() {
     const std::span<const Beam> beams = index_.beams_;
     CountingSort sort(beams.size(), grid_.codes());
@@ -277,7 +277,7 @@ class BeamBvh::Builder {
     return cells;
   }
 
-  // Sorts the pieces of a cell into leaves, and makes the nodes below the root, which is returned, and the cell's hull.
+  // Sorts the pieces of a cell into leaves, and makes the cell's hull and the nodes below its root; returns the root.
   Node root_of(Cell& cell, Scratch& scratch) {
     const std::span<Piece> pieces =
         std::span(index_.pieces_).subspan(cell.pieces.begin, cell.pieces.end - cell.pieces.begin);
@@ -308,7 +308,7 @@ class BeamBvh::Builder {
     return Node(hulls, first, of_leaves);
   }
 
-  // Of at most eight pieces.
+  // Makes a leaf of at most eight pieces.
   Hull make_leaf(std::size_t number, std::span<const PieceEnds> pieces) {
     float reach = 0;
     Hull hull;
@@ -321,7 +321,7 @@ class BeamBvh::Builder {
     both.extend(hull.end);
     Leaf& leaf = index_.leaves_[number];
     leaf.pieces = LatticeSegments(both);
-    // Lanes without a piece have one a second time.
+    // Lanes without a piece duplicate the last one.
     for (std::size_t lane = 0; lane < Lanes::width; ++lane) {
       const PieceEnds& piece = pieces[std::min(lane, pieces.size() - 1)];
       leaf.pieces.set(lane, piece.first(), piece.last());
@@ -330,7 +330,7 @@ class BeamBvh::Builder {
     return {grown(hull.start, reach), grown(hull.end, reach)};
   }
 
-  // Up to the node of all cells. The roots of the cells are the last nodes.
+  // Builds the levels up to the root. The roots of the cells are the last nodes.
   void add_octree(std::vector<Cell> cells) {
     while (cells.size() > 1) {
       const std::size_t first = index_.nodes_.size() - cells.size();

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Beams, found from a position and along a ray: photon beams for point–beam and beam–beam estimates (Jarosz,
+// Finds beams from a position or along a ray: photon beams for point–beam and beam–beam estimates (Jarosz,
 // Nowrouzezahrai, Sadeghi & Jensen 2011).
 #pragma once
 
@@ -25,7 +25,7 @@
 
 namespace lanthorn {
 
-/// The points origin + s · direction with s in [0, length] (m), and how far they are felt across (m).
+/// The points origin + s · direction with s in [0, length] (m), and the radius of the kernel across the beam (m).
 struct Beam {
   Point origin{0};
   Direction direction{0, 0, 1};
@@ -39,7 +39,7 @@ struct BeamCrossing {
   float t, s, dist2, sin;
 };
 
-/// The closest points of a ray and a beam; nothing if they lie beyond an end, are too far apart, or do not exist.
+/// The closest points of a ray and a beam; nullopt if they lie beyond an end, are too far apart, or do not exist.
 inline std::optional<LineCrossing> crossing_of(const RaySegment& ray, const Beam& beam) {
   const auto c = closest_points(ray.origin, ray.direction, beam.origin, beam.direction);
   if (!c || c->t < ray.begin || c->t > ray.end || c->s < 0 || c->s > beam.length || c->dist2 > sqr(double{beam.radius}))
@@ -47,53 +47,52 @@ inline std::optional<LineCrossing> crossing_of(const RaySegment& ray, const Beam
   return c;
 }
 
-/// A bounding volume hierarchy of beams. Beams lie there in pieces. Pieces with like starts and like ends lie in one
+/// A bounding volume hierarchy of beams, which are cut into pieces. Pieces with similar starts and similar ends share a
 /// leaf, and a node bounds its pieces by the convex hull of two boxes, one around their starts and one around their
-/// ends: bundles of long thin beams in all directions, whose boxes would overlap nearly everything, so have tight
-/// bounds (compare the oriented boxes for hair of Woop et al. 2014). Bounds and pieces are rounded to lattices, because
-/// searches wait for memory. They and a test in single precision leave out what is clearly outside; double precision
-/// decides, and says which piece a point belongs to. What is found so are the beams for which the conditions below
-/// hold, up to the rounding of doubles. Beams have flat ends: a kernel across a beam has the same integral at each of
-/// its points. The boundary counts.
+/// ends. This gives tight bounds for bundles of long thin beams in any direction, whose boxes would overlap nearly
+/// everything (compare the oriented boxes for hair of Woop et al. 2014). Bounds and pieces are rounded to lattices,
+/// because searches are limited by memory. Bounds and a single-precision test exclude what is clearly outside; double
+/// precision decides, and assigns each point to one piece. The result is the set of beams that satisfy the conditions
+/// below, up to rounding of doubles. Beams have flat ends, so that a kernel across a beam has the same integral at each
+/// of its points. Beams exactly on the boundary are included.
 class BeamBvh {
  public:
   /// Beams must be finite, with lengths and radii >= 0 and directions of unit length up to rounding; fewer than 2^28.
   static IndexBuild<BeamBvh> build(std::span<const Beam> beams);
 
-  /// Calls `visit(slot, s, dist2)` once for every beam on whose line the foot of p lies in [0, length], at s, and whose
-  /// squared distance from there is at most the beam's radius², in an order that depends only on the index and the
-  /// query.
+  /// Calls `visit(slot, s, dist2)` once for every beam onto whose line p projects at s in [0, length], with a squared
+  /// distance of at most the beam's radius², in an order that depends only on the index and the query.
   template <class Visit>
   void for_each_around(const Point& p, Visit&& visit) const;
 
   /// Calls `visit(slot, const BeamCrossing&)` once for every beam for which the closest points of ray and beam, as
-  /// lines, lie in [begin, end] and in [0, length], and are not farther apart than the beam's radius. Never for beams
-  /// exactly parallel to the ray, which have no closest points.
+  /// lines, lie in [begin, end] and in [0, length], at a distance of at most the beam's radius. Ignores beams exactly
+  /// parallel to the ray, which have no closest points.
   template <class Visit>
   void for_each_crossing(const RaySegment& ray, Visit&& visit) const;
 
   std::size_t size() const { return beams_.size(); }
   const Beam& beam(std::uint32_t slot) const { return beams_[slot]; }
-  /// Beams, pieces and bounds, bytes.
+  /// Memory of beams, pieces and bounds, bytes.
   std::size_t memory_bytes() const {
     return std::span(nodes_).size_bytes() + std::span(leaves_).size_bytes() + std::span(pieces_).size_bytes() +
            std::span(beams_).size_bytes();
   }
 
  private:
-  /// The points of a beam with s in [begin, end). The last piece's end is infinite; one without points fills up a leaf.
+  /// The points of a beam with s in [begin, end). The last piece's end is infinite; empty pieces pad leaves.
   struct Piece {
     std::uint32_t slot = 0;
     float begin = infinity, end = infinity;
 
     bool contains(double s) const { return s >= begin && s < end; }
   };
-  /// Pieces, seen from either end.
+  /// Eight pieces as segments.
   struct alignas(64) Leaf {
     LatticeSegments pieces;
-    float reach = 0;  ///< how far from these segments the pieces are felt
+    float reach = 0;  ///< maximum distance of the pieces' kernels from these segments
   };
-  /// Boxes around the starts and the ends of pieces, as far as they are felt.
+  /// Boxes around the starts and the ends of pieces, enlarged by their reach.
   struct Hull {
     Bounds start, end;
 
@@ -102,7 +101,7 @@ class BeamBvh {
       end.extend(other.end);
     }
   };
-  /// The bounds of at most eight leaves or nodes, which lie behind each other.
+  /// The bounds of at most eight consecutive leaves or nodes.
   struct alignas(64) Node {
     LatticeBoxes start, end;
     std::uint32_t first = 0;
@@ -112,19 +111,19 @@ class BeamBvh {
     Node() = default;
     Node(std::span<const Hull> children, std::size_t first_child, bool of_leaves);
   };
-  /// A ray in lanes: a frame around it whose last axis is its direction.
+  /// A ray broadcast to all lanes: a frame whose last axis is its direction.
   struct LaneRay {
     Point origin;
     LaneVec3 u, v, w;
     Lanes begin, end;
-    Lanes slack;  ///< more than rounding takes from coordinates in the frame, as far as it depends on the ray
+    Lanes slack;  ///< upper bound of the rounding errors of coordinates in the frame, as far as they depend on the ray
 
     explicit LaneRay(const RaySegment& ray);
   };
 
   class Builder;
 
-  /// How far 0 is outside two intervals and what is between them, where centre and half width are given for both.
+  /// Distance of 0 from the convex hull of two intervals, given by centres and half widths.
   static Lanes outside(const Lanes& a, const Lanes& half_a, const Lanes& b, const Lanes& half_b) {
     return max(min(a - half_a, b - half_b), min(0.0f - a - half_a, 0.0f - b - half_b));
   }
@@ -140,7 +139,7 @@ class BeamBvh {
 
   LargeVector<Node> nodes_;  ///< the last one is the root
   LargeVector<Leaf> leaves_;
-  LargeVector<Piece> pieces_;  ///< eight to a leaf
+  LargeVector<Piece> pieces_;  ///< eight per leaf
   LargeVector<Beam> beams_;    ///< by slot
 };
 
@@ -148,8 +147,8 @@ inline std::uint32_t BeamBvh::overlaps(const Node& node, const LaneRay& ray) {
   const LatticeBoxes::Lane start = node.start.from(ray.origin), end = node.end.from(ray.origin);
   const Lanes start_u = dot(start.centre, ray.u), start_v = dot(start.centre, ray.v);
   const Lanes end_u = dot(end.centre, ray.u), end_v = dot(end.centre, ray.v);
-  // Seen along the ray, which is the point 0: separating axes along the hull and across it. Any axis would do; this one
-  // is not 0 where start and end coincide.
+  // In the projection along the ray, which becomes the point 0: tests separating axes along and across the hull. Any
+  // axis is valid; this one is not 0 where start and end coincide.
   const Lanes du = end_u - start_u + 1e-18f, dv = end_v - start_v;
   const auto gap = [&](const Lanes& a, const Lanes& b) {
     const LaneVec3 axis = abs(a * ray.u + b * ray.v);
@@ -181,8 +180,8 @@ inline std::uint32_t BeamBvh::overlaps(const Node& node, const Point& p, const L
   return not_greater(max(max(boxes - slack, xy), max(yz, zx)), 0.0f);
 }
 
-/// As in `closest_points`, for a segment from w along e: |w·n| <= r |n| with n = d × e, with room for errors of n and
-/// of w·n, which are less than 2^-20 |e| and 2^-20 |w| |e|: (x + y)² <= (1 + 1/64) x² + 65 y².
+/// As in `closest_points`, for a segment from w along e: |w·n| <= r |n| with n = d × e, plus a margin for the errors of
+/// n and of w·n, which are below 2^-20 |e| and 2^-20 |w| |e|: (x + y)² <= (1 + 1/64) x² + 65 y².
 inline std::uint32_t BeamBvh::passes_near(const Leaf& leaf, const LaneRay& ray) {
   const auto [w, e] = leaf.pieces.from(ray.origin);
   const LaneVec3 n = cross(ray.w, e);
@@ -200,8 +199,8 @@ inline std::uint32_t BeamBvh::passes_near(const Leaf& leaf, const Point& p) {
                      ((1.0f + 0x1p-6f) * radius2 + 65 * 0x1p-38f * dot(w, w)) * dot(e, e) + 1e-36f);
 }
 
-/// Calls `visit(piece)` for what may be found, in an order that depends on the index and the query alone. A bit for
-/// each child of a node: `overlaps(node)`; for each piece of a leaf: `test(leaf)`.
+/// Calls `visit(piece)` for each candidate, in an order that depends only on the index and the query. Returns one bit
+/// per child of a node: `overlaps(node)`; one bit per piece of a leaf: `test(leaf)`.
 template <class Overlaps, class Test, class Visit>
 void BeamBvh::search(Overlaps&& overlaps, Test&& test, Visit&& visit) const {
   if (nodes_.empty()) return;
@@ -214,7 +213,7 @@ void BeamBvh::search(Overlaps&& overlaps, Test&& test, Visit&& visit) const {
       [&](const Wave& leaves) { search_leaves(leaves, test, visit); });
 }
 
-/// All leaves before all pieces before all beams, so that each has come from memory when it is looked at.
+/// Processes all leaves, then all pieces, then all beams, so that each is prefetched before it is used.
 template <class Test, class Visit>
 void BeamBvh::search_leaves(const Wave& found, Test&& test, Visit&& visit) const {
   std::array<std::uint32_t, Wave::most * Lanes::width> places;

@@ -11,7 +11,7 @@
 
 namespace lanthorn {
 
-/// Box around the points, in parallel; empty if there are none.
+/// Bounding box of the points, computed in parallel; empty if there are none.
 inline Bounds bounds_of(std::span<const Point> points) {
   constexpr std::size_t chunk = 1u << 15;
   std::vector<Bounds> parts((points.size() + chunk - 1) / chunk);

@@ -23,7 +23,7 @@
 namespace lanthorn {
 
 /// A kd-tree whose nodes are ranges of slots, halved down to leaves of 16 - 32 points that are tested together. Splits
-/// are in heap order: the children of node i are 2i and 2i + 1. A node's range follows from its place and is not
+/// are in heap order: the children of node i are 2i and 2i + 1. A node's range follows from its position and is not
 /// stored.
 class BucketKdTree {
  public:
@@ -48,8 +48,8 @@ class BucketKdTree {
     visit_leaves(root(), visit);
   }
 
-  /// Calls `visit(range, numbers)` for each leaf, in parallel: its slots, and in ascending order the numbers of the
-  /// balls that may contain points of the leaf. Neighbouring balls should have neighbouring numbers.
+  /// Calls `visit(range, numbers)` for each leaf, in parallel: its slots, and, in ascending order, the numbers of the
+  /// balls that may contain points of the leaf. For locality, neighbouring balls should have neighbouring numbers.
   template <class Visit>
   void for_each_leaf_in(std::span<const Ball> balls, Visit&& visit) const;
 
@@ -72,8 +72,7 @@ class BucketKdTree {
   static constexpr std::uint32_t parallel_size = 1u << 13;
 
   bool is_leaf(const Node& n) const { return n.number >= leaves_; }
-  /// Slot at which the second child of [begin, end) begins, chosen such that all leaves but the last fill whole
-  /// vectors.
+  /// First slot of the second child of [begin, end), chosen so that all leaves except the last fill whole vectors.
   static std::uint32_t middle(std::uint32_t begin, std::uint32_t end) {
     return begin + ((end - begin) / 2 + SlotPoints::width - 1) / SlotPoints::width * SlotPoints::width;
   }

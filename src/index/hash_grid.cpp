@@ -13,7 +13,7 @@ namespace lanthorn {
 namespace {
 
 constexpr std::size_t chunk = 1u << 14;
-/// Width of the largest ball along x, in cells. Finer cells along x cost no further look-ups, and fewer points are
+/// Width of the largest ball along x, in cells. Smaller cells along x need no further look-ups, and fewer points are
 /// tested.
 constexpr float cells_per_ball_x = 2;
 constexpr float max_cells_per_axis = 0x1p20f;
@@ -25,7 +25,7 @@ constexpr int max_group_bits = 10;
 }  // namespace
 
 /// Numbers the occupied blocks in the order of their table entries. Returns false if there are too many blocks for the
-/// points.
+/// number of points.
 bool HashGrid::number_blocks(std::span<const Point> points) {
   parallel_chunks(points.size(), chunk, [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
@@ -72,7 +72,7 @@ HashGrid::Groups HashGrid::group(std::span<const Point> points) const {
   const std::size_t count = ((blocks_.size() - 1) >> groups.shift) + 1;
   const std::size_t chunks = (points.size() + chunk - 1) / chunk;
 
-  // Counts by chunk × group, then turned into the places where each chunk writes its points.
+  // Counts by chunk × group, then turned into the positions at which each chunk writes its points.
   std::vector<std::uint32_t> place(chunks * count);
   const auto keyed = std::make_unique_for_overwrite<KeyedPoint[]>(points.size());
   parallel_chunks(points.size(), chunk, [&](std::size_t c, std::size_t begin, std::size_t end) {
@@ -111,7 +111,7 @@ void HashGrid::sort_group(const Groups& groups, std::size_t g, std::vector<std::
     ++next[p.key];
     blocks_[first_block + p.key / Block::cells].occupied[p.key / 64 % Block::size_z] |= 1ull << p.key % 64;
   }
-  // A group has fewer occupied cells than slots; the remaining places in `starts_` stay unused.
+  // A group has fewer occupied cells than slots; the remaining entries of `starts_` stay unused.
   std::uint32_t slot = groups.start[g], start = slot;
   for (std::size_t b = first_block; b < last_block; ++b)
     for (std::size_t z = 0; z < Block::size_z; ++z) {

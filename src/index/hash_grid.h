@@ -18,7 +18,7 @@
 
 namespace lanthorn {
 
-/// Points sorted by the cells of a regular grid, for queries up to a fixed largest radius: progressive photon mapping,
+/// Points sorted by the cells of a regular grid, for queries up to a fixed maximum radius: progressive photon mapping,
 /// vertex merging.
 ///
 /// A cell is as wide as the largest ball (half as wide along x), so a query visits 2 × 2 rows of cells. Cells are
@@ -28,7 +28,7 @@ namespace lanthorn {
 /// lie on surfaces.
 ///
 /// Blocks with equal hash values share their cells; the distance test separates their points. No point is visited
-/// twice, because the cells of one query have different places inside their blocks.
+/// twice, because the cells of one query have different positions inside their blocks.
 class HashGrid {
  public:
   /// Sorts the points for queries of radius <= `radius` (m, >= 0, finite). Points must be finite, fewer than 2^32.
@@ -58,7 +58,7 @@ class HashGrid {
   float radius() const { return radius_; }
   /// Positions and cell tables, bytes.
   std::size_t memory_bytes() const { return points_.memory_bytes() + table_bytes(); }
-  /// Cell tables alone, bytes.
+  /// Memory of the cell tables only, bytes.
   std::size_t table_bytes() const {
     return block_number_.size() * sizeof(std::uint32_t) + blocks_.size() * sizeof(Block) +
            (size() + 1) * sizeof(std::uint32_t);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Coordinates as whole numbers of steps from a corner: what a search reads on its way is a third as long, and memory is
-// what it waits for.
+// Coordinates quantised to steps from a corner. This reduces the data that a search reads to a third, and searches are
+// limited by memory.
 #pragma once
 
 #include <algorithm>
@@ -18,10 +18,10 @@
 namespace lanthorn {
 
 inline float sum_of_sizes(const Point& p) { return std::fabs(p.x) + std::fabs(p.y) + std::fabs(p.z); }
-/// More than rounding takes from coordinates of the point in a moved and turned frame.
+/// Upper bound of the rounding errors of the point's coordinates in a translated and rotated frame.
 inline float rounding_at(const Point& p) { return 0x1p-19f * sum_of_sizes(p); }
 
-/// The points corner + step · (i, j, k) (m) with numbers up to the largest of type `Whole`.
+/// The points corner + step · (i, j, k) (m), with integers up to the largest of type `Whole`.
 template <class Whole>
 struct Lattice {
   static constexpr auto last = std::numeric_limits<Whole>::max();
@@ -36,12 +36,12 @@ struct Lattice {
     step = std::max({extent.x, extent.y, extent.z}) * (1 + 0x1p-20f) / static_cast<float>(last);
   }
 
-  /// 0 for boxes that are smaller than what any query would notice.
+  /// 0 for boxes too small for any query to resolve.
   float steps_per_metre() const { return step > 1e-30f ? 1 / step : 0.0f; }
   static Whole whole(float place) { return static_cast<Whole>(std::clamp(place, 0.0f, static_cast<float>(last))); }
 };
 
-/// Eight points of a lattice, in numbers of steps.
+/// Eight lattice points, in steps.
 template <class Whole>
 struct LatticePoints {
   std::array<std::array<Whole, Lanes::width>, 3> axis;
@@ -55,12 +55,12 @@ struct LatticePoints {
   }
 };
 
-/// Eight boxes, each at most 1/255 of them all wider at each side, and by more than rounding takes from coordinates in
-/// a moved frame as far as it depends on the boxes.
+/// Eight boxes. Rounding enlarges each on each side by at most 1/255 of the extent of all of them, and by more than the
+/// rounding errors of coordinates in a transformed frame, as far as they depend on the boxes.
 class LatticeBoxes {
  public:
   LatticeBoxes() = default;
-  /// `box_of(child)`: of each of at most eight.
+  /// `box_of(child)` returns the box of a child; at most eight children.
   template <class Child, class BoxOf>
   LatticeBoxes(std::span<const Child> children, BoxOf&& box_of) {
     Bounds all;
@@ -78,7 +78,7 @@ class LatticeBoxes {
     }
   }
 
-  /// Centres from `origin`, and half extents.
+  /// Centres relative to `origin`, and half extents.
   struct Lane {
     LaneVec3 centre, half;
   };
@@ -94,7 +94,7 @@ class LatticeBoxes {
   LatticePoints<std::uint8_t> low_{}, high_{};
 };
 
-/// Eight segments, by their ends, rounded to a lattice.
+/// Eight segments, given by their ends, rounded to a lattice.
 class LatticeSegments {
  public:
   LatticeSegments() = default;
@@ -105,11 +105,11 @@ class LatticeSegments {
     first_.set(lane, scale * (a - lattice_.corner) + Vec3(0.5f));
     last_.set(lane, scale * (b - lattice_.corner) + Vec3(0.5f));
   }
-  /// More than rounding moves points of the segments (m): by half a step along each axis, and a little by single
-  /// precision, that of coordinates in a moved frame included.
+  /// Upper bound (m) of the displacement of the segments' points by rounding: half a step along each axis, plus
+  /// single-precision errors, including those of coordinates in a transformed frame.
   float error() const { return 1.0625f * lattice_.step; }
 
-  /// First ends from `origin`, and vectors to the others, in a unit of their own.
+  /// First ends relative to `origin`, and vectors to the other ends, in an arbitrary unit.
   struct Lane {
     LaneVec3 start, along;
   };

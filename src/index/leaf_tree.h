@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The shape that the bounding volume hierarchies share: eight items in a leaf, eight children in a node. Leaves are
-// numbered in order, and node n of a level has the children 8n to 8n + 7 of the level below. So the number of leaves
-// is all that the shape depends on, and nodes store bounds alone.
+// The topology that the bounding volume hierarchies share: eight items per leaf, eight children per node. Leaves are
+// numbered consecutively, and node n of a level has the children 8n to 8n + 7 of the level below. The topology depends
+// only on the number of leaves, so nodes store only bounds.
 #pragma once
 
 #include <algorithm>
@@ -23,7 +23,7 @@
 
 namespace lanthorn {
 
-/// An item to be sorted by a point, and its number in the input.
+/// An item with the point that it is sorted by, and its number in the input.
 struct alignas(16) LeafPoint {
   std::array<float, 3> key;
   std::uint32_t number;
@@ -31,8 +31,8 @@ struct alignas(16) LeafPoint {
 
 namespace detail {
 
-/// The coordinate in which the keys differ most. Items have a `key`, an array of floats, at their beginning, and 16 or
-/// 32 bytes: one or two are as wide as lanes, and what else is in these is not looked at.
+/// The dimension in which the keys differ most. Items start with `key`, an array of floats, and have 16 or 32 bytes, so
+/// that one or two fill the lanes; their remaining bytes are ignored.
 template <class Item>
 std::size_t widest_dimension(std::span<const Item> items) {
   constexpr std::size_t dimensions = std::tuple_size_v<decltype(Item::key)>, words = sizeof(Item) / sizeof(float);
@@ -43,7 +43,7 @@ std::size_t widest_dimension(std::span<const Item> items) {
     std::memcpy(values.data(), static_cast<const void*>(&items[i]), sizeof(values));
     return Lanes(values);
   };
-  // The last ones of an odd number are seen twice, perhaps. There are more items than lanes.
+  // With an odd number of items, the last ones may be read twice. There are more items than lanes.
   Lanes low = load(items.size() - together), high = low;
   for (std::size_t i = 0; i + together <= items.size(); i += together) {
     const Lanes values = load(i);
@@ -66,11 +66,11 @@ std::size_t widest_dimension(std::span<const Item> items) {
 
 }  // namespace detail
 
-/// Sorts items so that each eight of them make a leaf: halves them in the dimension in which their keys differ most,
-/// and the halves again. First halves are complete trees. The result depends on the items alone.
+/// Sorts items so that each consecutive eight form a leaf: splits them into halves in the dimension in which their keys
+/// differ most, recursively. First halves are complete trees. The result depends only on the items.
 template <class Item>
 void sort_into_leaves(std::span<Item> items) {
-  constexpr std::size_t parallel_size = 1u << 13;  // fewer are handled by one thread
+  constexpr std::size_t parallel_size = 1u << 13;  // smaller ranges are sorted by one thread
   if (items.size() <= Lanes::width) return;
   const std::size_t leaves = (items.size() + Lanes::width - 1) / Lanes::width;
   const std::size_t middle = std::bit_ceil(leaves) / 2 * Lanes::width;
@@ -87,14 +87,14 @@ void sort_into_leaves(std::span<Item> items) {
 }
 
 /// Leaves, and bounds of leaves and of the nodes above them. `Node` holds the bounds of its eight children: it has a
-/// type `Bound` with `extend(const Bound&)`, empty by default, and is made of a span of them.
+/// type `Bound` with `extend(const Bound&)`, empty by default, and is constructed from a span of them.
 template <class Node, class Leaf>
 class LeafTree {
  public:
   using Bound = typename Node::Bound;
 
   LeafTree() = default;
-  /// `count` items, fewer than 2^32: their leaves, and the bounds of each leaf.
+  /// `count` items, fewer than 2^32; their leaves, and the bounds of each leaf.
   LeafTree(std::size_t count, std::vector<Leaf> leaves, std::vector<Bound> bounds)
       : size_(count), leaves_(std::move(leaves)) {
     std::size_t nodes = 0;
@@ -106,9 +106,9 @@ class LeafTree {
     for (std::size_t level = 0; level < levels_; ++level) bounds = make_level(level, bounds);
   }
 
-  /// Searches all leaves whose nodes overlap what is searched, in an order that depends on tree and query alone.
-  /// `overlaps(node)`: a bit for each child that does. `test(leaf)`: a bit for each lane that may be found; for each
-  /// one that holds an item, calls `visit(place)`: its number in the order of the leaves.
+  /// Searches all leaves whose nodes overlap the query, in an order that depends only on tree and query.
+  /// `overlaps(node)` returns one bit per overlapping child, `test(leaf)` one bit per candidate lane; for each such
+  /// lane that holds an item, calls `visit(place)` with the item's number in the order of the leaves.
   template <class Overlaps, class Test, class Visit>
   void search(Overlaps&& overlaps, Test&& test, Visit&& visit) const {
     if (leaves_.empty()) return;
@@ -138,13 +138,13 @@ class LeafTree {
   static constexpr std::size_t max_levels = 10;
 
   static std::size_t parents_of(std::size_t children) { return (children + width - 1) / width; }
-  /// A bit for each of `count` lanes, at most for all.
+  /// A mask of the first `count` lanes, at most of all lanes.
   static std::uint32_t lanes_of(std::size_t count) { return (1u << std::min<std::size_t>(count, width)) - 1; }
-  /// Number of children of all nodes of the level; those of level 0 are leaves.
+  /// Number of children of all nodes of a level; the children of level 0 are leaves.
   std::size_t count_below(std::size_t level) const {
     return (leaves_.size() + (std::size_t{1} << 3 * level) - 1) >> 3 * level;
   }
-  /// Writes the nodes of a level, whose children have these bounds, and returns those of the nodes.
+  /// Writes the nodes of a level, given the bounds of their children, and returns the nodes' bounds.
   std::vector<Bound> make_level(std::size_t level, const std::vector<Bound>& children) {
     std::vector<Bound> bounds(parents_of(children.size()));
     parallel_chunks(bounds.size(), 1u << 9, [&](std::size_t, std::size_t begin, std::size_t end) {
@@ -160,7 +160,7 @@ class LeafTree {
 
   std::size_t size_ = 0;
   std::size_t levels_ = 0;
-  std::array<std::size_t, max_levels> first_{};  ///< node of each level
+  std::array<std::size_t, max_levels> first_{};  ///< first node of each level
   std::vector<Leaf> leaves_;
   std::vector<Node> nodes_;
 };

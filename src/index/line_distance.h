@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Distances of points and lines, computed in double precision, so that the rounding of single precision is all that is
-// between them and the truth, however far away a line begins.
+// Distances between points and lines, computed in double precision, so that only the single-precision rounding of the
+// input remains as error, however far away a line begins.
 #pragma once
 
 #include <cmath>
@@ -19,7 +19,7 @@ struct RaySegment {
   float end = infinity;
 };
 
-/// A point as a line sees it: where on the line its foot is, and their squared distance (m²).
+/// Projection of a point onto a line: parameter of its foot point, and the squared distance (m²).
 struct FootPoint {
   double t, dist2;
 };
@@ -37,8 +37,9 @@ struct LineCrossing {
   double t, s, dist2, sin;
 };
 
-/// Nothing if the lines are parallel: no points are the closest then. With n = d × e and w from the first origin to the
-/// second, o + t d + h n = a + s e gives t = (w × e)·n / n², s = (w × d)·n / n², and the distance |w·n| / |n|.
+/// nullopt if the lines are parallel and therefore have no closest points. With n = d × e and w from the first origin
+/// to the second, o + t d + h n = a + s e gives t = (w × e)·n / n², s = (w × d)·n / n², and the distance |w·n| /
+/// n|.
 inline std::optional<LineCrossing> closest_points(const Point& o, const Direction& direction, const Point& a,
                                                   const Direction& other) {
   const glm::dvec3 d(direction), e(other), w = glm::dvec3(a) - glm::dvec3(o), n = cross(d, e);

@@ -69,8 +69,8 @@ class NearestHeap {
   float limit_;
 };
 
-/// Like NearestHeap, for up to `max_count` points and with less work. Candidates gather in a small array. When there
-/// are enough, those beyond a distance that keeps about the wanted number are dropped.
+/// Like NearestHeap, for up to `max_count` points and with less work. Candidates are collected in a small array. When
+/// it is full, candidates beyond a distance that keeps about the wanted number are dropped.
 class NearestSelection {
  public:
   static constexpr std::size_t max_count = 128;
@@ -97,7 +97,8 @@ class NearestSelection {
   }
 
  private:
-  /// Candidates are dropped once there are `slack` more than wanted, until at most `spare` more than wanted remain.
+  /// Candidates are dropped when `slack` more than wanted have accumulated, until at most `spare` more than wanted
+  /// remain.
   static constexpr std::size_t slack = 16, spare = 4;
 
   std::span<Neighbour> candidates() { return std::span(candidates_.data(), count_); }

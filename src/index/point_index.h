@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Interface of every point index. An index stores positions only. It numbers the points by *slot*, its own storage
+// Interface of all point indices. An index stores only positions. It numbers the points by *slot*, its own storage
 // order, and `build` returns the input point of every slot, so that the owner can store its records in the same order
 // and a query reads contiguous memory.
 #pragma once
@@ -15,7 +15,7 @@
 
 namespace lanthorn {
 
-/// One found point: squared distance to the query (m²) and the slot of the point.
+/// A point found: squared distance to the query (m²) and its slot.
 struct Neighbour {
   float dist2;
   std::uint32_t slot;
@@ -31,7 +31,7 @@ struct IndexBuild {
 };
 
 /// `for_each_near(p, radius, visit)` calls `visit(slot, dist2)` once for every point with dist2 <= radius², in an order
-/// that depends only on the index and the query. Points exactly on the boundary count.
+/// that depends only on the index and the query. Points exactly on the boundary are included.
 template <class I>
 concept PointIndex = requires(const I i, const Point p, std::uint32_t slot) {
   i.for_each_near(p, 1.0f, [](std::uint32_t, float) {});

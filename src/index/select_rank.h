@@ -38,9 +38,9 @@ auto estimate_key(std::span<T> items, std::size_t rank, Key&& key) {
 
 }  // namespace detail
 
-/// Reorders the items so that items before `rank` have keys <= the key at `rank`, and items behind it have keys >=
-/// that. Equivalent to std::nth_element with fewer mispredicted branches (after Floyd & Rivest 1975). The result
-/// depends on the input order alone. Linear time, also with equal keys.
+/// Reorders the items so that items before `rank` have keys <= the key at `rank`, and items behind it have keys >= that
+/// key. Equivalent to std::nth_element with fewer mispredicted branches (after Floyd & Rivest 1975). The result depends
+/// only on the input order. Linear time, even with equal keys.
 template <class T, class Key>
 void select_rank(std::span<T> items, std::size_t rank, Key&& key) {
   constexpr std::size_t small = 24, large = 1024;

@@ -20,7 +20,7 @@
 namespace lanthorn {
 
 /// Enlarged query radius for safe pruning. A point whose squared distance, however rounded, is at most radius² differs
-/// from the query by less than this in each coordinate (also if squares underflow).
+/// from the query by less than this in each coordinate (even if squares underflow).
 inline float safe_reach(float radius) { return radius * (1.0f + 0x1p-20f) + 1e-18f; }
 
 /// Consecutive slots.
@@ -52,7 +52,7 @@ class SlotPoints {
     coordinates_[2 * stride_ + slot] = p.z;
   }
 
-  /// Tests the first `width` slots of [first, end), at most; writes those with dist2 <= limit to `to`, in ascending
+  /// Tests at most the first `width` slots of [first, end); writes those with dist2 <= limit to `to`, in ascending
   /// order, and returns their number. `to` must always have room for `width`. Branchless: mispredicted branches would
   /// dominate queries of few points.
   std::uint32_t write_near(std::uint32_t first, std::uint32_t end, const Point& q, float limit, Neighbour* to) const {

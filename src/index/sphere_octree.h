@@ -10,10 +10,10 @@
 
 namespace lanthorn {
 
-/// A growing octree of spheres that finds the spheres around a point. A sphere is stored in all nodes that its box
-/// overlaps at the level whose nodes are one to two of its diameters wide (Ward et al. 1988): at most eight nodes. A
-/// query for a point follows a single path from the root; it may also return spheres that do not contain the point. Any
-/// number of threads may query while nothing is inserted.
+/// A growing octree of spheres that finds the spheres around a point. A sphere is stored in all nodes, at most eight,
+/// that its box overlaps at the level whose nodes are one to two of its diameters wide (Ward et al. 1988). A query for
+/// a point follows a single path from the root; it may also return spheres that do not contain the point. Any number of
+/// threads may query while nothing is inserted.
 class SphereOctree {
  public:
   SphereOctree() = default;
@@ -23,8 +23,8 @@ class SphereOctree {
 
   void insert(std::uint32_t id, const Point& centre, float radius) { insert(0, {centre_, half_}, id, centre, radius); }
 
-  /// Calls `visit(id)` for every sphere that contains the point, and possibly others, in an order that depends on the
-  /// insertions alone.
+  /// Calls `visit(id)` for every sphere that contains the point, and possibly others, in an order that depends only on
+  /// the insertions.
   template <class Visit>
   void for_each_around(const Point& p, Visit&& visit) const {
     Cube cube{centre_, half_};
@@ -59,7 +59,7 @@ class SphereOctree {
       const float q = 0.5f * half;
       return {centre + Vec3(index & 1u ? q : -q, index & 2u ? q : -q, index & 4u ? q : -q), q};
     }
-    // True if the box of a sphere overlaps that child, whose outer sides lie at infinity.
+    // True if a sphere's box overlaps that child, whose outer sides extend to infinity.
     bool meets(unsigned index, const Point& p, float radius) const {
       for (int axis = 0; axis < 3; ++axis)
         if ((index >> axis & 1u) != 0 ? p[axis] + radius < centre[axis] : p[axis] - radius >= centre[axis])

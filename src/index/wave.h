@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The search of the bounding volume hierarchies, whose nodes have up to eight children: level by level, as many nodes
-// at a time as a wave holds. One by one, each would make the processor guess how many of its children follow and wait
-// for their memory, which took most of a search.
+// Breadth-first search of the bounding volume hierarchies, whose nodes have up to eight children: processes as many
+// nodes at a time as a wave holds. Visiting nodes one by one would make the processor predict how many children follow
+// and wait for their memory, which took most of the search time.
 #pragma once
 
 #include <algorithm>
@@ -15,13 +15,13 @@
 
 namespace lanthorn {
 
-/// Children of a node that a search goes on to: number `first` + i for each bit i that is set.
+/// Children of a node to be searched: number `first` + i for each set bit i.
 struct WaveChildren {
   std::uint32_t first, lanes;
   bool are_leaves;
 };
 
-/// Numbers of nodes or leaves that a search will look at.
+/// Numbers of nodes or leaves to be searched.
 class Wave {
  public:
   static constexpr std::size_t most = 128;
@@ -29,7 +29,7 @@ class Wave {
   bool empty() const { return count_ == 0; }
   bool has_room() const { return count_ <= most - Lanes::width; }
   void clear() { count_ = 0; }
-  /// Without branches: half of them would be mispredicted. There must be room.
+  /// Branchless: half of the branches would be mispredicted. The wave must have room.
   void append(const WaveChildren& children) {
     for (std::uint32_t lane = 0; lane < Lanes::width; ++lane) {
       numbers_[count_] = children.first + lane;
@@ -37,7 +37,7 @@ class Wave {
     }
   }
 
-  /// Calls `visit(number)` in turn, after items[number] has been asked for.
+  /// Calls `visit(number)` for each entry, with items[number] prefetched ahead.
   template <class Items, class Visit>
   void for_each(const Items& items, Visit&& visit) const {
     constexpr std::size_t ahead = 4;
@@ -53,8 +53,8 @@ class Wave {
   std::size_t count_ = 0;
 };
 
-/// Searches below the nodes of a wave, which are `depth` levels below the root: `children_of(number, depth)` for each
-/// node, and `search_leaves(leaves)` whenever many are known, so that leaves are left for the caller at the end.
+/// Searches below the nodes of a wave, which are `depth` levels below the root. Calls `children_of(number, depth)` for
+/// each node, and `search_leaves(leaves)` whenever many leaves are known; the remaining ones are left to the caller.
 template <class Nodes, class ChildrenOf, class SearchLeaves>
 void search_below(const Nodes& nodes, const Wave& wave, std::size_t depth, Wave& leaves, ChildrenOf&& children_of,
                   SearchLeaves&& search_leaves) {
@@ -75,7 +75,7 @@ void search_below(const Nodes& nodes, const Wave& wave, std::size_t depth, Wave&
   if (!below.empty()) search_children();
 }
 
-/// Searches a tree from its root on, in an order that depends on the tree and `children_of` alone.
+/// Searches a tree from its root, in an order that depends only on the tree and `children_of`.
 template <class Nodes, class ChildrenOf, class SearchLeaves>
 void search_in_waves(const Nodes& nodes, std::uint32_t root, ChildrenOf&& children_of, SearchLeaves&& search_leaves) {
   Wave wave, leaves;

@@ -12,11 +12,11 @@
 
 namespace lanthorn {
 
-/// One warning for each kind of problem: the first, with the number of those that follow.
+/// Collects warnings, one per kind of problem: the first one, followed by the number of further ones.
 class CountedWarnings {
  public:
-  /// Adds the warning to the list, unless that has one with this `key`, which counts it then. All calls are for the
-  /// same list.
+  /// Adds the warning to the list; if the list has one with this `key`, only increases its count. All calls must pass
+  /// the same list.
   void add(std::vector<description::Warning>& list, std::string_view key, const SourceLocation& place,
            const std::string& message);
 

@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Where a face lies in a picture of several: in units of its size, from the upper left corner.
+/// Position of a face in a picture of several: in units of the face size, from the upper left corner.
 struct FacePlace {
   int column, row;
   bool turned = false;  ///< by half a turn
@@ -27,8 +27,8 @@ struct CubePicture {
   int columns, rows;
   std::array<FacePlace, cube_faces> places;
 };
-// Seen from inside: -X +Z +X -Z in a row, as they follow one another around the viewer in OpenGL's faces. Under the
-// vertical cross hangs -Z, upside down.
+// As seen from inside, -X +Z +X -Z form a row around the viewer in OpenGL's face orientation. In the vertical cross, -Z
+// is at the bottom, upside down.
 constexpr std::array<CubePicture, 3> cube_pictures{{{1, 6, {{{0, 0}, {0, 1}, {0, 2}, {0, 3}, {0, 4}, {0, 5}}}},
                                                     {4, 3, {{{2, 1}, {0, 1}, {1, 0}, {1, 2}, {1, 1}, {3, 1}}}},
                                                     {3, 4, {{{2, 1}, {0, 1}, {1, 0}, {1, 2}, {1, 1}, {1, 3, true}}}}}};
@@ -44,7 +44,7 @@ std::array<std::size_t, 3> color_channels(const Image& image, const fs::path& fi
              y = image.find_channel("Y");
   if (y) return {*y, *y, *y};
   if (r && g && b) return {*r, *g, *b};
-  throw Error({file.string()}, "is no environment: it has no channels R, G, B");
+  throw Error({file.string()}, "is not an environment: it has no channels R, G, B");
 }
 
 void copy_face(const Image& from, const std::array<std::size_t, 3>& channels, const FacePlace& place, int face,
@@ -63,8 +63,8 @@ bool has_face(const CubePicture& picture, int column, int row) {
                      [&](const FacePlace& place) { return place.column == column && place.row == row; });
 }
 
-// Beside the faces of a cross there is nothing; a photograph of the same shape has content there. Of each empty place
-// all pixels must be alike.
+// A cross has nothing beside its faces, unlike a photograph of the same shape. In each empty position, all pixels must
+// be equal.
 bool is_empty_beside_faces(const Image& image, const std::array<std::size_t, 3>& channels, const CubePicture& picture,
                            int size) {
   for (int y = 0; y < image.height; ++y)
@@ -114,7 +114,7 @@ Image read_layout(const std::vector<fs::path>& files, std::uint64_t max_pixels) 
   }
   if (!layout_of(image))
     throw Error({file.string()},
-                fmt::format("is no environment: it is {} x {} pixels; expected 2:1 (equirectangular), square "
+                fmt::format("is not an environment: it is {} x {} pixels; expected 2:1 (equirectangular), square "
                             "(octahedral), a cube of 6:1, 1:6, or a cross of 4:3 or 3:4 with nothing beside its faces",
                             image.width, image.height));
   return image;
@@ -129,7 +129,7 @@ Image read_environment(const std::vector<fs::path>& files, std::uint64_t max_pix
     for (const std::size_t c : channels)
       if (const float x = image.pixels[pixel + c]; x > 0 && x <= largest_environment_radiance) return image;
   throw Error({files.front().string()},
-              fmt::format("is no environment: it holds no light, which is numbers above 0 and up to {:g}",
+              fmt::format("is not an environment: it holds no light, that is, no number above 0 and up to {:g}",
                           largest_environment_radiance));
 }
 

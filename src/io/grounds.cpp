@@ -26,7 +26,7 @@ struct Part {
 
 float size_of(const Bounds& box) { return box.empty() ? 0 : std::sqrt(length_squared(box.extent())); }
 
-// The axis along which a box is thin while it is wide along both others.
+// The axis along which a box is thin, if it is wide along both others.
 std::optional<int> thin_axis(const Bounds& box) {
   constexpr float thin = 0.05f, wide = 0.1f;
   const Vec3 extent = box.extent();
@@ -37,7 +37,7 @@ std::optional<int> thin_axis(const Bounds& box) {
   return {};
 }
 
-// The largest ones first.
+// Sorted by size, largest first.
 std::vector<Part> parts_of(const SceneDescription& scene) {
   std::vector<Part> parts;
   const std::vector<Bounds> shapes = bounds_of(scene.shapes);
@@ -55,8 +55,8 @@ std::vector<Part> parts_of(const SceneDescription& scene) {
   return parts;
 }
 
-// Towards the things, which are beside the ground. Zero if the box is thin along no axis, or the scene is not: then it
-// is a wall of a room.
+// Direction from the ground to the objects on it. Zero if the box is thin along no axis, or the scene is not thin along
+// that axis: then the box is a wall of a room.
 Vec3 side_of_ground(const Bounds& box, const Bounds& things, const Bounds& scene) {
   constexpr float far_larger = 4;
   Vec3 side(0);
@@ -68,12 +68,12 @@ Vec3 side_of_ground(const Bounds& box, const Bounds& things, const Bounds& scene
 }
 
 struct FoundGrounds {
-  std::size_t count = 0;  ///< of the parts, from the largest on
-  Vec3 side{0};           ///< on which the things are
+  std::size_t count = 0;  ///< the largest `count` parts are grounds
+  Vec3 side{0};           ///< direction towards the objects
 };
 
 FoundGrounds find_grounds(const std::vector<Part>& parts) {
-  std::vector<Bounds> others(parts.size() + 1);  // of the parts from each one on
+  std::vector<Bounds> others(parts.size() + 1);  // bounding boxes of the parts from each index on
   for (std::size_t i = parts.size(); i-- > 0;) {
     others[i] = others[i + 1];
     others[i].extend(parts[i].box);
@@ -90,7 +90,7 @@ FoundGrounds find_grounds(const std::vector<Part>& parts) {
   return are_alike ? found : FoundGrounds();
 }
 
-// Takes out the elements at these places, in ascending order.
+// Removes the elements at these positions and returns them in ascending order.
 template <class T>
 std::vector<std::pair<std::size_t, T>> take(std::vector<T>& from, std::vector<std::size_t> places) {
   std::sort(places.begin(), places.end());

@@ -49,11 +49,11 @@ class Inflater {
       if (stream_.avail_in == 0 && remaining_ == 0)
         done_ = true;
       else if (inflateReset(&stream_) != Z_OK)
-        fail("damaged gzip data");
+        fail("the gzip data is damaged");
     } else if (starved) {
-      fail("gzip data ends early");
+      fail("the gzip data is truncated");
     } else if (result != Z_OK) {
-      fail("damaged gzip data");
+      fail("the gzip data is damaged");
     }
   }
 
@@ -65,7 +65,7 @@ class Inflater {
   bool done_ = false;
 };
 
-// A part of the decompressed data. A string that grows would be copied, and take up to three times its size.
+// A part of the decompressed data. A single growing string would be copied and take up to three times its size.
 struct Piece {
   std::unique_ptr<char[]> bytes;
   std::size_t size = 0, used = 0;
@@ -73,12 +73,12 @@ struct Piece {
   explicit Piece(std::size_t size_) : bytes(std::make_unique_for_overwrite<char[]>(size_)), size(size_) {}
 };
 
-// Of the next piece, after so many bytes. The largest are returned to the system when they are freed.
+// Size of the next piece, given the number of bytes before it. Freed pieces of the largest size go back to the system.
 std::size_t piece_size(std::size_t before) {
   return std::clamp<std::size_t>(before, std::size_t{64} << 10, std::size_t{64} << 20);
 }
 
-// Frees each piece once it is copied: memory is taken for all data once, and for one piece twice.
+// Frees each piece once it is copied, so that only one piece is in memory twice.
 std::string joined(std::vector<Piece> pieces, std::size_t size) {
   std::string result;
   result.reserve(size);
@@ -104,7 +104,7 @@ std::string gunzip(std::string_view bytes, const std::string& name, std::size_t 
     used += piece.used;
     if (used > limit)
       throw Error(SourceLocation{name}, "decompressed data is larger than " + memory_text(static_cast<double>(limit)) +
-                                            ", the most that is read: 4 GiB, or half of the memory there is");
+                                            ", the limit: 4 GiB, or half of the memory");
     more = piece.used == piece.size;
   }
   return joined(std::move(pieces), used);

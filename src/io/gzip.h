@@ -8,13 +8,13 @@
 
 namespace lanthorn {
 
-/// Largest decompressed file, bytes. It must not exceed half of the machine's memory either.
+/// Largest decompressed file, bytes. The size is further limited to half of the machine's memory.
 inline constexpr std::size_t max_decompressed_size = std::size_t{4} << 30;
 
 /// True if the bytes begin with the header of a gzip stream.
 bool is_gzip(std::string_view bytes);
-/// The decompressed stream (RFC 1952; several members are joined) of the file `name`. Throws Error with that name if it
-/// is damaged, ends early or grows beyond `limit` bytes.
+/// Decompresses a gzip stream (RFC 1952; several members are concatenated) from the file `name`. Throws Error with that
+/// name if it is damaged, truncated or grows beyond `limit` bytes.
 std::string gunzip(std::string_view bytes, const std::string& name, std::size_t limit = max_decompressed_size);
 /// The bytes of the file `name`, decompressed if they are a gzip stream (by content, not by name). Throws Error as
 /// `gunzip` does.

@@ -89,7 +89,7 @@ auto with_codec(const std::string& file, Function&& function) {
 }
 
 void apply_ocio(const OcioView& ocio, float gain, Image& colors) {
-  read_file(ocio.config);  // which says what is wrong with the name
+  read_file(ocio.config);  // reports problems with the file itself
   for (float& x : colors.pixels) x = std::isfinite(x) ? x * gain : 0;
   with_codec(ocio.config, [&](const ImageCodec& codec) {
     codec.apply_view(ocio.config, ocio.display, ocio.view, colors.width, colors.height, colors.pixels.data());
@@ -112,7 +112,7 @@ void add_light(const Image& light, Image& encoded) {
   }
 }
 
-// As 8 bits in JPEG and 16 in TIFF files. The metadata are one text, which begins with our prefix.
+// 8 bits for JPEG and 16 for TIFF. The metadata are one text that begins with our prefix.
 std::vector<unsigned char> encode_by_codec(const char* format, const Image& displayed, const std::string& metadata) {
   const std::string text = std::string(attribute_prefix) + parse_metadata(metadata).dump();
   CodecColors colors{displayed.width, displayed.height, SampleType::uint8, nullptr};
@@ -125,7 +125,7 @@ std::vector<unsigned char> encode_by_codec(const char* format, const Image& disp
                                             : encoded(whole_numbers<std::uint8_t>(displayed), SampleType::uint8);
 }
 
-// Layers are called otherwise in files of OpenEXR.
+// OpenEXR uses other names for some layers.
 void rename_channel(Image& image, std::string_view from, const char* to) {
   if (const auto channel = image.find_channel(from)) image.channels[*channel] = to;
 }
@@ -192,7 +192,7 @@ void write_image(const fs::path& path, const Image& image, const DisplaySettings
              is_tiff = extension == ".tif" || extension == ".tiff";
   if (!is_jpeg && !is_tiff)
     throw Error({path.string()},
-                fmt::format("unknown kind of picture; its name must end in .exr (all layers, linear), {}",
+                fmt::format("unknown kind of picture; expected a name that ends in .exr (all layers, linear), {}",
                             fmt::join(picture_extensions().begin() + 1, picture_extensions().end(), ", ")));
   const std::vector<unsigned char> bytes =
       encode_by_codec(is_jpeg ? "jpeg" : "tiff", displayed(image, display), metadata);

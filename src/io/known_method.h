@@ -12,14 +12,14 @@
 
 namespace lanthorn {
 
-/// A rendering method, as far as readers of scene files check what the file says of it. Readers know no method
-/// themselves.
+/// What a reader needs of a rendering method to check its parameters in a scene file. Readers themselves do not depend
+/// on any method.
 struct KnownMethod {
   std::vector<ParameterInfo> parameters;
-  /// Throws Error for values that the method does not take.
+  /// Throws Error for values that the method does not accept.
   std::function<void(const std::map<std::string, std::string>& set)> check;
 };
-/// Finds a method by the name of an integrator in a scene file, which is pbrt's or our own; nullopt for other names.
+/// Finds a method by the name of an integrator in a scene file, pbrt's or our own; nullopt for other names.
 using FindMethod = std::function<std::optional<KnownMethod>(const std::string& name)>;
 
 }  // namespace lanthorn

@@ -23,7 +23,8 @@ struct DfdSample {
   std::uint32_t lower, upper;
 };
 
-// [DF table 63 ff.]: floats are said to run from -1 to 1; the mantissas of RGB9E5 to 1 at exponent bias.
+// [DF table 63 ff.]: floats are declared with the range -1 to 1; the mantissas of RGB9E5 reach 1 at the exponent's
+// bias.
 std::vector<DfdSample> dfd_samples(TexelFormat format) {
   constexpr std::uint8_t is_float = 0x80, is_signed = 0x40, is_exponent = 0x20, alpha = 15;
   constexpr std::uint32_t minus_one = 0xBF800000, one = 0x3F800000;
@@ -48,7 +49,7 @@ std::string data_format_descriptor(TexelFormat format) {
   const auto block_size = static_cast<std::uint16_t>(24 + 16 * samples.size());
   std::string dfd;
   append_number(dfd, static_cast<std::uint32_t>(block_size + 4));
-  append_number(dfd, std::uint32_t{0});  // Khronos, basic format
+  append_number(dfd, std::uint32_t{0});  // vendor Khronos, basic format
   append_number(dfd, std::uint16_t{2});  // version 1.3
   append_number(dfd, block_size);
   constexpr std::uint8_t model_rgbsda = 1, primaries_bt709 = 1, transfer_linear = 1;
@@ -60,7 +61,7 @@ std::string data_format_descriptor(TexelFormat format) {
     append_number(dfd, s.bit_offset);
     append_number(dfd, static_cast<std::uint8_t>(s.bits - 1));
     append_number(dfd, s.channel);
-    append_number(dfd, std::uint32_t{0});  // at the texel's centre
+    append_number(dfd, std::uint32_t{0});  // sampled at the texel's centre
     append_number(dfd, s.lower);
     append_number(dfd, s.upper);
   }
@@ -96,7 +97,7 @@ std::string encode_ktx2(const Texture& texture, const std::map<std::string, std:
   const std::string dfd = data_format_descriptor(texture.format), kvd = encode_key_values(key_values);
   const auto level_count = static_cast<std::uint32_t>(texture.levels.size());
   const std::size_t header_size = 80 + 24 * std::size_t{level_count};
-  // Levels lie from the smallest to the largest [K2 §3.9].
+  // Levels are stored from the smallest to the largest [K2 §3.9].
   std::vector<std::uint64_t> offsets(level_count), sizes(level_count);
   std::string data(header_size, '\0');
   data += dfd + kvd;

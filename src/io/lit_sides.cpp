@@ -23,7 +23,7 @@ Rgb rgb_of(const SpectrumValue& value) {
 }
 float luminance_of(const Emission& emission) { return emission.scale * luminance(rgb_of(emission.spectrum)); }
 
-// Irradiance of both sides of the samples.
+// Irradiance on both sides of the samples.
 class Irradiances {
  public:
   Irradiances(const SceneDescription& scene, const ModelSamples& model) : model_(model), sides_(model.samples.size()) {
@@ -90,7 +90,7 @@ class Irradiances {
     }
   }
 
-  // A few points of all emitters stand for them.
+  // Represents all emitters by a few points.
   void add_emitters(const SceneDescription& scene) {
     constexpr std::size_t points = 32;
     std::set<Index> lamps;
@@ -104,7 +104,7 @@ class Irradiances {
       const float power = radiance_of(light) * area;
       for (const Normal& n : {s.normal, -s.normal}) {
         if (n != s.normal && !light.two_sided) continue;
-        // So far off the emitter that its own samples leave the sky above them open.
+        // Far enough from the emitter that its own samples do not cover the hemisphere above them.
         const float height = 4 * model_.spacing;
         if (is_covered(s.position, n, height, lamps)) continue;
         add_point(s.position + height * n, [&](const Direction& d) { return power * dot(d, n); });
@@ -112,7 +112,7 @@ class Irradiances {
     }
   }
 
-  // Whether another surface is less than `height` above the point, as the ceiling is above a lamp.
+  // True if another surface is less than `height` above the point, as a ceiling is above a lamp.
   bool is_covered(const Point& p, const Normal& n, float height, const std::set<Index>& lamps) const {
     return std::any_of(model_.samples.begin(), model_.samples.end(), [&](const Surfaces::Sample& s) {
       const Vec3 d = s.position - p;

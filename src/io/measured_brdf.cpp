@@ -46,7 +46,7 @@ class Reader {
   std::vector<float> ascending(const std::string& field) const {
     std::vector<float> values = file_.floats(field, 1);
     if (std::adjacent_find(values.begin(), values.end(), std::greater_equal<>()) != values.end())
-      file_.fail("the values of " + in_quotes(field) + " do not ascend");
+      file_.fail("the values of " + in_quotes(field) + " are not ascending");
     return values;
   }
 
@@ -61,12 +61,12 @@ class Reader {
     };
     for (const int symmetry : {1, 2, 4})
       if (spans(symmetry)) data_.symmetry = symmetry;
-    if (!spans(data_.symmetry)) file_.fail("\"phi_i\" spans neither a whole turn nor a half or a quarter of one");
+    if (!spans(data_.symmetry)) file_.fail("\"phi_i\" spans neither a full, a half nor a quarter turn");
     if (data_.symmetry > 1 && std::fabs(data_.phi.front() + pi) > angle_tolerance)
-      file_.fail("\"phi_i\" does not begin at -pi, as it must if it spans a part of a turn");
+      file_.fail("\"phi_i\" must begin at -pi if it spans less than a full turn");
   }
 
-  // The last two dimensions are a grid; those before must be as given.
+  // The last two dimensions are the grid; the outer ones must equal `outer`.
   NodeGrids grids(const std::string& field, const std::vector<std::size_t>& outer) const {
     const std::size_t dimensions = outer.size() + 2;
     const std::vector<std::size_t>& shape = file_.shape(field, dimensions);
@@ -83,7 +83,7 @@ class Reader {
     const auto size = static_cast<std::ptrdiff_t>(vndf.size_of_grid());
     for (auto it = vndf.values.begin(); it != vndf.values.end(); it += size)
       if (std::all_of(it, it + size, [](float x) { return x == 0; }))
-        file_.fail("\"vndf\" shows no normal from some incident direction");
+        file_.fail("\"vndf\" has no visible normal for some incident direction");
   }
 
   TensorFile file_;

@@ -52,13 +52,13 @@ class Builder {
     return add_texture(ScaleTexture<FloatParameter>{x, x});
   }
 
-  // GGX width: the square of the roughness.
+  // GGX alpha: the square of the roughness.
   Roughness width(const FloatParameter& roughness) {
     const FloatParameter alpha = squared(roughness);
     return {alpha, alpha, false};
   }
 
-  // KHR_materials_anisotropy: along the tangent, the width grows to 1 with the square of the strength.
+  // KHR_materials_anisotropy: along the tangent, alpha grows to 1 with the square of the strength.
   Roughness stretched_width() {
     Roughness result = width(source_.roughness);
     if (is(source_.anisotropy, 0)) return result;
@@ -66,7 +66,7 @@ class Builder {
     return result;
   }
 
-  // White as a number, which is exact in spectral rendering, too.
+  // White is returned as the number 1, which is exact in spectral rendering, too.
   SpectrumParameter tint() const {
     return is_white(source_.base_color) ? SpectrumParameter{1.0f, {}} : source_.base_color;
   }
@@ -100,8 +100,8 @@ class Builder {
         [&] { return with_coat(filmed_metal()); });
   }
 
-  // Under a film, a metal is a dielectric of the same reflectance at normal incidence, as KHR_materials_iridescence has
-  // it.
+  // Under a film, a metal is modelled as a dielectric of the same reflectance at normal incidence, as in
+  // KHR_materials_iridescence.
   PlasticMaterial filmed_metal() {
     return {.reflectance = {0.0f, {}},
             .roughness = width(source_.roughness),
@@ -154,7 +154,7 @@ class Builder {
     });
   }
 
-  // Calls `make` for the surface without the film and with it.
+  // Mixes the surfaces that `make` builds without and with the film.
   template <class Make>
   Index with_film(const Make& make) {
     return mixed(

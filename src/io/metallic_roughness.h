@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The material model of glTF 2.0 and its extensions, expressed by Lanthorn's materials.
+// Maps the material model of glTF 2.0 and its extensions to Lanthorn's materials.
 #pragma once
 
 #include <optional>
@@ -15,19 +15,19 @@ namespace lanthorn {
 struct MetallicRoughness {
   description::SpectrumParameter base_color{description::RgbSpectrum{{1, 1, 1}}, {}};
   description::FloatParameter metallic{0, {}};
-  description::FloatParameter roughness{1, {}};   ///< the GGX width is its square
+  description::FloatParameter roughness{1, {}};   ///< GGX alpha is its square
   description::FloatParameter anisotropy{0, {}};  ///< strength, along the tangent; of metal and of glass
   description::SpectrumValue eta = 1.5f;          ///< of the dielectric
-  /// Factor of the dielectric's reflection, at every angle and at normal incidence.
+  /// Factors of the dielectric's reflection: at every angle, and at normal incidence only.
   description::FloatParameter specular{1, {}};
   description::SpectrumParameter specular_color{1.0f, {}};
   description::FloatParameter transmission{0, {}};
   description::FloatParameter diffuse_transmission{0, {}};
   description::SpectrumParameter diffuse_transmission_color{1.0f, {}};
-  bool thin = true;  ///< a transmitting surface is an infinitely thin sheet, not the interface of a volume
+  bool thin = true;  ///< a transmitting surface is an infinitely thin sheet, not the boundary of a volume
   description::SpectrumParameter sheen_color{0.0f, {}};  ///< of the dielectric
   description::FloatParameter sheen_roughness{0, {}};
-  description::FloatParameter iridescence{0, {}};  ///< share of rays that meet the film
+  description::FloatParameter iridescence{0, {}};  ///< fraction of rays that hit the film
   description::ThinFilm film;
   description::FloatParameter clearcoat{0, {}};
   description::FloatParameter clearcoat_roughness{0, {}};
@@ -35,10 +35,11 @@ struct MetallicRoughness {
   std::optional<description::FloatParameter> displacement;
 };
 
-/// An index with which Schlick's reflectance at normal incidence is 1 to within 1e-5: KHR_materials_ior's index 0.
+/// An index of refraction so large that Schlick's reflectance at normal incidence is 1 to within 1e-5; it replaces
+/// KHR_materials_ior's index 0.
 inline constexpr float total_reflection = 1e6f;
 
-/// Adds the materials of which this is a mixture. Returns the index of the last one, which gets the name.
+/// Adds the materials that make up this mixture. Returns the index of the last one, which gets the name.
 description::Index add_material(SceneDescription& scene, const MetallicRoughness& source, const std::string& name,
                                 const SourceLocation& location);
 

@@ -34,7 +34,7 @@ struct MissingFile {
   std::string name;
   SourceLocation location;
   std::string problem;
-  bool is_pointer = false;  ///< of Git LFS
+  bool is_pointer = false;  ///< a Git LFS pointer
 };
 
 std::vector<MissingFile> missing_files(const SceneDescription& scene, const FileAccess& access) {

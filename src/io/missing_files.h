@@ -10,17 +10,17 @@
 
 namespace lanthorn {
 
-/// The name of a file in quotes for a message; of a long one the end, which tells files apart.
+/// The name of a file in quotes for a message; long names are cut at the start, since their ends differ.
 std::string file_in_quotes(const std::string& name);
 
 /// The path of the file that a scene in `folder` calls `name`. If `access` finds it elsewhere, `warn` gets a message.
-/// Null for scenes that are not on disk.
+/// `access` is null for scenes that are not on disk.
 std::filesystem::path find_file(const std::filesystem::path& folder, const std::string& name, const FileAccess* access,
                                 const std::function<void(std::string)>& warn);
 
-/// Looks for the scene's files. If any are missing, throws one Error that names them all; of a single one it is
-/// `problem`, if whoever has read the file has more to say. If the scene is read without missing files, adds a warning
-/// for each instead.
+/// Checks that the scene's files exist. If any are missing, throws a single Error that names them all; for a single
+/// file, `problem` if the caller that tried to read it has a more specific error. If missing files are skipped, adds a
+/// warning for each instead.
 void report_missing_files(SceneDescription& scene, const FileAccess& access, const Error* problem = nullptr);
 
 }  // namespace lanthorn

@@ -25,7 +25,7 @@ class DistanceCube {
  public:
   static constexpr int cells = 24;  // along an edge of the cube's faces
 
-  // A sample at `p` from the centre, which covers a square of this size.
+  // A sample at position `p` relative to the centre, covering a square of this size.
   struct Square {
     Vec3 p{0};
     int axis = 0;

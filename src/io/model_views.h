@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// What is seen of a model from outside and from inside, by depth buffers of points on its surfaces: no ray tracer has
-// to be built.
+// Determines which parts of a model are visible from outside and from inside, with depth buffers of points on its
+// surfaces, so that no acceleration structure has to be built.
 #pragma once
 
 #include <cstddef>
@@ -18,16 +18,16 @@ namespace lanthorn {
 struct ViewFrame {
   Direction right{1, 0, 0}, up{0, 1, 0}, towards_eye{0, 0, 1};
 };
-/// Degrees: from +z towards +x, and above the horizon.
+/// Angles in degrees: azimuth from +z towards +x, elevation above the horizon.
 ViewFrame view_from(float azimuth, float elevation);
 
-/// Materials of surfaces of which the back should not be shown.
+/// Materials of surfaces whose back should not be shown.
 struct OneSided {
   std::set<description::Index> materials = {};
-  bool is_certain = false;  ///< viewers do not draw it; else files often have faces that are wound the wrong way
+  bool is_certain = false;  ///< viewers cull back faces; else faces may be wound wrongly
 };
 
-/// Which sides of a surface get light.
+/// Sides of a surface that receive light.
 struct LitSides {
   bool front = true, back = true;
 };
@@ -35,8 +35,8 @@ struct LitSides {
 /// Points on all triangle meshes of a scene, evenly distributed.
 struct ModelSamples {
   std::vector<Surfaces::Sample> samples;
-  std::vector<LitSides> lit;  ///< of each sample; empty: all on both sides
-  float spacing = 0;          ///< of samples on surfaces, metres
+  std::vector<LitSides> lit;  ///< for each sample; empty: both sides of all samples are lit
+  float spacing = 0;          ///< between samples on surfaces, metres
   Bounds bounds;
   float radius = 0;  ///< half the diagonal of `bounds`, metres
   const OneSided& one_sided;
@@ -45,12 +45,12 @@ struct ModelSamples {
 
   bool is_back(std::size_t i, const Point& eye) const;
   bool is_lit(std::size_t i, const Point& eye) const;
-  /// Of the sample in a sum over what an eye sees. A surface that is seen at a slant counts less, and so do the back of
-  /// a one-sided one, and a side without light.
+  /// Weight of the sample in a sum over what an eye sees. Surfaces seen at grazing angles, backs of one-sided surfaces
+  /// and unlit sides count less.
   double weight(std::size_t i, const Point& eye) const;
-  /// Whether the sample lies on a face of the bounding box, up to this part of its extent.
+  /// True if the sample lies on a face of the bounding box, within this fraction of the box's extent.
   bool is_on_box(std::size_t i, float tolerance) const;
-  /// Whether the sample is of clear glass or of an interface.
+  /// True if the sample lies on clear glass or a medium interface.
   bool is_clear(std::size_t i) const { return clear_materials_.count(samples[i].material) > 0; }
 
  private:
@@ -59,15 +59,16 @@ struct ModelSamples {
 
 constexpr float view_outside = 40, view_inside = 60;  ///< fields of view, degrees
 
-/// The samples that an eye outside sees, which looks at the whole model.
+/// The samples visible to an eye outside that looks at the whole model.
 class OutsideView {
  public:
   OutsideView(const ModelSamples& model, const ViewFrame& frame);
 
   const std::vector<std::size_t>& seen() const { return seen_; }
-  /// Those which nothing thin can hide: walls do not let things near them through, but surfaces at a slant are missing.
+  /// Samples that nothing, however thin, can occlude: no sample behind a nearby wall, but surfaces at grazing angles
+  /// are also missing.
   const std::vector<std::size_t>& in_front() const { return in_front_; }
-  /// Sum of weights times the share of what is seen in which there is light.
+  /// Sum of weights times the fraction of visible samples that are lit.
   double amount() const;
   bool is_back(std::size_t i) const { return model_.is_back(i, eye_); }
   bool is_lit(std::size_t i) const { return model_.is_lit(i, eye_); }
@@ -78,8 +79,8 @@ class OutsideView {
   std::vector<std::size_t> seen_, in_front_;
 };
 
-/// The samples that are seen from a point inside, in all directions. Samples cover squares as large as their part of
-/// the surface, so that walls close although they are near.
+/// The samples visible from a point inside, in all directions. Each sample covers a square of its share of the
+/// surface's area, so that nearby walls have no gaps.
 class Panorama {
  public:
   enum class Sight : std::uint8_t { ends_at_glass, through_glass };
@@ -88,7 +89,7 @@ class Panorama {
 
   const Point& eye() const { return eye_; }
   const std::vector<std::size_t>& seen() const { return seen_; }
-  float closed() const { return closed_; }        ///< share of directions in which there is something
+  float closed() const { return closed_; }        ///< fraction of directions in which there is a surface
   float clearance() const { return clearance_; }  ///< metres to the nearest sample
 
  private:

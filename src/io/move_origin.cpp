@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Everything in a scene's description that has a place in the world, moved together.
+// Moves everything in a scene's description that has a world position.
 #include <array>
 #include <cmath>
 #include <variant>
@@ -11,16 +11,16 @@ namespace lanthorn {
 
 namespace {
 
-// The point that the camera is near: the middle of what it frames, or its own place.
+// The point that determines the origin: the centre of the camera's subject, or the camera's position.
 DVec3 place_of(const description::Camera& camera) {
   const Point near = camera.subject && !camera.subject->empty() ? camera.subject->centre() : Point(0);
   return DVec3(camera.camera_to_world.start.matrix * glm::dvec4(near, 1.0));
 }
 
-// Along each axis on which the place is far away: a multiple of its 64th part, rounded down to a power of 2.
-// Subtracting it from coordinates of the same magnitude is exact in single precision.
+// Along each axis on which the place is far away: a multiple of 1/64 of it, rounded down to a power of 2. Subtracting
+// such a multiple from coordinates of the same magnitude is exact in single precision.
 DVec3 origin_near(const DVec3& place) {
-  // Coordinates below this have steps of at most 2^-13, .1 mm if they are metres.
+  // Coordinates below this have a spacing of at most 2^-13, 0.1 mm in metres.
   constexpr double nearest = 1024, farthest = 1e12;
   DVec3 origin(0.0);
   for (int i = 0; i < 3; ++i) {

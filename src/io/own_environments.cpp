@@ -20,7 +20,7 @@ namespace lanthorn {
 
 namespace {
 
-// A lamp of the studio. Degrees: from the camera towards the picture's right, above the horizon, and half its width.
+// A light of the studio. Degrees: from the camera towards the picture's right, above the horizon, and half its width.
 struct SoftLamp {
   float azimuth, elevation, half_width;
   float radiance;
@@ -34,7 +34,8 @@ float smooth_step(float low, float high, float x) {
 
 constexpr float ground_albedo = 0.2f;
 
-/// Directions of an equirectangular picture, y up: the top row is +y, the centre +x, a quarter to its right +z.
+/// Directions of an equirectangular picture, y up: the top row is +y, the centre +x, a quarter of the width to its
+/// right +z.
 struct EquirectangularMap {
   int width, height;
 
@@ -70,7 +71,7 @@ Image studio() {
   });
 }
 
-// L(e) = Lz (1 + 2 sin e) / 3 gives a level surface the irradiance 7 pi / 9 Lz, which is to be pi.
+// L(e) = Lz (1 + 2 sin e) / 3 gives a level surface the irradiance 7 pi / 9 Lz; Lz is chosen to make it pi.
 Image overcast() {
   return EquirectangularMap{256, 128}.image([](const Direction& d) {
     constexpr float zenith = 9.0f / 7;
@@ -79,7 +80,7 @@ Image overcast() {
   });
 }
 
-/// The sky of Preetham, Shirley & Smits for a turbidity and a place of the sun.
+/// The sky of Preetham, Shirley & Smits for a given turbidity and sun direction.
 class PreethamSky {
  public:
   PreethamSky(float turbidity, const Direction& sun) : turbidity_(turbidity), sun_(sun) {
@@ -100,18 +101,18 @@ class PreethamSky {
     for (Distribution* const d : {&luminance_, &x_, &y_}) d->zenith /= d->perez(1, s);
   }
 
-  /// Colour of the sky above the horizon in linear Rec.709, in kcd/m² of luminance.
+  /// Colour of the sky above the horizon in linear Rec.709; luminance in kcd/m².
   Rgb radiance(const Direction& d) const {
     const float cos = std::max(d.y, 1e-3f), gamma = std::acos(std::clamp(dot(d, sun_), -1.0f, 1.0f));
     const float luminance = luminance_.at(cos, gamma), x = x_.at(cos, gamma), y = y_.at(cos, gamma);
     const float big_x = luminance * x / y, big_z = luminance * (1 - x - y) / y;
-    // IEC 61966-2-1. Negative components lie outside of Rec.709.
+    // XYZ to linear Rec.709 (IEC 61966-2-1). Negative components are outside its gamut.
     return {std::max(0.0f, 3.2406f * big_x - 1.5372f * luminance - 0.4986f * big_z),
             std::max(0.0f, -0.9689f * big_x + 1.8758f * luminance + 0.0415f * big_z),
             std::max(0.0f, 0.0557f * big_x - 0.2040f * luminance + 1.0570f * big_z)};
   }
-  /// Illuminance of a surface that faces the sun, in klx: what Rayleigh scattering and haze leave of the sunlight
-  /// above the atmosphere at wavelengths of the three primaries. Ozone and vapour are left out.
+  /// Illuminance of a surface that faces the sun, in klx: sunlight above the atmosphere, attenuated by Rayleigh
+  /// scattering and haze at wavelengths of the three primaries. Ozone and vapour are neglected.
   Rgb sunlight() const {
     constexpr float above_atmosphere = 128;  // klx
     const float degrees = std::acos(sun_.y) * 180 / pi;
@@ -127,7 +128,7 @@ class PreethamSky {
  private:
   struct Distribution {
     std::array<float, 5> c{};
-    float zenith = 0;  // at first the value there, then over F(0, theta of the sun)
+    float zenith = 0;  // first the zenith's value, then divided by F(0, theta of the sun)
 
     float perez(float cos, float gamma) const {
       const float cos_gamma = std::cos(gamma);
@@ -141,7 +142,7 @@ class PreethamSky {
   Distribution luminance_, x_, y_;
 };
 
-// Shares of the texels that the sun's disc covers.
+// Fractions of the texels that the sun's disc covers.
 struct Coverage {
   struct Texel {
     int x, y;
@@ -152,7 +153,7 @@ struct Coverage {
 
   Coverage(const EquirectangularMap& map, const Direction& sun) {
     const float least_cos = std::cos(to_radians(0.2666f));
-    constexpr int parts = 16;  // of a texel along both axes
+    constexpr int parts = 16;  // subdivisions of a texel along each axis
     for (int y = 0; y < map.height; ++y)
       for (int x = 0; x < map.width; ++x) {
         if (dot(map.direction_of_texel(x, y), sun) < 0.999f) continue;
@@ -170,7 +171,7 @@ struct Coverage {
   }
 };
 
-// Luminance of the light on a level surface.
+// Illuminance of a level surface.
 float level_illuminance(const EquirectangularMap& map, const Image& image) {
   double sum = 0;
   for (int y = 0; 2 * y < map.height; ++y)

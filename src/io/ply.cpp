@@ -69,7 +69,7 @@ struct Element {
 struct Header {
   Format format = Format::ascii;
   std::vector<Element> elements;
-  std::size_t size = 0;  ///< bytes, up to the first byte of the body
+  std::size_t size = 0;  ///< bytes up to the first byte of the body
   int lines = 0;
 };
 
@@ -104,7 +104,7 @@ class HeaderReader {
 
   std::vector<std::string_view> next_line() {
     ++line_;
-    if (at_ >= bytes_.size()) fail("the file ends inside of its header");
+    if (at_ >= bytes_.size()) fail("the file ends inside its header");
     const std::size_t end = std::min(bytes_.find('\n', at_), bytes_.size());
     std::string_view line = bytes_.substr(at_, end - at_);
     at_ = std::min(end + 1, bytes_.size());
@@ -170,7 +170,7 @@ class HeaderReader {
   Header header_;
 };
 
-// Two sources of numbers with the same interface: AsciiBody and BinaryBody.
+// AsciiBody and BinaryBody provide numbers through the same interface.
 class AsciiBody {
  public:
   AsciiBody(std::string_view bytes, const Header& header, const std::string& name)
@@ -184,7 +184,7 @@ class AsciiBody {
     skip_blanks();
     double value = 0;
     const auto [end, error] = std::from_chars(at_, end_, value);
-    if (error == std::errc::invalid_argument) fail(at_ == end_ ? "the file ends too early" : "expected a number");
+    if (error == std::errc::invalid_argument) fail(at_ == end_ ? "the file is truncated" : "expected a number");
     at_ = end;
     return error == std::errc::result_out_of_range ? 0 : value;
   }
@@ -245,7 +245,7 @@ class BinaryBody {
 
   double number(Number type) {
     const std::size_t size = size_of(type);
-    if (remaining() < size) fail("the file ends too early");
+    if (remaining() < size) fail("the file is truncated");
     const double value = load_number<swap>(type, at_);
     at_ += size;
     return value;
@@ -338,14 +338,14 @@ class BodyReader {
   Faces faces;
 
  private:
-  // Refuses a mesh whose scene cannot be built, before any of it is read.
+  // Rejects a mesh that is too large to build, before any of it is read.
   void require_memory_of(const Header& header) const {
     for (const Element& element : header.elements) check_size(element);
     const PlyNeed need = need_of(header);
     require_memory(need.bytes, body_.place(), fmt::format("the mesh ({:.0f} faces) with its search tree", need.faces));
   }
 
-  // Before memory is allocated: the file must be long enough for the header's counts.
+  // Checks, before memory is allocated, that the file is long enough for the header's counts.
   void check_size(const Element& element) const {
     std::size_t smallest = 0;
     for (const Property& p : element.properties) smallest += Body::smallest(p.count_type.value_or(p.type));
@@ -359,7 +359,7 @@ class BodyReader {
 
   std::uint64_t list_length(const Property& p) {
     const double count = body_.number(*p.count_type);
-    if (!(count >= 0) || count > static_cast<double>(body_.remaining())) body_.fail("a list has an impossible length");
+    if (!(count >= 0) || count > static_cast<double>(body_.remaining())) body_.fail("a list has an invalid length");
     return static_cast<std::uint64_t>(count);
   }
 
@@ -410,7 +410,7 @@ class BodyReader {
     read_corners(element, [&](const Property& p) { read_face(p); });
   }
 
-  // The scans of Stanford and of Cyberware have their triangles so.
+  // Scans from Stanford and Cyberware store triangles as strips.
   void read_strips(const Element& element) {
     read_corners(element, [&](const Property& p) { read_strip(p); });
   }
@@ -437,7 +437,7 @@ class BodyReader {
 
   std::uint32_t vertex_index(double index) {
     if (!(index >= 0 && index < 4294967295.0) || index != std::floor(index))
-      body_.fail("a face has an impossible vertex index");
+      body_.fail("a face has an invalid vertex index");
     const auto result = static_cast<std::uint32_t>(index);
     largest_index_ = std::max(largest_index_, result);
     return result;
@@ -466,8 +466,8 @@ class BodyReader {
     }
   }
 
-  // Each corner makes a triangle with the two before it, wound the other way in turn; -1 begins a new strip. Triangles
-  // of which two corners are the same only lead from place to place.
+  // Each corner forms a triangle with the two before it, with alternating winding; -1 starts a new strip. Triangles
+  // with two equal corners only connect parts of a strip.
   void read_strip(const Property& p) {
     const std::uint64_t count = list_length(p);
     std::array<std::uint32_t, 2> last{};
@@ -502,7 +502,7 @@ class BodyReader {
 
 bool is_finite(const Point& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
 
-// Removes faces with a corner that is not finite. Returns their number.
+// Removes faces with a corner that is not finite. Returns the number removed.
 template <class Face>
 std::size_t erase_not_finite(std::vector<Face>& faces, const std::vector<Point>& positions) {
   return std::erase_if(faces, [&](const Face& face) {
@@ -525,7 +525,7 @@ PlyMesh assemble(Vertices vertices, Faces faces) {
     mesh.warnings.emplace_back("the mesh has no faces: left out");
     return mesh;
   }
-  // No face uses these any more. They lie where one is, so that the mesh gets no larger.
+  // No face uses these vertices any more. They are moved onto one that is used, so that the bounding box stays tight.
   const Point place =
       vertices.positions[mesh.triangles.triangles.empty() ? mesh.quads.patches[0][0] : mesh.triangles.triangles[0][0]];
   std::replace_if(

@@ -28,8 +28,7 @@ namespace lanthorn {
 
 namespace {
 
-// Files that cannot be read have no hash. The code that needs the content reports the error, with its place in the
-// scene.
+// Unreadable files have no hash. The code that needs the content reports the error, with its location in the scene.
 std::optional<std::uint64_t> hash_file(const std::filesystem::path& path, const FileAccess& access) {
   try {
     const std::string bytes = access.read(path);
@@ -52,13 +51,13 @@ SceneDescription completed(ModelFile model, const ReadOptions& options) {
   return with_stand_ins(std::move(model));
 }
 
-// In lower case, without that of gzipped files.
+// In lower case, ignoring ".gz".
 std::string scene_extension(const std::filesystem::path& path) {
   return lower_extension(lower_extension(path) == ".gz" ? path.stem() : path);
 }
 
-// Completes the scene description: hash and files, and the access through which its other files will be read. `known`:
-// files that have been read before.
+// Completes the scene description with hash and files, and the access through which its other files will be read.
+// `known`: files that have been read before.
 SceneDescription finished(SceneDescription scene, std::string_view bytes, const FileAccess& access,
                           const std::map<std::string, description::File>& known = {}) {
   scene.hash = hash_bytes(std::as_bytes(std::span(bytes)));
@@ -92,8 +91,8 @@ FileAccess access_for(const std::filesystem::path& folder, const ReadOptions& op
   return access;
 }
 
-// In a sandbox, messages must not show the content of files, because a scene may name any file. In any case, control
-// characters in file names must not reach the terminal.
+// In a sandbox, messages must not reveal the content of files, because a scene may name any file. Control characters in
+// file names must never reach the terminal.
 Error shown(const FileAccess& access, SourceLocation where, const std::string& message) {
   where.file = printable(where.file);
   return {where, printable(access.is_sandboxed() ? without_quotations(message) : message)};
@@ -111,9 +110,9 @@ auto discreet(const FileAccess& access, const std::string& name, Read&& read) {
   } catch (const Error& problem) {
     throw shown(access, problem.where, problem.message);
   } catch (const std::bad_alloc&) {
-    throw Error({name}, "the scene needs more memory than there is");
+    throw Error({name}, "the scene needs more memory than is available");
   } catch (const std::length_error&) {
-    throw Error({name}, "the scene needs more memory than there is");
+    throw Error({name}, "the scene needs more memory than is available");
   }
 }
 
@@ -131,8 +130,7 @@ SceneSource::SceneSource(const std::filesystem::path& path, const ReadOptions& o
       methods_(std::move(methods)),
       access_(access_for(folder_, options)) {
   if (!is_scene_file(path))
-    throw Error(name_ +
-                ": not a kind of scene file that Lanthorn reads (.pbrt, .gltf, .glb, .obj, all of them also as .gz)");
+    throw Error(name_ + ": unknown kind of scene file; expected .pbrt, .gltf, .glb or .obj, each also as .gz");
   if (!options.camera.empty() && !is_gltf(path))
     throw Error(name_ + ": --camera: only glTF files have several cameras");
 }

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The readers behind `read_scene` and `read_pbrt_string` (lanthorn/scene.h).
+// Implements `read_scene` and `read_pbrt_string` (lanthorn/scene.h).
 #pragma once
 
 #include <filesystem>
@@ -20,7 +20,7 @@ namespace gltf {
 class File;
 }  // namespace gltf
 
-/// `SceneFile`, except that `ReadOptions::window_glass` and the environment are not looked at.
+/// As `SceneFile`, but ignores `ReadOptions::window_glass` and the environment.
 class SceneSource {
  public:
   SceneSource(const std::filesystem::path& path, const ReadOptions& options, FindMethod methods);
@@ -39,8 +39,8 @@ class SceneSource {
   FindMethod methods_;
   FileAccess access_;
   std::string bytes_;
-  std::unique_ptr<gltf::File> gltf_;                // of glTF files, once it is parsed
-  std::map<std::string, description::File> files_;  // the scene's other files, as they were when it was read first
+  std::unique_ptr<gltf::File> gltf_;                // for glTF files, once parsed
+  std::map<std::string, description::File> files_;  // the scene's other files, as they were when first read
 };
 /// `read_pbrt_string`.
 SceneDescription read_pbrt_text(std::string_view text, const std::filesystem::path& folder, const std::string& name,

@@ -33,8 +33,8 @@ namespace {
 
 using namespace description;
 
-// The layouts of `Environment` (lanthorn/ibl.h), whose y is up, are those of a light turned: an equirectangular picture
-// and a cube by half a turn, and both mirrored, because pbrt's worlds are left-handed.
+// Rotations from a light's space to the layouts of `Environment` (lanthorn/ibl.h), whose y is up: equirectangular
+// pictures and cubes turn by half a turn, and all are mirrored, because pbrt's worlds are left-handed.
 const Mat4 equirectangular_to_y_up(-1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1);
 const Mat4 octahedral_to_y_up(1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1);
 const Mat4 y_up_to_z_up(1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1);
@@ -50,7 +50,7 @@ std::vector<Rgb> colours_of(const Image& image) {
   return colours;
 }
 
-// Means of four points of each texel.
+// Averages four points of each texel.
 SphericalTexels unrolled(const Image& strip) {
   const CubeMap cube = cube_of(strip);
   SphericalTexels texels{4 * cube.size(), 2 * cube.size(), {}};
@@ -73,13 +73,13 @@ SphericalTexels unrolled(const Image& strip) {
   return texels;
 }
 
-// The picture of an environment. One whose layout is octahedral is square.
+// The picture of an environment; octahedral layouts stay square.
 std::shared_ptr<const SphericalTexels> picture_of(const Image& image) {
   if (*layout_of(image) == EnvironmentLayout::cube) return std::make_shared<const SphericalTexels>(unrolled(image));
   return std::make_shared<const SphericalTexels>(SphericalTexels{image.width, image.height, colours_of(image)});
 }
 
-// The camera's direction upwards tells more of a pbrt file's world than anything else in it.
+// The camera's up vector is the best indication of a pbrt file's up axis.
 UpAxis axis_upwards(const Camera& camera) {
   const Vec3 up = camera.camera_to_world.start.vector({0, 1, 0});
   return std::fabs(up.z) > std::fabs(up.y) ? UpAxis::z : UpAxis::y;
@@ -90,15 +90,15 @@ std::string extension_of(const SceneDescription& scene) {
   return lower_extension(lower_extension(path) == ".gz" ? path.stem() : path);
 }
 
-// Worlds of glTF and OBJ files are right-handed, and may not have their camera yet. Of others the camera, whose own
-// space is left-handed, tells.
+// glTF and OBJ worlds are right-handed, and may not have a camera yet. For others, the camera's transform tells, since
+// camera space is left-handed.
 bool is_left_handed(const SceneDescription& scene) {
   const std::string extension = extension_of(scene);
   const bool is_model = extension == ".gltf" || extension == ".glb" || extension == ".obj";
   return !is_model && !scene.view.camera.camera_to_world.start.swaps_handedness();
 }
 
-// In a left-handed world, pictures are mirrored, so that the camera sees them as they are.
+// In a left-handed world, pictures are mirrored, so that the camera sees them unmirrored.
 Transform placement(const SceneDescription& scene, const EnvironmentChoice& choice, UpAxis up, bool is_octahedral) {
   const Transform base(is_octahedral ? octahedral_to_y_up : equirectangular_to_y_up);
   const bool left_handed = is_left_handed(scene);
@@ -110,7 +110,7 @@ Transform placement(const SceneDescription& scene, const EnvironmentChoice& choi
 
 bool is_environment(const Light& light) { return std::holds_alternative<InfiniteLight>(light.node); }
 
-// The first environment's place in the list of lights is kept, so that the names of the others stay what they were.
+// Replaces the first environment in the list of lights, so that the names of the others do not change.
 void replace_lights(std::vector<Light>& lights, Light light) {
   const auto first = std::find_if(lights.begin(), lights.end(), is_environment);
   if (first == lights.end()) {
@@ -121,10 +121,10 @@ void replace_lights(std::vector<Light>& lights, Light light) {
   lights.erase(std::remove_if(first + 1, lights.end(), is_environment), lights.end());
 }
 
-// A file of its own, whatever the scene calls its files.
+// The source is a separate file, even if the scene uses a file of the same name.
 std::string name_of_file(const EnvironmentChoice& choice) { return "--environment " + choice.source; }
 
-// That of the environment that the scene has by now; null if it is another one.
+// The picture of the scene's current environment; null if `choice` has a different source.
 std::shared_ptr<const SphericalTexels> known_picture(const SceneDescription& scene, const EnvironmentChoice& choice) {
   if (scene.environment.source != choice.source) return nullptr;
   const auto light = std::find_if(scene.lights.begin(), scene.lights.end(), is_environment);
@@ -136,8 +136,8 @@ UpAxis axis_upwards(SceneDescription& scene, const EnvironmentChoice& choice) {
   if (extension_of(scene) != ".pbrt") return UpAxis::y;
   const UpAxis up = axis_upwards(scene.view.camera);
   std::string message = fmt::format(
-      "--environment: +{0} is up, because the camera's upward direction is nearer to it than to {1}; "
-      "--environment-up {1} says otherwise",
+      "--environment: +{0} is up, because the camera's up vector is nearer to it than to {1}; "
+      "use --environment-up {1} to change it",
       up == UpAxis::z ? 'z' : 'y', up == UpAxis::z ? 'y' : 'z');
   if (std::none_of(scene.warnings.begin(), scene.warnings.end(),
                    [&](const Warning& w) { return w.message == message; }))
@@ -145,7 +145,7 @@ UpAxis axis_upwards(SceneDescription& scene, const EnvironmentChoice& choice) {
   return up;
 }
 
-// As it was before any environment took the place of its own.
+// Restores the lights from before any environment replaced the scene's own.
 void restore_environment(SceneDescription& scene) {
   if (scene.environment.source.empty()) return;
   scene.files.erase(name_of_file(scene.environment));

@@ -19,13 +19,13 @@ namespace {
 
 using namespace description;
 
-// Degrees: from +z towards +x, and above the horizon.
+// Degrees: azimuth from +z towards +x, elevation above the horizon.
 struct Viewpoint {
   float azimuth = 0, elevation = 15;
   const char* name = "from the front";
   Direction up{0, 1, 0};  // of the model
 };
-// The first is the front; the nearer to it the better.
+// Sorted by preference, starting with the front.
 constexpr std::array<Viewpoint, 16> viewpoints{{{0, 15, "from the front"},
                                                 {45, 15, "from the front and right"},
                                                 {-45, 15, "from the front and left"},
@@ -43,12 +43,12 @@ constexpr std::array<Viewpoint, 16> viewpoints{{{0, 15, "from the front"},
                                                 {135, 40, "from behind, right and above"},
                                                 {-135, 40, "from behind, left and above"}}};
 
-// Into rooms that are open there. From below: the front of a model with z up, seen from a little above.
+// For rooms that are open at the top or bottom. From below: the front of a model with z up, seen from slightly above.
 constexpr Viewpoint from_above{0, 75, "from above"}, from_below{0, -75, "from below, with z up", {0, 0, 1}};
 
 ViewFrame frame_of(const Viewpoint& from) { return view_from(from.azimuth, from.elevation); }
 
-/// A viewpoint, and what is seen from there.
+/// A viewpoint, and what is visible from it.
 struct Candidate {
   Viewpoint from;
   OutsideView view;
@@ -69,12 +69,12 @@ const Viewpoint& best_viewpoint(const std::vector<const Candidate*>& candidates)
   return best->from;
 }
 
-/// Which faces of the model's bounding box have walls.
+/// Which faces of the model's bounding box are covered by walls.
 class Walls {
  public:
   explicit Walls(const ModelSamples& model) {
     constexpr std::size_t cells = 16;
-    constexpr float wall = 0.1f;  // depth, as a share of the box
+    constexpr float wall = 0.1f;  // depth, as a fraction of the box
     const Vec3 extent = model.bounds.extent();
     if (!(std::min({extent.x, extent.y, extent.z}) > 0)) return;
     std::array<std::array<std::vector<char>, 2>, 3> has_wall;
@@ -96,12 +96,12 @@ class Walls {
                           static_cast<float>(cells * cells);
   }
 
-  /// Walls of rooms that stand at its edges cover a quarter.
+  /// Walls of rooms that stand at its edges cover only a quarter.
   bool is_open(int axis, int side) const {
     constexpr float most = 0.5f;
     return share_[static_cast<std::size_t>(axis)][static_cast<std::size_t>(side)] < most;
   }
-  /// True of a box of which one to three faces are open, and the others closed.
+  /// True for a box with one to three open faces and all others closed.
   bool make_an_open_room() const {
     constexpr float least = 0.8f;
     int closed = 0, open = 0;
@@ -117,8 +117,8 @@ class Walls {
   std::array<std::array<float, 2>, 3> share_{};
 };
 
-// The number of separate meshes that are seen from each candidate; of a mesh that is seen by less than half as from the
-// best one, a part. A side without light counts a tenth.
+// The number of separate meshes visible from each candidate. A mesh of which a candidate shows less than half as much
+// as the best candidate counts in part. An unlit side counts a tenth.
 std::vector<double> meshes_seen(const SceneDescription& scene, const ModelSamples& model,
                                 const std::vector<Candidate>& candidates) {
   constexpr double dark_weight = 0.1, enough = 0.5;
@@ -141,8 +141,8 @@ std::vector<double> meshes_seen(const SceneDescription& scene, const ModelSample
   return numbers;
 }
 
-// Of an open room the candidates that do not show far fewer of its meshes than the best one; if the front does, those
-// that show nearly all that can be seen. From above and below only then.
+// For an open room, the candidates that do not show far fewer of its meshes than the best one; if the front is one of
+// these, only those that show nearly everything. Only open rooms are viewed from above or below.
 std::vector<const Candidate*> with_most_meshes(const SceneDescription& scene, const ModelSamples& model,
                                                const std::vector<Candidate>& candidates, bool is_open_room) {
   constexpr double many_more = 1.6, nearly_all = 0.9;
@@ -157,7 +157,7 @@ std::vector<const Candidate*> with_most_meshes(const SceneDescription& scene, co
   return result;
 }
 
-// Places in the bounding box.
+// Candidate positions in the bounding box.
 std::vector<Point> places_inside(const Bounds& bounds) {
   constexpr std::array<float, 5> across{0.08f, 0.3f, 0.5f, 0.7f, 0.92f};
   constexpr std::array<float, 2> heights{0.4f, 0.6f};
@@ -168,7 +168,7 @@ std::vector<Point> places_inside(const Bounds& bounds) {
   return places;
 }
 
-// The places from which surfaces are seen in nearly all directions.
+// The positions from which surfaces are visible in nearly all directions.
 std::vector<Panorama> surrounded_places(const ModelSamples& model) {
   constexpr float least_closed = 0.95f;
   std::vector<Panorama> places;
@@ -177,10 +177,10 @@ std::vector<Panorama> surrounded_places(const ModelSamples& model) {
   return places;
 }
 
-// What nothing hides from outside, from any viewpoint.
+// What is visible from outside, from any viewpoint.
 struct Outside {
-  std::vector<char> is_seen;   ///< of each sample
-  double backs = 0, dull = 0;  ///< shares: backs of one-sided surfaces; these, or faces of a box
+  std::vector<char> is_seen;   ///< for each sample
+  double backs = 0, dull = 0;  ///< fractions: backs of one-sided surfaces; these or faces of a box
 
   Outside(const ModelSamples& model, std::span<const Candidate> candidates) : is_seen(model.samples.size()) {
     constexpr float tolerance = 0.05f;
@@ -198,7 +198,7 @@ struct Outside {
   }
 };
 
-// Whether things are seen from these places that are hardly seen from outside, besides the walls.
+// True if objects other than walls are visible from these positions but hardly visible from outside.
 bool has_things_inside(const ModelSamples& model, const Outside& outside, const std::vector<Panorama>& places) {
   constexpr float wall = 0.1f;
   constexpr double least_things = 0.05, most_seen_outside = 0.25;
@@ -216,7 +216,7 @@ bool has_things_inside(const ModelSamples& model, const Outside& outside, const 
   return things > least_things * all && seen_outside < most_seen_outside * things;
 }
 
-// Whether the model is open nowhere, and hardly anything that is seen from these places is the back of a one-sided
+// True if the model has no opening, and hardly anything visible from these positions is the back of a one-sided
 // surface.
 bool shows_fronts_inside(const ModelSamples& model, const std::vector<Panorama>& places) {
   constexpr float closed = 0.99f;
@@ -233,7 +233,7 @@ bool shows_fronts_inside(const ModelSamples& model, const std::vector<Panorama>&
   return is_closed && backs < most_backs * all;
 }
 
-// Whether the scene's own lights reach hardly anything that is seen from outside.
+// True if the scene's own lights illuminate hardly anything that is visible from outside.
 bool is_lit_inside_alone(const ModelSamples& model, const std::vector<Candidate>& candidates) {
   constexpr double most_lit_outside = 0.05;
   const auto lit =
@@ -259,7 +259,7 @@ double amount_seen(const ModelSamples& model, const Panorama& panorama, const Vi
   return sum;
 }
 
-// The place with most of what the eye sees, besides the eye's own.
+// The position, apart from the eye's own, that sees most of what the eye sees.
 StandInView::Inside with_lamp(const ModelSamples& model, const std::vector<Panorama>& rooms, const Panorama& eye) {
   std::vector<char> is_seen(model.samples.size());
   for (const std::size_t i : eye.seen()) is_seen[i] = 1;
@@ -277,7 +277,7 @@ StandInView::Inside with_lamp(const ModelSamples& model, const std::vector<Panor
   return {eye.eye(), best->eye(), std::min(best->clearance() / 3, largest * model.radius), model.radius / 2};
 }
 
-// Whether the walls around these places are those of the whole model, not of a figure or a lamp in it.
+// True if the walls around these positions are those of the whole model, not of a figure or a lamp in it.
 bool enclose_the_model(const ModelSamples& model, const std::vector<Panorama>& places) {
   constexpr float least = 0.8f;
   Bounds walls;
@@ -293,10 +293,10 @@ std::optional<StandInView> best_view_inside(const ModelSamples& model, std::span
   constexpr float most_height = 0.6f;
   constexpr double dull_share = 0.9, backs_share = 0.9;
   const Outside outside(model, from_outside);
-  // Rooms are wider than they are high, chests often are not.
+  // Rooms are wider than high; chests often are not.
   const Vec3 extent = model.bounds.extent();
   const bool may_be_room = extent.y <= most_height * std::max(extent.x, extent.z) && outside.dull >= dull_share;
-  // Walls that viewers do not draw from outside, or the sphere of a sky.
+  // Walls that viewers cull from outside, or the sphere of a sky.
   const bool may_face_inwards = model.one_sided.is_certain && outside.backs >= backs_share;
   if (!may_be_room && !may_face_inwards && !is_dark_outside) return {};
   const std::vector<Panorama> rooms = surrounded_places(model);
@@ -329,7 +329,7 @@ StandInView stand_in_view(const SceneDescription& scene, const OneSided& one_sid
   if (has_own_light) model.lit = lit_sides(scene, model);
   const Walls walls(model);
   const bool is_open_room = walls.make_an_open_room();
-  // Or so near to its plane that it is seen edge-on.
+  // Also true if the viewpoint sees the ground nearly edge-on.
   const auto is_behind_ground = [&](const Viewpoint& viewpoint) {
     constexpr float least_cosine = 0.1f;
     return side_of_ground && dot(frame_of(viewpoint).towards_eye, *side_of_ground) < least_cosine;

@@ -42,7 +42,7 @@ void add_camera(SceneDescription& scene, const StandInView& view) {
     camera.subject = Bounds{Point(-1), Point(1)};
 }
 
-// An invisible ball that gives off light; surfaces at the typical distance are about white.
+// Adds an invisible ball that emits light, so that white surfaces at the typical distance have radiance of about 1.
 void add_lamp(SceneDescription& scene, const StandInView::Inside& room) {
   AreaLight& light = scene.area_lights.emplace_back();
   const float radiance = sqr(room.lamp_distance / room.lamp_radius);
@@ -83,14 +83,14 @@ void add_studio(SceneDescription& scene, const Direction& up) {
   light.location.file = scene.filename;
 }
 
-// What stands in. The user's environment is not one of these things.
+// The warning about defaults. The user's environment is not one of them.
 std::string message_of(const StandIns& lacking, const std::optional<StandInView>& view, bool has_ground) {
   const bool is_inside = view && view->inside, hides_lights = view && view->hides_lights;
   const bool has_studio = !lacking.gets_environment && !is_inside;
   const std::string studio = "a studio of three soft lamps";
   if (!view) return has_studio ? "the file has no light: " + studio + " stands in" : "";
   std::string text = lacking.has_blind_camera ? "the file has no camera that sees anything" : "the file has no camera";
-  if (hides_lights) text += ", and its lights are enclosed in closed meshes, whose outside they do not light";
+  if (hides_lights) text += ", and its lights are inside closed meshes, whose outside they do not illuminate";
   const bool has_lamp = lacking.light && is_inside, is_in_studio = (lacking.light || hides_lights) && has_studio;
   if (lacking.light && (has_lamp || is_in_studio)) text += " and no light";
   const char* shown = is_inside    ? ": a view "

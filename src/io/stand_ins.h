@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The stand-in camera and light of model files that have none.
+// Default camera and light for model files without them.
 #pragma once
 
 #include <span>
@@ -10,36 +10,37 @@
 
 namespace lanthorn {
 
-/// True if the scene's emissive surfaces of these area lights light its other surfaces: those with a radiance above 1,
-/// since others only glow, if their light, spread evenly over all other surfaces, were at least a twentieth of what a
-/// sky of radiance 1 sends there.
+/// True if the emissive surfaces of these area lights illuminate the rest of the scene. Only emitters with a radiance
+/// above 1 count, since dimmer ones merely look bright: their light, spread evenly over all other surfaces, must be at
+/// least a twentieth of what a sky of radiance 1 would give.
 bool is_lit_by(const SceneDescription& scene, std::span<const description::Index> lamps);
 
 /// What a scene lacks.
 struct StandIns {
   bool camera = false, light = false;
   OneSided one_sided = {};
-  bool has_blind_camera = false;  ///< `camera`: it has one, which sees nothing
-  bool gets_environment = false;  ///< the user's will take the place of the studio
+  bool has_blind_camera = false;  ///< `camera` is set although it has one, which sees nothing
+  bool gets_environment = false;  ///< the user's environment will replace the studio
 };
 
-/// What a reader of models returns.
+/// Result of a reader of model files.
 struct ModelFile {
   SceneDescription scene;
   StandIns lacking;
 };
 
-/// Gives the scene what it lacks; one warning says so. The user's environment changes nothing of where the camera
-/// stands, and takes the place of the studio alone.
+/// Adds what the scene lacks, with a single warning. The user's environment replaces only the studio; it does not
+/// affect the camera.
 ///
-/// The camera has a field of view of 40 degrees and +y up, and frames all triangle meshes whatever the film's aspect
-/// ratio but grounds, from the best side (see `Grounds` and `stand_in_view`). In a closed room it stands inside, with
-/// 60 degrees, and an invisible lamp lights the room in place of a missing light.
+/// The camera has a field of view of 40 degrees and +y up. It frames all triangle meshes except grounds from the best
+/// side, whatever the film's aspect ratio (see `Grounds` and `stand_in_view`). In a closed room it is inside, with 60
+/// degrees; an invisible lamp illuminates the room if there is no light.
 ///
-/// The light is a studio: an environment of three large soft lamps and a grey gradient, turned to the camera. A white
-/// wall there has about radiance 1, so that its pictures need no exposure; those in the scene's own light measure it.
+/// The light is a studio: an environment of three large soft lights and a grey gradient, oriented by the camera. A
+/// white wall there has about radiance 1, so that its pictures need no exposure; pictures in the scene's own light
+/// measure it.
 void add_stand_ins(SceneDescription& scene, const StandIns& lacking);
-/// The file's scene, with what it lacks.
+/// The file's scene, completed by default camera and light.
 SceneDescription with_stand_ins(ModelFile file);
 
 }  // namespace lanthorn

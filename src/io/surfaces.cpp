@@ -27,7 +27,7 @@ struct Corners {
   glm::dvec3 twice_area_normal() const { return glm::cross(at[1] - at[0], at[2] - at[0]); }
 };
 
-// The first element of running sums that exceeds `x`.
+// The index of the first running sum that exceeds `x`.
 std::size_t find(const std::vector<double>& cumulative, double x) {
   const auto found = std::upper_bound(cumulative.begin(), cumulative.end(), x);
   return std::min(static_cast<std::size_t>(found - cumulative.begin()), cumulative.size() - 1);
@@ -39,7 +39,7 @@ struct PlaceHash {
 
 double before(const std::vector<double>& cumulative, std::size_t i) { return i == 0 ? 0 : cumulative[i - 1]; }
 
-// Each box by the mesh in its space.
+// Extends each box by the mesh in that box's space.
 void extend(std::span<Bounds> bounds, const Shape& shape, std::span<const Transform> to_spaces) {
   const auto* mesh = std::get_if<TriangleMesh>(&shape.geometry);
   if (mesh == nullptr) return;
@@ -142,7 +142,7 @@ std::vector<Surfaces::Sample> Surfaces::samples(std::size_t count) const {
   for (std::size_t i = 0; i < count; ++i) {
     const double at = (static_cast<double>(i) + 0.5) * step;
     const std::size_t p = find(cumulative_, at);
-    // An additive recurrence of low discrepancy (Roberts 2018): the powers of the inverse of the plastic number.
+    // Low-discrepancy additive recurrence (Roberts 2018): powers of the inverse of the plastic number.
     const auto fraction = [&](double a) {
       const double x = static_cast<double>(i) * a;
       return static_cast<float>(x - std::floor(x));
@@ -158,7 +158,7 @@ std::vector<std::vector<std::uint32_t>> Surfaces::meshes_in(const Group& group) 
   constexpr std::size_t most_vertices = std::size_t{1} << 22;
   std::size_t count = 0;
   for (const Piece& piece : group.pieces) count += piece.mesh->positions.size();
-  // Disjoint sets of vertices: a set of each mesh.
+  // Union-find over vertices: one set per mesh.
   std::vector<std::uint32_t> joined;
   const auto root = [&](std::size_t i) {
     while (joined[i] != i) i = joined[i] = joined[joined[i]];

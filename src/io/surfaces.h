@@ -15,25 +15,25 @@
 
 namespace lanthorn {
 
-/// A box around all triangle meshes where they are when the shutter opens, in the space that `from_world` maps to.
-/// Boxes of instances are those of their objects.
+/// Bounding box of all triangle meshes at shutter open, in the space that `from_world` maps to. Instances contribute
+/// the boxes of their objects.
 Bounds bounds_of(const SceneDescription& scene, const Transform& from_world = {});
-/// Of each shape by itself, in the space that shapes are placed in; empty for shapes of other kinds.
+/// Bounding box of each shape, in the space that shapes are placed in; empty for other kinds of shapes.
 std::vector<Bounds> bounds_of(const std::vector<description::Shape>& shapes);
-/// In several spaces.
+/// As the first function, for several spaces.
 std::vector<Bounds> bounds_of(const SceneDescription& scene, std::span<const Transform> from_world);
 
-/// All triangle meshes of a scene where they are when the shutter opens. Refers to the description.
+/// All triangle meshes of a scene, positioned as when the shutter opens. Refers to the description.
 class Surfaces {
  public:
   explicit Surfaces(const SceneDescription& scene) : Surfaces(scene, nullptr) {}
-  /// The meshes that emit as one of these area lights.
+  /// Only the meshes that emit as one of these area lights.
   Surfaces(const SceneDescription& scene, const std::set<description::Index>& area_lights)
       : Surfaces(scene, &area_lights) {}
 
-  /// Of all meshes, m².
+  /// Area of all meshes, m².
   double area() const { return cumulative_.empty() ? 0 : cumulative_.back(); }
-  /// Of the meshes that emit as each of the description's area lights, m².
+  /// Area of the meshes that emit as each of the description's area lights, m².
   const std::vector<double>& emitting_areas() const { return emitting_; }
 
   struct Sample {
@@ -41,12 +41,12 @@ class Surfaces {
     Normal normal{0};  ///< geometric, outside
     description::Index material = 0;
     std::optional<description::Index> area_light;
-    std::size_t placed = 0, piece = 0, triangle = 0;  ///< where it lies, for `meshes_of`
+    std::size_t placed = 0, piece = 0, triangle = 0;  ///< its location, for `meshes_of`
   };
-  /// `count` points, evenly distributed over the area; none if there is no area.
+  /// `count` points, uniformly distributed over the area; none if the area is 0.
   std::vector<Sample> samples(std::size_t count) const;
-  /// For each of these samples the number of the separate mesh that it lies on, from 0 on: triangles are of one mesh if
-  /// they have corners at the same place. In groups of more than four million vertices, shapes count as meshes.
+  /// For each sample the number, from 0 on, of the connected mesh that contains it: triangles that share a corner
+  /// position belong to the same mesh. In groups of more than four million vertices, each shape counts as a mesh.
   std::vector<std::uint32_t> meshes_of(const std::vector<Sample>& samples) const;
 
  private:
@@ -55,7 +55,7 @@ class Surfaces {
     description::Index material = 0;
     std::optional<description::Index> area_light;
     Transform place;                 // to the space of its group
-    std::vector<double> cumulative;  // areas of its triangles there
+    std::vector<double> cumulative;  // running sums of its triangles' areas in that space
   };
   struct Group {
     std::vector<Piece> pieces;
@@ -65,14 +65,14 @@ class Surfaces {
   struct Placed {
     std::size_t group = 0;
     Transform to_world;
-    double stretch = 1;  // of areas; the mean of all directions
+    double stretch = 1;  // scaling of areas, averaged over all directions
   };
 
-  // Null: all meshes.
+  // `area_lights` null: all meshes.
   Surfaces(const SceneDescription& scene, const std::set<description::Index>* area_lights);
   static Group make_group(const std::vector<description::Shape>& shapes, const std::set<description::Index>* lights);
   void place(std::size_t group, const Transform& to_world);
-  // Of each triangle of each piece a number that only triangles of the same mesh share.
+  // For each triangle of each piece, an identifier of its mesh.
   static std::vector<std::vector<std::uint32_t>> meshes_in(const Group& group);
   Sample sample(std::size_t placed_index, double area, const Vec2& u) const;
 

@@ -18,12 +18,12 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "tensor files are little-endian");
 
-constexpr std::array<char, 12> magic_bytes{"tensor_file"};  // with its final zero
+constexpr std::array<char, 12> magic_bytes{"tensor_file"};  // including the final zero
 constexpr std::string_view magic(magic_bytes.data(), magic_bytes.size());
 constexpr std::uint32_t most_fields = 1024;
 constexpr std::size_t most_dimensions = 8;
 
-// Bytes of a number by its code: signed and unsigned integers of 1, 2, 4 and 8 bytes, floats of 2, 4 and 8.
+// Size of a number in bytes, by type code: signed and unsigned integers of 1, 2, 4 and 8 bytes, floats of 2, 4 and 8.
 constexpr std::size_t type_sizes[] = {0, 1, 1, 2, 2, 4, 4, 8, 8, 2, 4, 8};
 
 std::string dimensions_text(std::size_t count) {
@@ -50,7 +50,7 @@ TensorFile::TensorFile(std::string_view bytes, std::string name) : bytes_(bytes)
 void TensorFile::fail(const std::string& message) const { throw Error(SourceLocation{name_}, message); }
 
 std::string_view TensorFile::take(std::size_t& at, std::size_t count) const {
-  if (count > bytes_.size() - at) fail("ends inside of its header");
+  if (count > bytes_.size() - at) fail("ends inside its header");
   const std::string_view taken = bytes_.substr(at, count);
   at += count;
   return taken;
@@ -79,7 +79,7 @@ TensorFile::Field TensorFile::read_field(std::size_t& at) const {
     size *= extent;
     field.shape.push_back(static_cast<std::size_t>(extent));
   }
-  if (offset > bytes_.size() || size > bytes_.size() - offset) fail("has a field that does not lie in the file");
+  if (offset > bytes_.size() || size > bytes_.size() - offset) fail("has a field that extends beyond the file");
   field.bytes = bytes_.substr(static_cast<std::size_t>(offset), static_cast<std::size_t>(size));
   return field;
 }

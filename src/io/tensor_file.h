@@ -11,23 +11,23 @@
 
 namespace lanthorn {
 
-/// A file of named arrays, the format of the material database of EPFL's Realistic Graphics Lab (".bsdf").
+/// A file of named arrays in the format of EPFL's Realistic Graphics Lab material database (".bsdf").
 /// Little-endian:
 ///   "tensor_file\0"  u8 major, minor version (1.0)  u32 number of fields
 ///   per field:  u16 length of its name, name, u16 dimensions, u8 type, u64 offset in the file, u64 sizes, slowest
 ///   first
 class TensorFile {
  public:
-  enum class Type : std::uint8_t { u8 = 1, f32 = 10 };  ///< types that can be read; files may have others
+  enum class Type : std::uint8_t { u8 = 1, f32 = 10 };  ///< supported types; files may contain others
 
-  /// Checks the header and that every field lies in the file. Copies nothing: `bytes` must outlive the object. Throws
-  /// Error with the place `name`.
+  /// Checks the header and that every field lies within the file. Copies nothing: `bytes` must outlive the object.
+  /// Throws Error at `name`.
   TensorFile(std::string_view bytes, std::string name);
 
   bool has(const std::string& field) const { return fields_.contains(field); }
-  /// This and the next two throw Error if there is no such field, or if its number of dimensions or its type differs.
+  /// These three functions throw Error if the field is missing, or its number of dimensions or its type differs.
   const std::vector<std::size_t>& shape(const std::string& field, std::size_t dimensions) const;
-  /// All finite.
+  /// All values are finite.
   std::vector<float> floats(const std::string& field, std::size_t dimensions) const;
   std::uint8_t byte(const std::string& field) const;
 

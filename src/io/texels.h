@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Texels as texture files hold them.
+// Encodes texels for texture files.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace lanthorn {
 
-/// The texels of a rectangle of channels R, G, B; half floats have an alpha of 1.
+/// Appends the texels of a rectangle with channels R, G, B; half floats get an alpha of 1.
 inline void append_texels(std::string& out, const Image& image, int left, int width, TexelFormat format) {
   for (int y = 0; y < image.height; ++y)
     for (int x = left; x < left + width; ++x) {

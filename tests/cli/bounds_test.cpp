@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// What the program does with input that asks for too much, or for files that are none of its business.
+// The program rejects input that needs too many resources, and files that it must not touch.
 #include <sched.h>
 #include <sys/stat.h>
 
@@ -53,15 +53,15 @@ TEST_F(Bounds, PicturesThatDoNotFitAreRefusedWithWhatTheyWouldTake) {
            "4000 x 4000 pixels take ");
   refuse({"render", "tiny.pbrt", "-i", "path", "-r", "46000x46000", "-o", "a.exr"},
          "46000 x 46000 pixels take 1.1 TiB");
-  refuse({"render", "tiny.pbrt", "-r", "100000x100000", "-o", "a.exr"}, "its sums alone would take 2.2 TiB of memory");
+  refuse({"render", "tiny.pbrt", "-r", "100000x100000", "-o", "a.exr"}, "its sums would take 2.2 TiB of memory");
 }
 
 TEST_F(Bounds, MethodsThatKeepNoPhotonsTakeAnyNumber) {
   succeed({"render", "tiny.pbrt", "-i", "path", "-p", "1", "-n", "4000000000", "--memory", "64M", "-o", "a.exr", "-q"});
 }
 
-// The instances' boxes are so large that every photon may meet them all: without bounds, the lists of what the cells of
-// a projection map may meet take 1.6 GB.
+// The instances' boxes are so large that every photon may hit all of them: without bounds, the projection map's
+// per-cell lists take 1.6 GB.
 TEST_F(Bounds, ProjectionMapsTakeLittleMemory) {
   std::string scene =
       "LookAt 0 0 4  0 0 0  0 1 0\nCamera \"perspective\"\nFilm \"rgb\" \"integer xresolution\" [8] \"integer "
@@ -104,7 +104,7 @@ TEST_F(Bounds, MalformedGifIsNoInternalError) {
   }
 }
 
-// A chain once overflowed the stack; doubling ones took years, during which no signal but SIGKILL ended the render.
+// A chain once overflowed the stack; a doubling chain took years, during which only SIGKILL ended the render.
 TEST_F(Bounds, TexturesThatNameEachOtherTooOftenAreRefused) {
   const auto scene = [](const std::string& kind, const Words& inputs, int last) {
     std::string text = tiny_scene + std::string("Texture \"t0\" \"spectrum\" \"checkerboard\"\n");
@@ -128,7 +128,7 @@ TEST_F(Bounds, TexturesThatNameEachOtherTooOftenAreRefused) {
   }
 }
 
-// 2 kB that ask for 15 million instances.
+// 2 kB that request 15 million instances.
 TEST_F(Bounds, InstancesThatDoNotFitAreRefused) {
 #ifdef __SANITIZE_THREAD__
   GTEST_SKIP() << "the sanitizer itself needs more addresses than the limit leaves";
@@ -171,7 +171,7 @@ TEST_F(Bounds, SpecialFilesAreRefusedEverywhere) {
   }
 }
 
-// Nobody reads from the pipes: writing to them must not wait for somebody who does.
+// No process reads the pipes: writing must not wait for one.
 TEST_F(Bounds, PipesWithoutAReaderAreErrors) {
   for (const char* name : {"pipe.exr", "pipe.png", "pipe.state", "pipe.json", "pipe.svg", "pipe.ply", "pipe.pbrt"})
     ASSERT_EQ(::mkfifo(path(name).c_str(), 0600), 0);
@@ -196,7 +196,7 @@ TEST_F(Bounds, PipesWithoutAReaderAreErrors) {
     EXPECT_TRUE(contains(ending.err, ": cannot write: ")) << ending.err;
     EXPECT_TRUE(contains(ending.err, "if it is a pipe, start its reader first")) << ending.err;
   }
-  // The picture that could not be written is saved.
+  // The picture that could not be written is saved as a state.
   const std::string said = run(commands.front()).err;
   EXPECT_TRUE(contains(said, "The render is saved in ") && contains(said, "pipe.rescue-")) << said;
 }
@@ -215,11 +215,11 @@ TEST_F(Bounds, PipesThatAreReadAndDevicesAreWritten) {
   succeed({"compare", "a.exr", "a.exr", "--json", "/dev/null"});
 }
 
-// What the libraries that decode images have to say is part of our message.
+// Messages of the libraries that decode images become part of our message.
 TEST_F(Bounds, BrokenImagesSayOneLine) {
   write("headless.png", test::png_header(10, 10));
   std::string damaged = test::png_header(10, 10);
-  damaged[20] = '\x7f';  // its checksum does not hold
+  damaged[20] = '\x7f';  // invalidates its checksum
   write("damaged.png", damaged);
   refuse({"info", "headless.png"}, "headless.png: the file cannot be read: ");
   refuse({"info", "damaged.png"}, "damaged.png: the file cannot be read: ");
@@ -239,8 +239,8 @@ TEST_F(Bounds, BrokenImagesSayOneLine) {
   }
 }
 
-// A flat image is small as a file: 3000 x 3000 colours take 26 MiB as bytes, and what samples them 69 MiB. As floats,
-// with a copy for sampling, they took 206 MiB.
+// A uniform image is small as a file: 3000 x 3000 colours take 26 MiB as bytes, and their sampling table 69 MiB. As
+// floats, with a copy for sampling, they took 206 MiB.
 TEST_F(Bounds, EnvironmentsOfBytesStayBytes) {
   Image flat(3000, 3000, {"R", "G", "B"});
   std::fill(flat.pixels.begin(), flat.pixels.end(), 0.5f);
@@ -279,7 +279,7 @@ TEST_F(Bounds, SandboxReadsOnlyWhatIsInTheScenesFolder) {
   succeed({"info", "uploads/good.pbrt", "--sandbox"});
 }
 
-// The header says what the scene will take. Nothing of the mesh, which would be refused for its contents, is read.
+// The header tells the size. The mesh's contents, which are invalid, are not read.
 TEST_F(Bounds, MeshesThatDoNotFitAreRefusedByTheirHeader) {
   write("mesh.ply",
         "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
@@ -294,7 +294,7 @@ TEST_F(Bounds, MeshesThatDoNotFitAreRefusedByTheirHeader) {
   }
 }
 
-// Each by itself would fit. The shell's limit holds for the address space; a fifth of it is the program's.
+// Each mesh alone would fit. The shell's limit applies to the address space, of which the program itself takes a fifth.
 TEST_F(Bounds, MeshesThatDoNotFitTogetherAreRefusedBeforeAnyIsRead) {
   write("mesh.ply",
         "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
@@ -307,7 +307,7 @@ TEST_F(Bounds, MeshesThatDoNotFitTogetherAreRefusedBeforeAnyIsRead) {
     EXPECT_EQ(ending.exit_code, 2) << ending.err;
     EXPECT_TRUE(contains(ending.err, "the geometry of 3 meshes (30000000 faces) with its search trees takes 5.2 GiB"))
         << ending.err;
-    EXPECT_EQ(contains(ending.err, "huge.pbrt: 3 meshes with 30000000 faces are going to take 5.2 GiB of memory"),
+    EXPECT_EQ(contains(ending.err, "huge.pbrt: 3 meshes with 30000000 faces will take 5.2 GiB of memory"),
               command.starts_with("info"))
         << ending.err;
   }
@@ -328,7 +328,7 @@ TEST_F(Bounds, InfoSaysWhatTheMachineLeaves) {
   refuse({"info", "tiny.pbrt", "--machine"}, "takes no file");
 }
 
-// Restores the CPU affinity of this process, which programs that it starts inherit.
+// Restores the CPU affinity of this process, which child processes inherit.
 class AffinityScope {
  public:
   AffinityScope() { sched_getaffinity(0, sizeof before_, &before_); }
@@ -359,7 +359,7 @@ TEST_F(Bounds, ThreadsKeepToTheAffinity) {
   EXPECT_EQ(json("a.json").at("threads"), 1);
 }
 
-// A group of version 1 made by hand; skipped where the user may not make one.
+// A version 1 control group created by hand; skipped if the user may not create one.
 TEST_F(Bounds, ThreadsAndMemoryKeepToTheControlGroup) {
   const Ending made = run_shell(
       "g=/sys/fs/cgroup/cpu/lanthorn-test-$$ m=/sys/fs/cgroup/memory/lanthorn-test-$$\n"

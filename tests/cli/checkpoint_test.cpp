@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Checkpoints of the program without the ten minutes between them.
+// The program's checkpoints, without the ten minutes between them.
 #include "checkpoint.h"
 
 #include <gtest/gtest.h>
@@ -49,7 +49,7 @@ TEST_F(CheckpointFile, IsRemovedAfterTheRenderIfNobodyAskedForIt) {
     saved.finish(state_of(3), /*interrupted=*/false);
     EXPECT_EQ(fs::exists(file_), !automatic);
   }
-  // What another render saved there in the meantime is not its own.
+  // The file now holds another render's state, which is not its own.
   Checkpoints unused = checkpoints(true);
   unused.finish(state_of(3), /*interrupted=*/false);
   EXPECT_TRUE(fs::exists(file_));

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The program run in a folder of its own, and what tests expect of it: exit codes, messages, files.
+// Runs the program in a separate folder, and checks exit codes, messages and files.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -22,7 +22,8 @@ using test::Ending;
 using test::file_bytes;
 using Words = std::vector<std::string>;
 
-// A glass ball on a floor under a lamp, and a spot light: direct, indirect and caustic light, and a lamp in view.
+// A glass ball on a floor under an area light, and a spot light: direct, indirect and caustic light, and a visible
+// light.
 inline const char* const tiny_scene = R"(LookAt 0 1 4.4  0 1 0  0 1 0
 Camera "perspective" "float fov" [40]
 Film "rgb" "string filename" "tiny.exr" "integer xresolution" [16] "integer yresolution" [16]
@@ -49,21 +50,21 @@ inline Words operator+(Words a, const Words& b) {
   return a;
 }
 
-/// An empty folder with `tiny.pbrt` in which the program runs.
+/// A temporary folder that contains only `tiny.pbrt`, in which the program runs.
 class Cli : public testing::Test {
  protected:
   Cli() { dir_.write("tiny.pbrt", tiny_scene); }
 
   Ending run(const Words& words) const {
     Ending ending = ChildProcess(LANTHORN_PROGRAM, words, dir_.path()).wait();
-    // The warning says that a render lost light, which no test may cause.
+    // The warning means that a render lost light, which no test may cause.
     EXPECT_FALSE(contains(ending.err, "samples were not finite")) << testing::PrintToString(words) << '\n'
                                                                   << ending.err;
     return ending;
   }
 
-  /// Runs the program by way of the shell, for its redirections and limits. In `command`, L is the program; `exec L`
-  /// lets signals reach it.
+  /// Runs the program in a shell, for redirections and limits. In `command`, L is the program; `exec L` lets signals
+  /// reach it.
   static Words shell(const std::string& command) {
     return {"-c", "L() { exec '" LANTHORN_PROGRAM "' \"$@\"; }\n" + command};
   }
@@ -78,7 +79,7 @@ class Cli : public testing::Test {
     return ending;
   }
 
-  /// The program must exit with 2, say one clear line that contains `says`, and leave the folder as it was.
+  /// The program must exit with 2, print one clear line that contains `says`, and leave the folder unchanged.
   std::string refuse(const Words& words, const std::string& says) const {
     const Words before = files();
     const Ending ending = run(words);

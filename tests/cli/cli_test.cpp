@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The program as its users meet it: exit codes, messages, and the files that it leaves or does not leave.
+// The program as users experience it: exit codes, messages, and files written or not written.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -64,7 +64,7 @@ TEST_F(Cli, ConvertTranslatesToPbrtV4) {
   EXPECT_EQ(ending.out, "new.pbrt: old/scene.pbrt as a pbrt-v4 file\n");
   EXPECT_TRUE(contains(ending.err, "old/scene.pbrt:5:1: the roughness \"sigma\"")) << ending.err;
   EXPECT_TRUE(contains(succeed({"info", "new.pbrt"}).out, "2 diffuse"));
-  refuse({"convert", "new.pbrt", "newer.pbrt"}, "Film \"rgb\" in line 1 is of pbrt-v4 already");
+  refuse({"convert", "new.pbrt", "newer.pbrt"}, "Film \"rgb\" in line 1 belongs to pbrt-v4");
   refuse({"convert", "old/scene.pbrt", "old/part.pbrt"}, "part.pbrt, which the scene reads");
   refuse({"convert", "old/scene.pbrt", "old/scene.pbrt"}, "is the scene file");
   refuse({"convert", "old/scene.pbrt", "new.txt"}, "expected a name that ends in .pbrt");
@@ -90,9 +90,9 @@ TEST_F(Cli, RenderSaysWhatTheDepthLimitCutsOff) {
     EXPECT_TRUE(contains(succeed({"info", file}).out, "depth      ended paths that still had ")) << file;
     EXPECT_TRUE(contains(succeed({"info", file, "--json"}).out, "\"cut_share\"")) << file;
   }
-  // Who chooses a limit knows it.
+  // No warning if the user chose the limit.
   EXPECT_EQ(render_milk("file.pbrt", {"-o", "b.state", "-d", "3"}).err, "");
-  // The default leaves room for what media scatter.
+  // The default limit is high enough for the media's scattering.
   EXPECT_EQ(render_milk("milk.pbrt", {"-o", "c.state"}).err, "");
   EXPECT_TRUE(contains(succeed({"info", "c.state"}).out, "max-depth  4096"));
 }
@@ -120,7 +120,7 @@ TEST_F(Cli, DenoiseAfterwardsIsTheSameAsWhileRendering) {
   expect_equal_files("b.exr", "a.exr");
   const Ending ending = succeed({"denoise", "plain.exr", "-o", "c.png"});
   EXPECT_TRUE(contains(ending.out, "c.png: plain.exr without noise, error "));
-  const Image now = read_image(path("a.png")), later = read_image(path("c.png"));  // from 16 bits of the noise
+  const Image now = read_image(path("a.png")), later = read_image(path("c.png"));  // stores noise with 16 bits
   for (std::size_t i = 0; i < now.pixels.size(); ++i) EXPECT_NEAR(later.pixels[i], now.pixels[i], 0.02f) << i;
   succeed({"denoise", "plain.exr", "-o", "d.exr", "--replace"});
   const Image clean = read_image(path("d.exr")), both = read_image(path("a.exr"));
@@ -142,13 +142,13 @@ TEST_F(Cli, VersionIsANumber) {
   const Ending ending = succeed({"--version"});
   EXPECT_TRUE(std::isdigit(static_cast<unsigned char>(ending.out.front()))) << ending.out;
   EXPECT_EQ(std::count(ending.out.begin(), ending.out.end(), '\n'), 1) << ending.out;
-  // The README says how to cite it.
+  // The README contains the text for citations.
   std::ifstream in(LANTHORN_SOURCE_DIR "/README.md");
   const std::string readme{std::istreambuf_iterator<char>(in), {}};
   EXPECT_TRUE(contains(readme, "{Version " + ending.out.substr(0, ending.out.size() - 1) + "}"));
 }
 
-// A start with them takes .25 s of CPU.
+// Loading them takes 0.25 s of CPU time.
 TEST_F(Cli, StartsWithoutTheLibrariesThatReadImages) {
   const Ending libraries = ChildProcess("/usr/bin/ldd", {LANTHORN_PROGRAM}, dir_.path()).wait();
   EXPECT_TRUE(contains(libraries.out, "libembree")) << libraries.out << libraries.err;
@@ -172,7 +172,7 @@ TEST_F(Cli, LoadsThemForNoOtherFilesThanTheyRead) {
 
 TEST_F(Cli, ListNamesIntegratorsFirstAndTheirParameters) {
   const Ending all = succeed({"list"});
-  const std::ptrdiff_t by_opengl = contains(all.out, "\nispm ") ? 2 : 0;  // where that is built in
+  const std::ptrdiff_t by_opengl = contains(all.out, "\nispm ") ? 2 : 0;  // only if built in
   EXPECT_EQ(std::count(all.out.begin(), all.out.end(), '\n'),
             static_cast<std::ptrdiff_t>(integrators.size()) + by_opengl);
   for (const std::string& name : integrators) EXPECT_TRUE(contains("\n" + all.out, "\n" + name + " ")) << name;
@@ -196,7 +196,7 @@ TEST_F(Cli, InfoCountsWhatIsInAScene) {
   EXPECT_EQ(info["quadrics"], 1);
   EXPECT_EQ(info["patches"], 0);
   EXPECT_EQ(info["instances"], 0);
-  EXPECT_EQ(info["lights"]["area"], 1);  // a lamp of two triangles
+  EXPECT_EQ(info["lights"]["area"], 1);  // an area light of two triangles
   EXPECT_EQ(info["lights"]["spot"], 1);
   EXPECT_GE(info["materials"]["dielectric"], 1);
   EXPECT_FLOAT_EQ(info["bounds"]["max"][1].get<float>(), 2);
@@ -236,7 +236,7 @@ void expect_plausible_statistics(const nlohmann::json& s, const std::string& int
   EXPECT_EQ(s["scene"]["triangles"], 6);
   EXPECT_EQ(s["settings"]["identity"]["integrator"], integrator);
   const int light_paths = s["photons_emitted"];
-  if (integrator == "auto")  // a quarter of 900, or another of its choices
+  if (integrator == "auto")  // a quarter of 900, or the other choices
     EXPECT_TRUE(light_paths == 225 || light_paths == 450 || light_paths == 900 || light_paths == 1800 ||
                 light_paths == 3600)
         << light_paths;
@@ -289,7 +289,7 @@ TEST_F(Cli, RendersByEveryIntegratorToEveryKindOfFile) {
   }
 }
 
-// The radius in media of the last pass, which shrinks by the estimator's dimensions.
+// The media radius of the last pass; it shrinks according to the estimator's dimension.
 TEST_F(Cli, ReportsTheRadiusInMedia) {
   dir_.write(
       "fog.pbrt",
@@ -309,11 +309,11 @@ TEST_F(Cli, ReportsTheRadiusInMedia) {
   EXPECT_NEAR(of_third_pass("probppm", "volume=beam"), 0.25 * std::sqrt(shrunk), 1e-6);
   EXPECT_NEAR(of_third_pass("sppm", "volume=beams"), 0.25 * shrunk, 1e-6);
   EXPECT_NEAR(of_third_pass("vcm", "volume=point+beam+photon-beam+beams"), 0.25 * std::cbrt(shrunk),
-              1e-6);  // that of points
+              1e-6);  // the point estimator
   EXPECT_EQ(of_third_pass("vcm", "volume=path"), 0);
   for (const char* keeps_it : {"photonmap", "reversephotonmap"})
     EXPECT_NEAR(radius(keeps_it, {"-p", "3", "--set", "volume-radius=0.25"}), 0.25, 1e-6) << keeps_it;
-  const double found = radius("probppm", {"-p", "1"});  // by a pilot: at most a tenth of the scene's
+  const double found = radius("probppm", {"-p", "1"});  // chosen by a pilot: at most a tenth of the scene's size
   EXPECT_GT(found, 0);
   EXPECT_LT(found, 0.7);
 }
@@ -343,7 +343,7 @@ TEST_F(Cli, WritesPhotons) {
   refuse(photons, "--output");
 }
 
-// Where few photons land in view, they are aimed: by the default method, too.
+// Where few photons land in view, they are aimed, also by the default method.
 TEST_F(Cli, PhotonsOfTheDefaultMethodAreThoseOfVcm) {
   dir_.write("large.pbrt", tiny_scene + std::string("LightSource \"distant\" \"point3 from\" [1 3 2]\nShape "
                                                     "\"bilinearmesh\" \"point3 P\" [-300 -1 -300 300 -1 -300 -300 "
@@ -366,7 +366,7 @@ TEST_F(Cli, MeasuresConvergence) {
   const nlohmann::json report = json("c.json");
   ASSERT_EQ(report["points"].size(), 5u);
   EXPECT_EQ(report["points"][4]["passes"], 16);
-  EXPECT_LT(report["variance_slope"].get<double>(), -0.8);  // -1 of independent samples, less of stratified ones
+  EXPECT_LT(report["variance_slope"].get<double>(), -0.8);  // -1 for independent samples, smaller for stratified ones
   EXPECT_GT(report["points"][0]["rms_error"], report["points"][4]["rms_error"]);
   EXPECT_GT(fs::file_size(path("c.svg")), 500u);
   refuse(converge + Words{"9x8", "--reference", "reference.exr"}, "8 x 8");
@@ -386,13 +386,13 @@ TEST_F(Cli, RendersModelsWithoutCameraOrLight) {
     EXPECT_TRUE(contains(ending.err, std::string(name) + ": the file has no camera and no light: a view of all of it"));
     EXPECT_TRUE(contains(ending.err, "in a studio of three soft lamps, stands in"));
     const Image picture = read_image(folder / "ball.png");
-    EXPECT_NE(picture.pixels[0], picture.pixels[3 * (8 * 16 + 8)]);  // the background, the model
+    EXPECT_NE(picture.pixels[0], picture.pixels[3 * (8 * 16 + 8)]);  // the background differs from the model
     EXPECT_TRUE(contains(succeed({"info", name}).out, "1280 x 720 pixels"));
   }
   dir_.write("broken.gltf", "{\"asset\": {\"version\": \"2.0\"}, \"scene\": 4}");
   dir_.write("model.stl", "solid");
   refuse({"render", "broken.gltf", "-o", "a.png"}, "broken.gltf#/scene: is 4, but there are 0 scenes");
-  refuse({"render", "model.stl", "-o", "a.png"}, "not a kind of scene file that Lanthorn reads");
+  refuse({"render", "model.stl", "-o", "a.png"}, "unknown kind of scene file");
 }
 
 TEST_F(Cli, WritesToTheSceneFilesOwnNameAndReportsProgress) {
@@ -416,7 +416,7 @@ TEST_F(Cli, SceneErrorsNameFileLineAndColumn) {
   struct Case {
     const char *line, *place, *says;
   };
-  // The directive goes in at line 5.
+  // The directive is inserted at line 5.
   const Case cases[]{{"  Shap \"sphere\"", "bad.pbrt:5:3: ", "Shap"},
                      {"Shape \"sphere\" \"float radius\" [1", "bad.pbrt:", ""},
                      {"Shape \"sphere\" \"float radius\" [\"x\"]", "bad.pbrt:5:", "expected a number"},
@@ -483,8 +483,8 @@ TEST_F(Cli, WrongFilesAreRefusedBeforeTheRender) {
   refuse({"nosuch"}, "subcommand");
 }
 
-// That states are the same bytes for all methods is tested in tests/transport; here, that the program's options lead
-// there: of methods with and without photons, and with passes that depend on each other.
+// tests/transport checks that all methods give equal states; this test checks that the program's options lead there,
+// for methods with and without photons, and for methods whose passes depend on each other.
 const Words some_integrators{"auto", "path", "probppm", "sppm"};
 
 TEST_F(Cli, ThreadCountChangesNoByte) {
@@ -525,7 +525,7 @@ TEST_F(Cli, ResumingWithOtherSettingsIsRefusedNamingThem) {
   refuse_resume({"-i", "path"}, "a.state");
 }
 
-// The file names are those that the scene gives: one is not UTF-8.
+// Uses the scene's file names, one of which is not valid UTF-8.
 const char* const scene_of_files = R"(LookAt 0 1 4.4  0 1 0  0 1 0
 Camera "perspective" "float fov" [40]
 Film "rgb" "integer xresolution" [8] "integer yresolution" [8]
@@ -550,7 +550,7 @@ TEST_F(Cli, AChangeOfAnyFileOfTheSceneIsRefused) {
                                                    {"parts/floor.pbrt", floor_part},
                                                    {"parts/wall.ply", wall},
                                                    {"parts/caf\xe9.pbrt", "Material \"diffuse\"\n"}};
-  // What makes another file of it.
+  // Additions that change the file's hash.
   const std::map<std::string, std::string> more{{"lamp.spd", "710 3\n"},
                                                 {"image.pfm", " "},
                                                 {"parts/floor.pbrt", "# more\n"},
@@ -638,7 +638,7 @@ TEST_F(Cli, InterruptedRenderSavesWhatItHas) {
         LANTHORN_PROGRAM,
         {"render", "tiny.pbrt", "-i", "path", "-r", "64x64", "--time", "10m", "-o", "a.exr", "-o", "a.state"},
         dir_.path());
-    // The first pass is reported at once: then the render is under way.
+    // The first pass is reported immediately: then the render is running.
     while (!contains(child.err_so_far(), "pass 1") && !child.has_ended())
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
     child.send(signal);
@@ -687,9 +687,9 @@ TEST_F(Cli, CompareExitCodes) {
 }
 
 TEST_F(Cli, DamagedScenesAreRenderedOrRefused) {
-  std::mt19937 random(20261);  // its numbers are the same everywhere, those of the distributions are not
+  std::mt19937 random(20261);  // portable, unlike the distributions of the standard library
   int refused = 0;
-  for (int i = 0; i < 30; ++i) {  // more, of whole scenes: tests/fuzz/mutate_scenes.py
+  for (int i = 0; i < 30; ++i) {  // more, for whole scenes: tests/fuzz/mutate_scenes.py
     std::string text = tiny_scene;
     const std::size_t changes = 1 + random() % 3;
     for (std::size_t k = 0; k < changes; ++k) {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The table of options: what is read is printed so that it is read again, and every entry has its help.
+// The option table: printed values parse to the same values, and every entry has help.
 #include <CLI/CLI.hpp>
 #include <map>
 #include <set>
@@ -13,7 +13,7 @@ namespace {
 
 using namespace program;
 
-// Words of each type, which are not the default of any option; the first is printed as it is typed.
+// Valid words of each type, different from all options' defaults; the first is printed as it is typed.
 const std::map<std::string, Words> samples{
     {"COUNT", {"17", "0.5k"}},
     {"NUMBER", {"1.25", "0.2"}},
@@ -38,7 +38,7 @@ const std::map<std::string, Words> samples{
     {"NAME=VALUE", {"name=a b=c", "radius=0.1"}},
     {"FIRST:END", {"0:50", "1k:2k"}},
 };
-// Text that no option of the type takes.
+// Text that no option of the type accepts.
 const std::map<std::string, Words> wrong{
     {"COUNT", {"", "many", "1.5", "-1"}},
     {"NUMBER", {"", "nan", "one", "1k"}},
@@ -64,7 +64,7 @@ class CommandLine : public Cli {
   CommandLine() : before_(fs::current_path()) { fs::current_path(dir_.path()); }
   ~CommandLine() override { fs::current_path(before_); }
 
-  /// What `render` makes of the words.
+  /// Parses the words as `render` does.
   static RenderCommand read(const Words& words) {
     RenderCommand render;
     CLI::App app;
@@ -75,7 +75,7 @@ class CommandLine : public Cli {
     app.parse(reversed);
     return render;
   }
-  /// The words that a shell makes of the text.
+  /// Splits the text into words as a shell does.
   Words in_shell(const std::string& text) const {
     std::istringstream lines(run_shell("printf '%s\\n' " + text).out);
     Words words;
@@ -169,7 +169,7 @@ TEST_F(CommandLine, IsQuotedForAShell) {
   EXPECT_EQ(read_again.output.measures_exposure, false);
 }
 
-// Of a picture that a window shows: scenes with and without an exposure of their own.
+// For a picture shown in a window: scenes with and without an exposure of their own.
 TEST_F(CommandLine, HasTheExposureThatIsShown) {
   const auto line = [](float stops, bool is_measured, bool film_measures) {
     RenderCommand render;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// What a stranger meets in the first minute.
+// A new user's first minute with the program.
 #include <signal.h>
 #include <sys/stat.h>
 
@@ -51,7 +51,7 @@ TEST_F(FirstSight, ThePictureIsWrittenAtDoublingTimes) {
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
   EXPECT_EQ(child.wait().exit_code, 0);
-  // After about 0, .05, .1, .2, .4, .8 and 1.6 seconds and at the end; a busy machine misses some.
+  // Written after about 0, .05, .1, .2, .4, .8 and 1.6 seconds and at the end; a busy machine misses some.
   EXPECT_GE(writings, 2);
   EXPECT_LE(writings, 9);
 }
@@ -81,7 +81,7 @@ float brightest(const fs::path& path) {
   return *std::max_element(image.pixels.begin(), image.pixels.end());
 }
 
-// A floor under a lamp of 0.01 cd, which a picture at exposure 0 would not show.
+// A floor under a lamp of 0.01 cd, which would be invisible at exposure 0.
 const char* const dim_model = R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 1]}],
   "nodes": [{"mesh": 0}, {"translation": [0, 0, 1], "extensions": {"KHR_lights_punctual": {"light": 0}}}],
   "extensions": {"KHR_lights_punctual": {"lights": [{"type": "point", "intensity": 0.01}]}},
@@ -98,7 +98,7 @@ TEST_F(FirstSight, ModelsWithoutAnExposureGetOne) {
   EXPECT_GT(brightest(path("a.png")), 0.8f);
   const std::size_t at = said.find("a.png: --exposure ");
   ASSERT_NE(at, said.npos) << said;
-  // What is said gives the same picture again, and so does a state.
+  // The reported exposure reproduces the picture, and so does a state.
   const std::string stops = said.substr(at + 18, said.find(',', at) - at - 18);
   succeed({"merge", "a.state", "-o", "merged.png", "--reproducible"});
   succeed({"merge", "a.state", "-o", "same.png", "--reproducible", "--exposure", stops});
@@ -107,13 +107,13 @@ TEST_F(FirstSight, ModelsWithoutAnExposureGetOne) {
   EXPECT_LT(brightest(path("a.png")), 0.2f);
 }
 
-// The colour of the pixel, as a linear value of the screen.
+// The pixel's colour as a linear display value.
 std::vector<float> shown_at(const fs::path& path, int x, int y) {
   const Image image = read_image(path, ColorEncoding::srgb);
   return {image.at(x, y, 0), image.at(x, y, 1), image.at(x, y, 2)};
 }
 
-// An unlit cube beside a lamp of 54351 cd, for which the exposure is -8: its colour is meant for the screen.
+// An unlit cube beside a light of 54351 cd, for which the exposure is -8: its colour is meant for the display.
 TEST_F(FirstSight, UnlitColoursAreShownAsTheyAre) {
   const std::string model = LANTHORN_SOURCE_DIR "/tests/scenes/models/unlit-and-lamp.gltf";
   succeed({"render", model, "-i", "path", "-r", "64x48", "-p", "4", "-o", "a.png", "-o", "a.exr", "-o", "a.state"});
@@ -122,7 +122,7 @@ TEST_F(FirstSight, UnlitColoursAreShownAsTheyAre) {
   int cube = 0;
   for (int y = 0; y < 48; ++y)
     for (int x = 0; x < 64; ++x) {
-      if (std::fabs(emission.at(x, y, 0) - 0.8f) > 1e-3f) continue;  // not the cube alone
+      if (std::fabs(emission.at(x, y, 0) - 0.8f) > 1e-3f) continue;  // not only the cube
       ++cube;
       const std::vector<float> shown = shown_at(path("a.png"), x, y);
       EXPECT_NEAR(shown[0], 0.8f, 0.005f) << x << " " << y;
@@ -130,7 +130,7 @@ TEST_F(FirstSight, UnlitColoursAreShownAsTheyAre) {
       EXPECT_NEAR(shown[2], 0.05f, 0.005f) << x << " " << y;
     }
   EXPECT_GT(cube, 20);
-  // So it is by every way to a PNG, and at any exposure.
+  // The same holds for every way to a PNG, and at any exposure.
   succeed({"develop", "a.exr", "developed.png", "--exposure", "auto"});
   succeed({"merge", "a.state", "-o", "merged.png"});
   succeed({"merge", "a.state", "-o", "bright.png", "--exposure", "3", "--view-transform", "filmic"});
@@ -143,7 +143,7 @@ TEST_F(FirstSight, UnlitColoursAreShownAsTheyAre) {
     }
 }
 
-// A picture in which nothing is seen says why.
+// If a picture shows nothing, the program says why.
 TEST_F(FirstSight, BlackPicturesSayWhy) {
   const auto reason = [&](const std::string& scene, const Words& more = {}) {
     dir_.write("black.pbrt", scene);
@@ -192,7 +192,7 @@ TEST_F(FirstSight, AnimationsAreShownAtATime) {
     EXPECT_TRUE(contains(succeed(Words{"info", "moves.gltf"} + frame).out, "bounds     (6, 0, 0) to (7, 1, 0)"));
   refuse({"info", "moves.gltf", "--at", "frame=24"}, "--at frame=24: expected seconds such as 1.5, or a frame such as");
   refuse({"info", "tiny.pbrt", "--at", "1"}, "tiny.pbrt: --at, --frames: only glTF files have animations");
-  // Another time is another scene.
+  // Another time gives another scene.
   const Words words{"render", "moves.gltf", "-i", "path", "-r", "8x8", "-p", "1", "--at"};
   succeed(words + Words{"0", "-o", "a.state"});
   refuse(words + Words{"1", "-o", "b.state", "--resume", "a.state"}, "another");

@@ -72,7 +72,7 @@ TEST_F(CliIbl, PrintsItsReport) {
 }
 
 TEST_F(CliIbl, WritesAllFilesOrNone) {
-  // The limit (100 KB) lets sh.json and contact.png through and stops the table.
+  // The limit (100 KB) allows sh.json and contact.png, but not the table.
   const auto limited = [&] {
     const Ending ending = run_shell("ulimit -f 200; L ibl sky.exr -o out -q --maps sh,brdf --formats ktx2");
     EXPECT_EQ(ending.exit_code, 2);
@@ -143,11 +143,11 @@ TEST_F(CliIbl, RefusesWhatIsNoEnvironmentAndWritesNothing) {
   refuse({"ibl", "text.hdr", "-o", "out"}, "text.hdr");
   refuse({"ibl", "missing.hdr", "-o", "out"}, "missing.hdr: no such file");
   write_exr(path("odd.exr"), Image(50, 20, {"R", "G", "B"}));
-  refuse({"ibl", "odd.exr", "-o", "out"}, "odd.exr: is no environment: it is 50 x 20 pixels");
+  refuse({"ibl", "odd.exr", "-o", "out"}, "odd.exr: is not an environment: it is 50 x 20 pixels");
   write_exr(path("black.exr"), Image(64, 32, {"R", "G", "B"}));
-  refuse({"ibl", "black.exr", "-o", "out"}, "black.exr: is no environment: it holds no light");
+  refuse({"ibl", "black.exr", "-o", "out"}, "black.exr: is not an environment: it holds no light");
   dir_.write("empty.hdr", "");
-  refuse({"ibl", "empty.hdr", "-o", "out"}, "empty.hdr: the file is no image");
+  refuse({"ibl", "empty.hdr", "-o", "out"}, "empty.hdr: the file is not a supported image");
   dir_.write("nowhere.pfm", "PF\n0 0\n-1.0\n");
   refuse({"ibl", "nowhere.pfm", "-o", "out"}, "nowhere.pfm: the file is empty");
 }

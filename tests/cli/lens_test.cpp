@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// A model in an environment of the user's choice, through his own lens, from all around.
+// A model in a user-chosen environment, through a user-chosen lens, from all sides.
 #include "lens.h"
 
 #include <glm/geometric.hpp>
@@ -19,7 +19,7 @@ using namespace program;
 class Lens : public Cli {
  protected:
   Lens() {
-    // A long thin box, 4 x 1 x 1, around (5, 0, 0): it is framed.
+    // A long thin box, 4 x 1 x 1, around (5, 0, 0), which the camera frames.
     dir_.write("bar.obj",
                "v 3 -.5 -.5\nv 7 -.5 -.5\nv 7 .5 -.5\nv 3 .5 -.5\nv 3 -.5 .5\nv 7 -.5 .5\nv 7 .5 .5\nv 3 .5 .5\n"
                "f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 4 8 7 3\nf 2 3 7 6\nf 1 5 8 4\n");
@@ -54,7 +54,7 @@ class Lens : public Cli {
   }
 };
 
-// A lens of 50 mm before a film of 24 mm has 27 degrees; at f/2 it is 25 mm wide.
+// A 50 mm lens with a film height of 24 mm has a field of view of 27 degrees; at f/2 its diameter is 25 mm.
 TEST_F(Lens, AnFNumberIsThatOfAPhotographer) {
   const SharedScene tiny = scene("tiny.pbrt");
   const ViewDescription view = changed(*tiny, {.fov = 26.9915f, .aperture = 2.0f, .focus = LensChanges::Focus(3.0f)});
@@ -65,12 +65,12 @@ TEST_F(Lens, AnFNumberIsThatOfAPhotographer) {
 
 TEST_F(Lens, FocusesOnWhatTheMiddleSees) {
   const SharedScene tiny = scene("tiny.pbrt");
-  // The eye is at z = 4.4 and looks through y = 1 at the wall at z = -1; lower, at the front of the glass ball.
+  // The eye is at z = 4.4 and looks through y = 1 at the wall at z = -1; below that, at the front of the glass ball.
   EXPECT_NEAR(lens_of(changed(*tiny, {.aperture = 8.0f})).focal_distance, 5.4f, 1e-4f);
   dir_.write("ball.pbrt", std::string("LookAt 0.2 .4 4.2  0.2 .4 0  0 1 0\nCamera \"perspective\"\n") +
                               std::string(tiny_scene).substr(std::string(tiny_scene).find("Film")));
   EXPECT_NEAR(lens_of(changed(*scene("ball.pbrt"), {.aperture = 8.0f})).focal_distance, 3.6f, 1e-4f);
-  // A model that is framed, in the units of the camera.
+  // A framed model, in units of the camera.
   const ViewDescription bar = changed(*scene("bar.obj"), {.aperture = 8.0f, .focus = LensChanges::Focus()});
   const Transform to_camera = camera_placement(bar).inverted();
   EXPECT_GT(lens_of(bar).focal_distance, 1);
@@ -78,7 +78,7 @@ TEST_F(Lens, FocusesOnWhatTheMiddleSees) {
   EXPECT_GT(lens_of(bar).focal_distance, to_camera.point({5, 0, 0}).z - 2.2f);
 }
 
-// What a page tells of a lens is what the options said; a pinhole has no focus.
+// A page shows the lens as the options set it; a pinhole has no focus.
 TEST_F(Lens, TellsWhatItIs) {
   const SharedScene tiny = scene("tiny.pbrt");
   const ViewDescription open = changed(*tiny, {.fov = 30.0f, .aperture = 2.0f, .focus = LensChanges::Focus(3.0f)});
@@ -93,7 +93,7 @@ TEST_F(Lens, TellsWhatItIs) {
   EXPECT_FALSE(program::lens_of(closed).focus);
 }
 
-// Of 16 x 16 pixels over 40 degrees, 5.5 below the middle: the floor, a metre below the eye.
+// 5.5 pixels below the middle of 16 x 16 pixels over 40 degrees: the floor, a metre below the eye.
 TEST_F(Lens, FocusesOnWhatAPixelSees) {
   const SharedScene tiny = scene("tiny.pbrt");
   const ViewDescription& view = description_of(*tiny).view;
@@ -104,7 +104,7 @@ TEST_F(Lens, FocusesOnWhatAPixelSees) {
 
 TEST_F(Lens, OrbitsAroundTheMiddleOfTheScene) {
   const SharedScene tiny = scene("tiny.pbrt");
-  const Point middle(0, 1, 0);  // of the bounds, at the height of the eye
+  const Point middle(0, 1, 0);  // centre of the bounds, at the height of the eye
   const auto expect_eye = [&](const Orbit& orbit, const Point& expected) {
     const ViewDescription view = changed(*tiny, {.orbit = orbit});
     EXPECT_LT(glm::length(eye_of(view) - expected), 1e-3f) << orbit.yaw << ' ' << orbit.pitch << ' ' << eye_of(view).x;
@@ -112,14 +112,14 @@ TEST_F(Lens, OrbitsAroundTheMiddleOfTheScene) {
     EXPECT_LT(glm::length(glm::cross(axis, middle - eye_of(view))), 1e-3f) << "still in the middle";
   };
   const float r = 4.4f;
-  // pbrt's worlds are left-handed: to the right of a camera at +z lies -x.
+  // pbrt's worlds are left-handed: -x is to the right of a camera at +z.
   expect_eye({0, 0}, {0, 1, r});
   expect_eye({90, 0}, {-r, 1, 0});
   expect_eye({-90, 0}, {r, 1, 0});
   expect_eye({180, 30}, {0, 1 + r * 0.5f, -r * std::sqrt(0.75f)});
-  // Not over the pole.
+  // The camera does not pass over the pole.
   EXPECT_GT(eye_of(changed(*tiny, {.orbit = Orbit{0, 200}})).z, 0);
-  // A model that is framed, in the right-handed world of OBJ files.
+  // A framed model, in the right-handed world of OBJ files.
   const SharedScene bar = scene("bar.obj");
   const Point before = eye_of(description_of(*bar).view) - Point(5, 0, 0),
               after = eye_of(changed(*bar, {.orbit = Orbit{90, 0}})) - Point(5, 0, 0);
@@ -135,7 +135,7 @@ TEST_F(Lens, ATurntableStaysEquallyFarAway) {
   const float distance = glm::length(eye_of(views[0]) - middle);
   for (const ViewDescription& view : views) {
     EXPECT_NEAR(glm::length(eye_of(view) - middle), distance, 1e-3f * distance);
-    // All corners are in the picture.
+    // All corners are inside the picture.
     const Transform to_camera = camera_placement(view).inverted();
     const float tangent = std::tan(0.5f * lens_of(view).fov * 3.14159f / 180);
     for (int corner = 0; corner < 8; ++corner) {
@@ -147,7 +147,7 @@ TEST_F(Lens, ATurntableStaysEquallyFarAway) {
   EXPECT_LT(glm::length(eye_of(views[4]) + eye_of(views[0]) - 2.0f * Point(5, eye_of(views[0]).y, 0)), 1e-2f);
 }
 
-// The same bar on a ground that is far larger is framed as if it stood alone, from everywhere.
+// The same bar on a much larger ground is framed from every direction as if it stood alone.
 TEST_F(Lens, GroundsAreNotFramed) {
   dir_.write("stage.obj", bytes("bar.obj") + "o ground\nusemtl g\nv -90 -.5 -90\nv 90 -.5 -90\nv 90 -.5 90\n" +
                               "v -90 -.5 90\nf 9 12 11 10\n");
@@ -163,9 +163,9 @@ TEST_F(Lens, GroundsAreNotFramed) {
 
 TEST_F(Lens, BadOptionsSayWhatWasExpected) {
   dir_.write("flat.pbrt", "Camera \"orthographic\"\nWorldBegin\nLightSource \"infinite\"\nShape \"sphere\"\n");
-  refuse(quick("flat.pbrt", {"--fov", "30", "-o", "a.png"}), "--fov: the scene's camera is no perspective camera");
-  refuse(quick("flat.pbrt", {"--aperture", "8", "-o", "a.png"}), "--aperture: the scene's camera is no perspective");
-  refuse(quick("tiny.pbrt", {"--focus", "3", "-o", "a.png"}), "expected --aperture, too");
+  refuse(quick("flat.pbrt", {"--fov", "30", "-o", "a.png"}), "--fov: the scene's camera is not a perspective camera");
+  refuse(quick("flat.pbrt", {"--aperture", "8", "-o", "a.png"}), "--aperture: the scene's camera is not a perspective");
+  refuse(quick("tiny.pbrt", {"--focus", "3", "-o", "a.png"}), "add --aperture");
   refuse(quick("tiny.pbrt", {"--fov", "180", "-o", "a.png"}), "--fov 180: expected a number from 0.01 to 179");
   refuse(quick("tiny.pbrt", {"--orbit", "30", "-o", "a.png"}), "--orbit 30: expected two numbers of degrees");
   refuse(quick("tiny.pbrt", {"--camera", "Wide", "-o", "a.png"}), "--camera: only glTF files have several cameras");
@@ -202,7 +202,7 @@ double brightness(const Image& image) {
   return sum / static_cast<double>(image.pixels.size());
 }
 
-// A ball in the light of a lamp behind the camera; its dark side is not made bright.
+// A ball lit from behind the camera; its dark side is not brightened.
 TEST_F(Lens, PicturesOfATurntableHaveOneExposure) {
   dir_.write("moon.pbrt",
              "LookAt 0 0 5  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" 30\nFilm \"rgb\"\nWorldBegin\n"
@@ -216,7 +216,7 @@ TEST_F(Lens, PicturesOfATurntableHaveOneExposure) {
   EXPECT_LT(brightness(read_image(path("m.1.png"))), 0.5 * brightness(read_image(path("m.0.png"))));
 }
 
-// A triangle that moves to the right, in a file without a camera, moves in the picture.
+// In a file without a camera, a triangle that moves to the right moves in the picture.
 TEST_F(Lens, FramesWithoutACameraHaveThatOfTheFirst) {
   nlohmann::json file = nlohmann::json::parse(bytes("moves.gltf"));
   file.erase("cameras");
@@ -236,7 +236,7 @@ TEST_F(Lens, FramesWithoutACameraHaveThatOfTheFirst) {
   EXPECT_GT(column("f.1.exr"), column("f.0.exr") + 2);
 }
 
-// The scene has warnings: of two cameras, and of the studio.
+// The scene causes warnings: about two cameras, and about the studio.
 TEST_F(Lens, FramesSayEachWarningOnce) {
   const auto count = [](const std::string& text, const std::string& part) {
     int n = 0;
@@ -291,7 +291,8 @@ TEST_F(Lens, EnvironmentsLightAnyScene) {
             mean_of("bar.obj", {"--environment", "sunny", "--environment-rotate", "180"}));
   refuse(quick("bar.obj", {"-o", "a.png", "--environment", "studoi"}),
          "--environment studoi: expected an existing file, or studio or overcast or sunny; did you mean studio?");
-  refuse(quick("bar.obj", {"-o", "b.png", "--environment", "moves.gltf"}), "moves.gltf: the file is no image");
+  refuse(quick("bar.obj", {"-o", "b.png", "--environment", "moves.gltf"}),
+         "moves.gltf: the file is not a supported image");
 }
 
 TEST_F(Lens, PicturesForADisplayHaveManyFormats) {

@@ -41,13 +41,13 @@ class Manual : public Cli {
     }
     return names;
   }
-  /// The pages: the program's own and one for each subcommand.
+  /// The man pages: the program's own and one per subcommand.
   Words pages() const {
     Words names{"share/man/man1/lanthorn.1"};
     for (const std::string& command : commands()) names.push_back("share/man/man1/lanthorn-" + command + ".1");
     return names;
   }
-  /// What bash offers for the last of the words.
+  /// The completions that bash offers for the last word.
   Words complete(const Words& words) const {
     const std::string script =
         "source share/bash-completion/completions/lanthorn || exit 1\n"
@@ -69,7 +69,7 @@ bool is_among(const Words& words, const std::string& word) {
   return std::find(words.begin(), words.end(), word) != words.end();
 }
 
-// As troff writes it: \fB\-\-max\-depth\fR.
+// In troff's notation: \fB\-\-max\-depth\fR.
 std::string bold(const std::string& option) {
   std::string text = "\\fB";
   for (const char c : option) text += c == '-' ? "\\-" : std::string(1, c);
@@ -214,7 +214,8 @@ TEST_F(Manual, CompletionOffersEveryParameterOfTheIntegrator) {
     ASSERT_FALSE(parameters(integrator).empty());
     EXPECT_EQ(complete({"render", "-i", integrator, "tiny.pbrt", "--set", ""}), parameters(integrator));
   }
-  EXPECT_EQ(complete({"render", "--set", "chain"}), (Words{"chain-length="}));  // of mlt: no integrator is named
+  EXPECT_EQ(complete({"render", "--set", "chain"}),
+            (Words{"chain-length="}));  // a parameter of mlt: no integrator is named
   EXPECT_EQ(complete({"render", "--set", "chain-length", "=", "1"}), Words{});
   EXPECT_EQ(complete({"render", "--set", "chain-length", "=", "10", "ti"}), (Words{"tiny.pbrt"}));
 }

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The program under mpirun, all processes on this machine.
+// The program under mpirun, with all processes on this machine.
 #include <chrono>
 #include <thread>
 
@@ -12,7 +12,7 @@ namespace {
 class Mpi : public Cli {
  protected:
   static Words launched(int processes, const Words& words) {
-    constexpr const char* limit = "60";  // seconds, of processes that wait for each other for ever
+    constexpr const char* limit = "60";  // seconds, for processes that wait for each other for ever
     return Words{"--oversubscribe",         "--allow-run-as-root", "--timeout", limit, "--bind-to", "none", "-n",
                  std::to_string(processes), LANTHORN_PROGRAM} +
            words;
@@ -26,7 +26,7 @@ class Mpi : public Cli {
     EXPECT_EQ(ending.err, "") << "with --quiet";
     EXPECT_EQ(ending.out, "");
   }
-  // Of a state with passes from the first on, without gaps.
+  // The number of passes in a state; they must start with the first and have no gaps.
   std::uint64_t passes_of(const std::string& name) const {
     const nlohmann::json ranges = nlohmann::json::parse(succeed({"info", name, "--json"}).out)["passes"];
     EXPECT_EQ(ranges.size(), 1u) << ranges;
@@ -131,7 +131,7 @@ TEST_F(Mpi, ErrorsAreSaidOnce) {
 TEST_F(Mpi, ALauncherOfAnotherMpiIsNoticed) {
   const Ending ending = run_shell("PMI_SIZE=4 L render tiny.pbrt -p 1 -o a.exr");
   EXPECT_EQ(ending.exit_code, 2) << ending.err;
-  EXPECT_TRUE(contains(ending.err, "PMI_SIZE says that there are 4 processes")) << ending.err;
+  EXPECT_TRUE(contains(ending.err, "PMI_SIZE indicates 4 processes")) << ending.err;
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Renders that end when their picture is good enough, and what they say of it.
+// Renders that stop when their error is below a bound, and the error that they report.
 #include <gtest/gtest.h>
 
 #include <optional>
@@ -58,7 +58,7 @@ TEST_F(Noise, EndsAtTheSamePassAfterAResume) {
     succeed(until(method, "30%", {"--resume", "part.state", "-o", "resumed.exr", "-o", "resumed.state"}));
     expect_equal_files("whole.exr", "resumed.exr");
     expect_equal_files("whole.state", "resumed.state");
-    // It is good enough: nothing is left to do.
+    // The bound is already reached: nothing is left to do.
     succeed(until(method, "30%", {"--resume", "whole.state", "-o", "again.exr"}));
     expect_equal_files("whole.exr", "again.exr");
   }
@@ -93,7 +93,7 @@ TEST_F(Noise, InfoTellsTheError) {
   EXPECT_TRUE(contains(succeed({"info", "few.state"}).out, "not known: there are too few passes"));
 }
 
-// Whether the error is measured with the layers of an .exr, or by itself.
+// The same whether the error is measured together with an .exr's layers or alone.
 TEST_F(Noise, AllFilesTellTheSameError) {
   succeed(render({"-i", "vcm", "-p", "17", "-o", "a.png", "-o", "a.exr", "-o", "a.state"}));
   succeed(render({"-i", "vcm", "-p", "17", "-o", "b.png"}));

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// docs/options.md has every option and every parameter of the program, and no others, each with a reason.
+// docs/options.md lists exactly the program's options and parameters, each with a reason.
 #include <map>
 #include <set>
 #include <sstream>
@@ -10,7 +10,7 @@
 namespace lanthorn::options_page_test {
 namespace {
 
-/// Where a name is known: commands, or methods.
+/// For each name, the commands or methods that have it.
 using Places = std::map<std::string, std::set<std::string>>;
 
 Words split(const std::string& text, const std::string& separator) {

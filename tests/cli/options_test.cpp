@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// What is typed: options in any order, numbers with units, slips of the hand; and what must not be written over.
+// Command-line input: options in any order, numbers with units, typing errors; and files that must not be overwritten.
 #include <sys/stat.h>
 
 #include <cmath>
@@ -26,8 +26,8 @@ class CliOptions : public Cli {
     fs::create_directories(path(to).parent_path());
     fs::copy_file(path(from), path(to), fs::copy_options::overwrite_existing);
   }
-  /// Renders a scene of 16 x 16 pixels and a part of it, in two passes. `rounding`: share of a value. Estimates of the
-  /// error are means over neighbouring pixels, which a part lacks.
+  /// Renders a scene of 16 x 16 pixels and a crop of it, in two passes. `rounding`: tolerance relative to a value.
+  /// Error estimates are excluded: they average over neighbouring pixels, which a crop lacks.
   void expect_pixels_of_whole(const Words& words, float rounding = 0) const {
     SCOPED_TRACE(testing::PrintToString(words));
     succeed(words + Words{"-p", "2", "-o", "whole.exr"});
@@ -114,7 +114,7 @@ TEST_F(CliOptions, SlipsOfTheHandAreAnsweredWithTheNearestName) {
     return Words{"render", "tiny.pbrt", "-o", "a.exr", "-i", name, "--set", set};
   };
   expect(method("probpm", "alpha=1"), "probppm");
-  refuse(method("auto", "alpha=1"), "'auto' has no parameters; -i names a method that has");
+  refuse(method("auto", "alpha=1"), "'auto' has no parameters; -i selects another method");
   expect({"list", "ptah"}, "path");
   expect(quick({"--set", "roulete-depth=3"}), "roulette-depth");
   expect(quick({"--set", "guide=photon"}), "photons");
@@ -173,7 +173,7 @@ TEST_F(CliOptions, OutputsAreNoInputsByAnyName) {
 TEST_F(CliOptions, WhatCannotBeWrittenIsRefusedBeforeTheFirstPass) {
   fs::create_directory(path("d.exr"));
   fs::create_directory(path("d.ply"));
-  // So many passes that a render would be noticed.
+  // So many passes that an actual render would be noticed.
   const auto refuse_render = [&](const Words& more, const std::string& says) {
     refuse(Words{"render", "tiny.pbrt", "-q", "-p", "1M"} + more, says);
   };
@@ -192,7 +192,7 @@ TEST_F(CliOptions, WhatCannotBeWrittenIsRefusedBeforeTheFirstPass) {
   refuse({"compare", "a.exr", "a.exr", "--diff", "d.jpg"}, "--diff d.jpg: expected a name that ends in .png");
   refuse({"compare", "a.exr", "a.exr", "--json", "a.svg"}, "--json a.svg: expected a name that ends in .json");
   ASSERT_EQ(chmod(path("a.exr").c_str(), 0444), 0);
-  refuse_render({"-o", "a.exr"}, "-o a.exr: is there and write-protected");
+  refuse_render({"-o", "a.exr"}, "-o a.exr: exists and is write-protected");
   succeed(quick({"-o", "a.exr", "--force"}));
 }
 
@@ -219,7 +219,7 @@ TEST_F(CliOptions, StatesThatHoldSomethingElseAreNotReplaced) {
   EXPECT_EQ(load_state(path("a.state")).pass_count(), 1u);
 
   dir_.write("notes.state", "not a state");
-  refuse(render({"-p", "1", "-o", "notes.state"}), "notes.state: is there and cannot be read");
+  refuse(render({"-p", "1", "-o", "notes.state"}), "notes.state: exists and cannot be read");
   EXPECT_EQ(bytes("notes.state"), "not a state");
   succeed(render({"-p", "1", "-o", "notes.state", "--force"}));
 
@@ -279,14 +279,14 @@ TEST_F(CliOptions, ReproducibleFilesHoldNoFoldersAndDependOnNone) {
       {"render", "two/deep/s.pbrt", "-i", "path", "-p", "2", "-r", "8x8", "-q", "--resume", "a.state", "-o", "e.exr"});
 }
 
-// --help says so of these methods, by their defaults and with the same number of photons.
+// --help promises this for these methods, with their defaults and equal numbers of photons.
 TEST_F(CliOptions, CropWindowsHoldThePixelsOfTheWholePicture) {
   for (const std::string name :
        {"path", "light", "bdpt", "vcm", "bpm", "probppm", "sppm", "ppm", "photonmap", "reversephotonmap"})
     expect_pixels_of_whole(render({"-i", name}));
 }
 
-// Where photons are aimed, they are aimed at what the whole picture shows.
+// Aimed photons are aimed at what the whole picture shows.
 TEST_F(CliOptions, CropWindowsHoldThePixelsOfTheWholePictureInLargeWorlds) {
   std::string large = tiny_scene;
   large +=

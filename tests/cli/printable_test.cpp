@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Whatever names files have, and whatever text is in them: nothing that a terminal would act on is printed.
+// Whatever file names and file contents are, nothing is printed that a terminal would act on.
 #include "support/printable.h"
 #include "cli_fixture.h"
 #include "render/state.h"
@@ -8,15 +8,15 @@
 namespace lanthorn::printable_test {
 namespace {
 
-// Sets a terminal's title, as 7-bit and as 8-bit control characters; deletes; changes the writing direction; forges a
+// Sets a terminal's title, with 7-bit and 8-bit control characters; deletes; changes the writing direction; forges a
 // line.
 const std::string evil = "\x1b]0;x\x07\xc2\x9b\x33\x31m\x7f\xe2\x80\xae\r\nlanthorn: forged";
-// As a file's name and in a shell.
+// The text as a file name and in a shell.
 const std::string evil_name = "a\x1b[31m\xc2\x9b\x7f\xe2\x80\xae\n";
 
 class Printable : public Cli {
  protected:
-  // Runs the program; checks all that it prints.
+  // Runs the program and checks everything that it prints.
   std::string check(const Words& words) const {
     const Ending ending = run(words);
     EXPECT_TRUE(ending.exit_code == 0 || ending.exit_code == 1 || ending.exit_code == 2)

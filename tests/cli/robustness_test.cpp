@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Scenes and machines at their limits: the program renders what it can, or says what it cannot.
+// Scenes and machines at their limits: the program renders what it can, or reports what it cannot.
 #include <fcntl.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
@@ -20,7 +20,7 @@ const Words integrators{"auto",      "probppm",          "sppm",    "ppm", "vcm"
 
 using Robustness = Cli;
 
-// Embree ended the process where a ray became too long on its way into an instance.
+// Embree ended the process when a ray became too long on entering an instance.
 TEST_F(Robustness, InstancesOfAnyScaleRenderWithEveryMethod) {
   std::string scene(tiny_scene);
   scene +=
@@ -49,19 +49,19 @@ TEST_F(Robustness, ThreadsThatCannotBeHadAreDoneWithout) {
   GTEST_SKIP() << "the plain threads of this build, and the sanitizer's own, cannot be done without";
 #endif
   if (getuid() != 0) GTEST_SKIP() << "only root can become a user who has no other threads that count";
-  // A copy, where that user may read it. It finds the library beside it.
+  // A copy in a folder that this user can read; it finds the library beside it.
   fs::create_directory(path("bin"));
   fs::copy(LANTHORN_PROGRAM, path("bin/program"));
   fs::create_directory_symlink(fs::path(LANTHORN_PROGRAM).parent_path().parent_path() / "lib", path("lib"));
   for (const char* name : {"", "bin", "bin/program"}) fs::permissions(path(name), fs::perms(0777));
   const auto run_limited = [&](int limit, const Words& words) {
-    const std::string user = "61947";  // of nobody else
+    const std::string user = "61947";  // a user id that is not in use
     const Words prefix{"--reuid=" + user, "--regid=" + user, "--clear-groups", "prlimit",
                        "--nproc=" + std::to_string(limit)};
     return ChildProcess("/usr/bin/setpriv", prefix + Words{path("bin/program")} + words, dir_.path()).wait();
   };
   succeed(render({"-o", "all.exr", "-p", "2"}));
-  int least = 1;  // with which images can be read: their libraries start threads
+  int least = 1;  // the minimum for reading images, whose libraries start threads
   for (; least < 1000; ++least) {
     const Ending ending = run_limited(least, {"info", "all.exr"});
     if (ending.exit_code == 0) break;
@@ -92,13 +92,13 @@ TEST_F(Robustness, ScenesWithoutShapesHaveNoBounds) {
   EXPECT_TRUE(contains(succeed({"info", "tiny.pbrt"}).out, "bounds"));
 }
 
-// What a terminal of this many columns shows of a render's progress; carriage returns separate the lines.
+// The progress lines that a terminal of this width shows; carriage returns separate them.
 Words progress_in(const fs::path& folder, std::uint16_t columns) {
   const int terminal = posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK);
   EXPECT_EQ(grantpt(terminal), 0);
   EXPECT_EQ(unlockpt(terminal), 0);
   const std::string name = ptsname(terminal);
-  const int kept = open(name.c_str(), O_RDWR | O_NOCTTY);  // what is written stays readable while it is open
+  const int kept = open(name.c_str(), O_RDWR | O_NOCTTY);  // keeps the terminal's content readable
   winsize size{};
   size.ws_col = columns;
   EXPECT_EQ(ioctl(kept, TIOCSWINSZ, &size), 0);
@@ -120,7 +120,7 @@ Words progress_in(const fs::path& folder, std::uint16_t columns) {
   return lines;
 }
 
-// A line that wraps cannot be drawn over.
+// A wrapped line cannot be overwritten.
 TEST_F(Robustness, ProgressFitsIntoTheTerminal) {
   const std::string clear = "\x1b[K";
   for (const std::uint16_t columns : std::array<std::uint16_t, 3>{20, 40, 200}) {
@@ -132,7 +132,7 @@ TEST_F(Robustness, ProgressFitsIntoTheTerminal) {
       EXPECT_EQ(line.front() == '[', columns == 200) << line;
     }
   }
-  // A terminal that does not say its width.
+  // A terminal that does not report its width.
   EXPECT_TRUE(contains(progress_in(dir_.path(), 0).back(), "left"));
 }
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Nothing is lost: what becomes of a render when messages or files cannot be written, and when signals come.
+// No render is lost when messages or files cannot be written, or when signals arrive.
 #include <gtest/gtest.h>
 
 #include <sys/stat.h>
@@ -23,15 +23,15 @@ class Safety : public Cli {
  protected:
   ChildProcess start(const Words& words) const { return {LANTHORN_PROGRAM, words, dir_.path()}; }
 
-  /// A render that lasts until a signal comes; `more` begins with its resolution.
+  /// A render that runs until a signal arrives; `more` begins with its resolution.
   static Words endless(const Words& more) {
     return Words{"render", "tiny.pbrt", "-i", "path", "--time", "10m", "--reproducible", "-r"} + more;
   }
-  /// The same with passes of a second or more, by one thread; `more` begins with its mutations.
+  /// As `endless`, with passes of a second or more on one thread; `more` begins with the number of mutations.
   static Words slow(const Words& more) {
     return Words{"render", "tiny.pbrt", "-i", "mlt", "-T", "1", "--reproducible", "-n"} + more;
   }
-  /// Waits until the program has said it.
+  /// Waits until the program has printed the text.
   static void await(ChildProcess& child, const std::string& text) {
     while (!contains(child.err_so_far(), text) && !child.has_ended())
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
@@ -55,12 +55,12 @@ TEST_F(Safety, MessagesThatCannotBeWrittenEndNoRender) {
     const Ending ending = run_shell(brief_render + "-o a.exr -o a.state " + redirection);
     EXPECT_EQ(ending.exit_code, 0) << "signal " << ending.signal;
     ASSERT_EQ(files(), (Words{"a.exr", "a.state", "tiny.pbrt"}));
-    // Were a closed standard error not opened on something else, messages would be written into the files.
+    // If a closed standard error were not opened on /dev/null, messages would be written into the files.
     EXPECT_EQ(load_state(path("a.state")).pass_count(), 3u);
     fs::remove(path("a.exr"));
     fs::remove(path("a.state"));
   }
-  // The warning and the error of other commands.
+  // The warnings and errors of other commands.
   EXPECT_EQ(run_shell("L render nosuch.pbrt 2>/dev/full").exit_code, 2);
   EXPECT_EQ(run_shell("L compare nosuch.exr a.exr 2>&-").exit_code, 2);
 }
@@ -109,14 +109,14 @@ TEST_F(Safety, ASecondSignalDropsThePassAndLeavesNoTraceOfIt) {
   child.send(SIGINT);
   await(child, "finishing this pass, then saving");
   child.send(SIGHUP);
-  await(child, "giving up this pass, then saving");
+  await(child, "abandoning this pass, then saving");
   const Ending ending = child.wait();
   EXPECT_EQ(ending.exit_code, 0) << "signal " << ending.signal << ending.err;
   const std::uint64_t passes = load_state(path("a.state")).pass_count();
   ASSERT_EQ(passes, 1u) << "the second pass was too short for this test";
   succeed(slow({"1500000", "-p", "1", "-o", "b.state", "-q"}));
   expect_equal_files("a.state", "b.state");
-  // The same of a render that was gone on with: its first pass can be dropped too.
+  // The same for a resumed render: its first pass can also be abandoned.
   ChildProcess resumed = start(slow({"1500000", "-p", "1000", "--resume", "a.state", "-o", "c.state"}));
   await(resumed, "checkpoint every");
   std::this_thread::sleep_for(std::chrono::milliseconds(300));
@@ -139,7 +139,7 @@ TEST_F(Safety, AnInterruptedRenderReplacesNoStateOfMorePasses) {
   EXPECT_TRUE(contains(ending.err, "a.state: ") && contains(ending.err, "The render is saved in ")) << ending.err;
   EXPECT_TRUE(bytes("a.state") == before);
   EXPECT_EQ(rescue_files().size(), 1u);
-  // A checkpoint would replace it at once.
+  // A checkpoint would replace it immediately.
   EXPECT_EQ(run(words + Words{"1000000", "--checkpoint", "1"}).exit_code, 2);
   EXPECT_TRUE(bytes("a.state") == before);
 }
@@ -206,7 +206,7 @@ TEST_F(Safety, ConvergeShowsProgressAndKeepsWhatItHas) {
   const Words converge{"converge", "tiny.pbrt", "-i", "path", "-r", "32x32", "-p", "16", "--runs", "200"};
   ChildProcess child = start(converge + Words{"--json", "c.json", "--plot", "c.svg"});
   await(child, "render 1/200  pass 1/16");
-  // Two more lines of progress: a fifth of the renders, or twenty seconds.
+  // Two more progress lines: a fifth of the renders, or twenty seconds.
   const auto lines = [&] {
     const std::string said = child.err_so_far();
     return std::count(said.begin(), said.end(), '%');
@@ -215,13 +215,13 @@ TEST_F(Safety, ConvergeShowsProgressAndKeepsWhatItHas) {
   child.send(SIGINT);
   const Ending ending = child.wait();
   EXPECT_EQ(ending.exit_code, 0) << "signal " << ending.signal << ending.err;
-  EXPECT_TRUE(contains(ending.err, "ending with the renders that are complete")) << ending.err;
+  EXPECT_TRUE(contains(ending.err, "ending with the complete renders")) << ending.err;
   EXPECT_TRUE(contains(ending.out, "variance ~ passes^")) << ending.out;
   const std::uint64_t runs = json("c.json").value("runs", std::uint64_t{0});
   ASSERT_GE(runs, 2u);
   EXPECT_LT(runs, 200u);
   EXPECT_TRUE(fs::exists(path("c.svg")));
-  // The numbers are those of so many renders.
+  // The results equal those of the same number of complete renders.
   succeed({"converge", "tiny.pbrt", "-i", "path", "-r", "32x32", "-p", "16", "--runs", std::to_string(runs), "--json",
            "d.json", "-q"});
   expect_equal_files("c.json", "d.json");
@@ -287,7 +287,7 @@ TEST_F(Safety, TheRescueFileIsPrivateAndCannotBeGuessed) {
   expect_equal_files("b.exr", "c.exr");
 }
 
-// A render whose folder is taken away while it runs.
+// A render whose output folder is removed while it runs.
 class VanishingFolder : public Safety {
  protected:
   VanishingFolder() { fs::create_directory(path("sub")); }
@@ -315,7 +315,7 @@ TEST_F(VanishingFolder, TheRenderIsRescuedIntoTheUsersOwnFolder) {
 
 TEST_F(VanishingFolder, TheRenderIsKeptInMemoryUntilItCanBeWritten) {
   const auto child = start_and_remove_folder("/dev/null");
-  await(*child, "The render is in memory alone; trying again every 10 s");
+  await(*child, "The render exists only in memory; retrying every 10 s");
   fs::create_directory(path("sub"));
   const Ending ending = child->wait();
   EXPECT_EQ(ending.exit_code, 0) << ending.err;
@@ -324,7 +324,7 @@ TEST_F(VanishingFolder, TheRenderIsKeptInMemoryUntilItCanBeWritten) {
 
 TEST_F(VanishingFolder, ASignalEndsTheWaiting) {
   const auto child = start_and_remove_folder("/dev/null");
-  await(*child, "The render is in memory alone");
+  await(*child, "The render exists only in memory");
   child->send(SIGINT);
   const Ending ending = child->wait();
   EXPECT_EQ(ending.exit_code, 2) << "signal " << ending.signal;
@@ -343,7 +343,7 @@ TEST_F(Safety, TheFirstLineSaysWhereCheckpointsGo) {
   EXPECT_FALSE(contains(first_line("2", {"--checkpoint", "none"}), "checkpoint"));
   EXPECT_FALSE(contains(first_line("2", {"--time", "5m"}), "checkpoint"));
   EXPECT_TRUE(contains(first_line("2", {"--checkpoint", "60"}), "checkpoint every 1:00 min in a.state"));
-  // Names that are taken: an output, another render, this one with more passes, the file that is gone on from.
+  // Names already taken: an output, another render, this render with more passes, the resumed file.
   EXPECT_TRUE(contains(first_line("2", {"-o", "a.exr.checkpoint.state"}), "a.exr.checkpoint-2.state"));
   EXPECT_TRUE(contains(first_line("2", {}), "a.exr.checkpoint-2.state"));
   EXPECT_TRUE(contains(first_line("2", {"--seed", "7"}), "a.exr.checkpoint-2.state"));

@@ -38,7 +38,7 @@ class Shards : public Cli {
 };
 
 TEST_F(Shards, TheScriptRendersWhatOneProcessDoes) {
-  // Names with blanks and quotes must come through the shell.
+  // Names with blanks and quotes must be quoted for the shell.
   fs::rename(path("tiny.pbrt"), path("it's tiny.pbrt"));
   const std::string script = succeed({"shards", "it's tiny.pbrt", "-i", "path", "-r", "12", "-p", "7", "--shards", "3",
                                       "-o", "all of it.state"})
@@ -61,7 +61,7 @@ TEST_F(Shards, JsonHasACommandForEachShardAndOneThatMerges) {
             "lanthorn merge --expect 0:7 all.shard-0.state all.shard-1.state all.shard-2.state -o all.exr");
 }
 
-// A stand-in for Slurm runs the jobs one after the other.
+// A replacement for Slurm that runs the jobs one after the other.
 TEST_F(Shards, TheScriptForSlurmSubmitsAnArrayAndAMerge) {
   dir_.write("all.sh", succeed(shards({"--format", "slurm"})).out);
   const Ending ending = run_shell(
@@ -118,13 +118,13 @@ TEST_F(Shards, MergeNamesWhatIsMissingDoubleOrDamaged) {
   };
   EXPECT_EQ(problems({"a.state", "b.state"}),
             "lanthorn: missing: render again with --pass-range 4:6\n"
-            "lanthorn: --expect 0:6: 0 of 2 states cannot be merged, 1 ranges of passes are missing: nothing is "
+            "lanthorn: --expect 0:6: 0 of 2 states cannot be merged, 1 ranges of passes missing: nothing is "
             "written\n");
   const std::string corrupt = problems({"a.state", "damaged.state"});
   EXPECT_TRUE(contains(corrupt, "damaged.state: damaged or truncated")) << corrupt;
   EXPECT_TRUE(contains(corrupt, "--pass-range 2:6\n")) << corrupt;
   const std::string doubled = problems({"a.state", "b.state", "c.state"});
-  EXPECT_TRUE(contains(doubled, "in several states: passes 3:4\n")) << doubled;
+  EXPECT_TRUE(contains(doubled, "several states hold passes 3:4\n")) << doubled;
   EXPECT_TRUE(contains(doubled, "--pass-range 5:6\n")) << doubled;
   const std::string other = problems({"a.state", "b.state", "d.state"});
   EXPECT_TRUE(contains(other, "d.state: cannot merge: the renders differ in --seed")) << other;

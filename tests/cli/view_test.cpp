@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// `lanthorn view` without a window, and where there is none to be had.
+// `lanthorn view` without a window, and on machines where it cannot open one.
 #include <algorithm>
 #include <fstream>
 
@@ -11,7 +11,7 @@ namespace {
 
 class View : public Cli {
  protected:
-  /// Draws frames without a window; nothing if there is no OpenGL here.
+  /// Draws frames without a window; returns false if OpenGL is not available.
   bool draws(const Words& more, const std::string& output) const {
     const Ending ending = run(Words{"view", "tiny.pbrt", "--headless", "-n", "500", "-o", output} + more);
     if (*ending.exit_code == 2 && contains(ending.err, "OpenGL 4.5 core is needed")) return false;
@@ -78,7 +78,7 @@ TEST_F(View, WithoutDisplayItNamesTheBrowser) {
   EXPECT_FALSE(fs::exists(path("a.png")));
 }
 
-// What a stranger would wonder about is said.
+// The program explains surprising pictures.
 TEST_F(View, DarkPicturesAreExplained) {
   const auto warnings = [&](const std::string& content) {
     std::ofstream(path("dark.pbrt")) << "LookAt 0 0 3  0 0 0  0 1 0\nCamera \"perspective\"\nFilm \"rgb\" \"integer "
@@ -94,7 +94,7 @@ TEST_F(View, DarkPicturesAreExplained) {
   const std::string metal = warnings(sky + "Material \"conductor\" \"float roughness\" [.1]\n");
   EXPECT_TRUE(contains(metal, "appears slowly")) << metal;
   const std::string mirror = warnings(sky + "Material \"conductor\" \"float roughness\" [.01]\n");
-  // A single frame of a mirror may be too bright here and there, which is said, and nothing else.
+  // A single frame of a mirror may be too bright in places; that is the only warning allowed.
   EXPECT_TRUE(mirror.empty() || contains(mirror, "brighter than white")) << mirror;
   EXPECT_LE(std::count(mirror.begin(), mirror.end(), '\n'), 1) << mirror;
   std::ofstream(path("slide.ppm")) << "P3 2 1 255  255 0 0  0 0 255\n";

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Agreement with an independent renderer's images, by the test that README.md gives: with passes that fit CI, and by
-// night with 32 times as many and of more scenes by photons.
+// Compares renders with an independent renderer's images, by the test described in README.md: with few passes in CI,
+// and nightly with 32 times as many, and photons on more scenes.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -22,8 +22,8 @@ struct Case {
 };
 
 // c06 (all light through the globe), c07 and c14 get the samples that a path tracer needs for their caustics. Photons
-// render what path tracing finds hard, fog and motion; on the others path tracing shows that scenes are read and lit as
-// they should be, and transport tests show that photons agree with it.
+// are tested on scenes that are hard for path tracing, fog and motion. On the other scenes, path tracing shows that
+// scenes are read and lit correctly, and transport tests show that photons agree with it.
 std::vector<Case> cases() {
   return {{"c01-furnace", "path", 96},
           {"c02-cornell", "path", 96},
@@ -66,7 +66,7 @@ TEST_P(Conformance, AgreesWithReference) {
 
   const Scene scene(read_scene(folder / "scenes" / (c.scene + ".pbrt")));
   std::vector<Image> runs;
-  // Few runs say little of how noisy tiles with caustics are. Radii shrink from pass to pass: photons get fewer runs.
+  // A few runs underestimate the noise of tiles with caustics. Photon radii shrink from pass to pass: use fewer runs.
   const std::uint64_t count = c.integrator == "path" ? 12 : 4;
   const std::uint64_t passes = c.passes / count;
   for (std::uint64_t run = 1; run <= count; ++run) {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Replays what the fuzzers have found worth keeping, with any compiler.
+// Replays the corpus collected by the fuzzers, with any compiler.
 #include <gtest/gtest.h>
 
 #include <filesystem>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Heads of HTTP requests, which strangers may send to `lanthorn serve`.
+// Heads of HTTP requests, which untrusted clients may send to `lanthorn serve`.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -26,7 +26,7 @@ std::string percent_encoded(const std::string& text) {
   return result;
 }
 
-// The request as a head, with all that it holds.
+// Formats the request as a head, with all its fields.
 std::string head_of(const HttpRequest& request) {
   std::string head = request.method + " " + request.path;
   char separator = '?';
@@ -68,7 +68,7 @@ void read_request(std::string_view bytes) {
   }
   const auto& request = std::get<HttpRequest>(result);
   check(request);
-  // What was read can be written, and read again as the same.
+  // A parsed request can be written and parsed again with the same result.
   const auto again = parse_request_head(head_of(request));
   require(std::holds_alternative<HttpRequest>(again), "request that was written and refused");
   const auto& same = std::get<HttpRequest>(again);

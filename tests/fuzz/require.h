@@ -7,7 +7,7 @@
 
 namespace lanthorn::fuzz {
 
-/// What a fuzzer counts as a crash.
+/// Fails as a crash for the fuzzer.
 inline void require(bool holds, const char* what) {
   if (holds) return;
   std::fprintf(stderr, "inconsistent: %s\n", what);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Apart from the readers' targets, which need not be linked with all that renders.
+// Separate from the readers' targets, which need not link the renderer.
 #include <zlib.h>
 
 #include <cstring>
@@ -26,7 +26,7 @@ void check_passes(const RenderState& state) {
   }
 }
 
-// What can be read can be written, and read again as the same.
+// A state that can be read can be written, and read again with the same result.
 void check_round_trip(const RenderState& state) {
   const std::vector<std::byte> bytes = encode_state(state);
   require(encode_state(decode_state(bytes, "t.state")) == bytes, "state that was written and read");
@@ -36,7 +36,7 @@ void check_merge(const RenderState& state) {
   if (!state.shardable || state.passes.empty()) return;
   RenderState other = state;
   const std::uint64_t end = state.passes.back().end;
-  // Times that nobody rendered for, and passes beyond the last one, cannot be doubled.
+  // Unrealistic times and passes beyond the last one cannot be doubled.
   if (end > std::uint64_t{1} << 32 || state.seconds > 1e11) return;
   other.passes = {{end, end + 3}};
   const RenderState merged = merge_states(state, other);
@@ -54,7 +54,7 @@ std::optional<RenderState> decode(std::span<const std::byte> bytes) {
   }
 }
 
-// Past the decoder nothing may throw.
+// After the decoder has succeeded, nothing may throw.
 void check_state(std::span<const std::byte> bytes) {
   const std::optional<RenderState> state = decode(bytes);
   if (!state) return;
@@ -66,8 +66,8 @@ void check_state(std::span<const std::byte> bytes) {
   check_merge(*state);
 }
 
-// The bytes with a right header size, if they hold a JSON value where the header begins, and a right checksum: what
-// most changes would be refused for.
+// The bytes with corrected header size (if there is a JSON value where the header begins) and checksum, which would
+// otherwise reject most mutations.
 std::string repaired(std::string_view bytes) {
   constexpr std::size_t size_at = 12, header_at = 16;
   std::string copy(bytes);

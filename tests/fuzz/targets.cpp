@@ -26,7 +26,7 @@ namespace {
 
 using namespace description;
 
-// All the files there are.
+// All existing files.
 std::string file_in_memory(const std::filesystem::path& path) {
   const std::string name = path.filename().string();
   if (name == "a.pbrt") return "AttributeBegin Translate 1 0 0 Shape \"sphere\" AttributeEnd";
@@ -91,7 +91,7 @@ void check_spectrum(const SampledSpectrum& s) {
   for (const bool extend_ends : {false, true}) resample(s.nm.data(), s.values.data(), s.nm.size(), extend_ends);
 }
 
-// What is drawn can be evaluated. Values that nothing bounds may overflow, but are never negative.
+// Sampled directions can be evaluated. Unbounded values may overflow, but must not be negative.
 void check_samples(const Measured& closure, const Vec3& wi) {
   for (const float u : {0.0f, 0.2f, 0.5f, 0.9f}) {
     const auto drawn = sample(closure, wi, 0.5f, {u, 1 - u - 0.05f}, Transport::radiance);
@@ -105,7 +105,7 @@ void check_samples(const Measured& closure, const Vec3& wi) {
 
 namespace {
 
-// What is written of a pbrt-v3 file that can be read can be read, too. No file writes numbers that are not finite.
+// The translation of a readable pbrt-v3 file is readable, too. No file contains non-finite numbers.
 void check_upgrade(std::string_view text) {
   std::string upgraded;
   try {
@@ -145,7 +145,7 @@ void read_tables(std::string_view text) {
     check_spectrum(std::get<SampledSpectrum>(std::get<PointLight>(scene->lights.front().node).intensity.spectrum));
 }
 
-// The choice of a view takes a hundred times as long as reading a small file: only some files get one.
+// Choosing a view takes a hundred times as long as reading a small file: only some files get one.
 void check_model(ModelFile file, std::string_view bytes) {
   check_scene(file.scene);
   if (bytes.size() % 512 == 0) check_scene(with_stand_ins(std::move(file)));
@@ -170,7 +170,7 @@ void read_obj(std::string_view text) {
 void read_measured(std::string_view bytes) {
   try {
     const MeasuredData data = parse_measured_brdf(bytes, "t.bsdf");
-    constexpr int albedo_side = 3;  // one table is filled like another: most of the time would go into this one
+    constexpr int albedo_side = 3;  // small, since filling the tables would take most of the time
     const MeasuredBrdf brdf(data, albedo_side);
     for (const Wavelengths& w : {Wavelengths::rgb(0.3f), Wavelengths::spectral(0.3f)})
       for (const Vec3& wi : {Vec3(0, 0, 1), Vec3(0.6f, 0, 0.8f), Vec3(0, -0.8f, -0.6f), Vec3(1, 0, 1e-6f)})

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// A client that says what a test tells it to, right or wrong.
+// An HTTP client that sends exactly what a test specifies, valid or not.
 #pragma once
 
 #include <chrono>

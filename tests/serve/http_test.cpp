@@ -119,7 +119,7 @@ TEST(Frame, LayersAreEncodedWithWhatThePageNeeds) {
   for (std::size_t i = 0; i < image->pixels.size(); ++i) image->pixels[i] = static_cast<float>(i);
   const PageFrame frame(7, image, nullptr, {{"passes", 3}}, "{}");
   const SharedBytes bytes = frame.encoded("depth", false);
-  EXPECT_EQ(bytes, frame.encoded("depth", false));  // made once
+  EXPECT_EQ(bytes, frame.encoded("depth", false));  // computed once
   std::uint32_t size = 0;
   std::memcpy(&size, bytes->data(), 4);
   EXPECT_EQ(size % 4, 0u);
@@ -159,7 +159,7 @@ TEST(HttpServer, ConnectionsGoOnFromRequestToRequest) {
   HttpClient client(server.port());
   EXPECT_EQ(client.get("/a").body, "GET/a");
   EXPECT_EQ(client.post("/b", "xyz").body, "POST/bxyz");
-  // Two at once.
+  // Two requests at the same time.
   client.send("GET /c HTTP/1.1\r\n\r\nGET /d HTTP/1.1\r\nConnection: close\r\n\r\n");
   EXPECT_EQ(client.receive().body, "GET/c");
   EXPECT_EQ(client.receive().body, "GET/d");
@@ -188,7 +188,7 @@ TEST(HttpServer, GarbageIsAnsweredAndTheConnectionClosed) {
   EXPECT_EQ(HttpClient(server.port()).get("/a").status, 200);
 }
 
-// The time that a client on a connection of its own waits for an answer.
+// The time that a client waits for an answer on a new connection.
 std::chrono::duration<double> waiting_time(std::uint16_t port) {
   const auto start = std::chrono::steady_clock::now();
   HttpClient client(port);
@@ -196,8 +196,8 @@ std::chrono::duration<double> waiting_time(std::uint16_t port) {
   return std::chrono::steady_clock::now() - start;
 }
 
-// Connections that say nothing, little or nonsense, twice as many as may be open: others are answered long before these
-// have lost theirs for silence.
+// Opens twice as many silent, slow or malformed connections as are allowed: other clients are answered long before
+// these are closed for silence.
 TEST(HttpServer, SilentClientsKeepNobodyOut) {
   const HttpServer server("127.0.0.1", 0, echo);
   std::vector<HttpClient> silent;
@@ -211,7 +211,7 @@ TEST(HttpServer, SilentClientsKeepNobodyOut) {
   }
 }
 
-// The client that has waited for longest goes; whoever asks stays.
+// The client that has waited longest is disconnected; active clients stay.
 TEST(HttpServer, ConnectionsInUseOutliveSilentOnes) {
   const HttpServer server("127.0.0.1", 0, echo);
   HttpClient silent(server.port()), busy(server.port());
@@ -235,7 +235,7 @@ TEST(HttpServer, RequestsThatComeInPiecesAreAnswered) {
   EXPECT_EQ(client.receive().body, "POST/axyz");
 }
 
-// A client that never reads cannot hold an answer for ever, nor the end of the server.
+// A client that never reads blocks neither an answer nor the server's shutdown indefinitely.
 TEST(HttpServer, EndsWhileClientsAreServed) {
   std::vector<HttpClient> clients;
   {

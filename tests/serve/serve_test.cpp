@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// lanthorn serve, asked by raw sockets.
+// Tests `lanthorn serve` through raw sockets.
 #include <gtest/gtest.h>
 #include <signal.h>
 
@@ -47,7 +47,7 @@ class Serve : public Cli {
   Answer get(const std::string& resource) const { return client().get(root_ + resource); }
   int edit(const nlohmann::json& json) const { return client().post(root_ + "edit", json.dump()).status; }
 
-  // The finished picture of an edit.
+  // Waits for the finished picture of an edit.
   nlohmann::json picture_of(const nlohmann::json& change) const {
     const Answer answer = client().post(root_ + "edit", change.dump());
     EXPECT_EQ(answer.status, 200) << change << ' ' << answer.body;
@@ -55,7 +55,7 @@ class Serve : public Cli {
     const nlohmann::json revision = nlohmann::json::parse(answer.body)["revision"];
     return frame([&](const nlohmann::json& f) { return f["finished"] && f["revision"] == revision; });
   }
-  // The command line that the page shows after an edit renders the very picture that it saves. Returns the command.
+  // The command line shown after an edit renders exactly the picture that the page saves. Returns the command.
   std::string expect_same_picture(const nlohmann::json& change) {
     const std::string text = picture_of(change)["command"];
     const Answer exr = get("picture.exr");
@@ -79,7 +79,7 @@ class Serve : public Cli {
     std::memcpy(&size, answer.body.data(), 4);
     return nlohmann::json::parse(answer.body.substr(4, size), nullptr, false);
   }
-  // The first frame of which `is_right` holds.
+  // The first frame for which `is_right` returns true.
   template <class Condition>
   nlohmann::json frame(Condition is_right) const {
     HttpClient watching = client();
@@ -94,7 +94,7 @@ class Serve : public Cli {
     ADD_FAILURE() << "no such frame; the last: " << last.dump();
     return last;
   }
-  long memory() const {  // kB resident
+  long memory() const {  // resident memory, kB
     std::ifstream status("/proc/" + std::to_string(process_->pid()) + "/status");
     for (std::string line; std::getline(status, line);)
       if (line.starts_with("VmRSS:")) return std::stol(line.substr(6));
@@ -128,7 +128,7 @@ TEST_F(Serve, NothingIsReadableWithoutTheToken) {
   EXPECT_EQ(client().post(wrong + "edit", R"({"paused":true})").status, 404);
 }
 
-// Nothing in names and texts of files acts on a terminal that shows an answer, or into which the command is pasted.
+// No name or text from a file affects a terminal that shows an answer, or into which the command is pasted.
 TEST_F(Serve, AnswersHoldNoControlCharacters) {
   const std::string name = "a\x1b[31m\xc2\x9b\x7f\xe2\x80\xae.pbrt";
   dir_.write(name, std::string(tiny_scene) +
@@ -160,7 +160,7 @@ TEST_F(Serve, OtherSitesAreRefused) {
   EXPECT_EQ(page.body.find("src=\"http"), std::string::npos);
 }
 
-// The switch changes what is shown and saved, and the command line.
+// The switch affects what is shown and saved, and the command line.
 TEST_F(Serve, PicturesAtRestAreDenoised) {
   start({"-p", "4", "-r", "24x16", "-i", "path"});
   const nlohmann::json noisy = frame(is_finished);
@@ -197,7 +197,7 @@ TEST_F(Serve, PicturesOfTheEndAreDenoisedAsThePageSays) {
   }
 }
 
-// True if this machine has IPv6's address of itself.
+// True if this machine has the IPv6 loopback address.
 bool has_ipv6() {
   std::ifstream addresses("/proc/net/if_inet6");
   for (std::string line; std::getline(addresses, line);)
@@ -212,7 +212,7 @@ TEST_F(Serve, ListensWhereItIsTold) {
           .ask("GET " + root_ + " HTTP/1.1\r\nHost: " + host_ + ":" + std::to_string(port_) + "\r\n\r\n")
           .status;
     } catch (const lanthorn::Error&) {
-      return 0;  // nobody listens there
+      return 0;  // nothing listens there
     }
   };
   start({"-p", "1", "--bind", "127.0.0.2"});
@@ -262,7 +262,7 @@ TEST_F(Serve, BadEditsChangeNothing) {
                            R"({"size":[64,-1]})",
                            R"({"size":"64x64"})"})
     EXPECT_EQ(client().post(root_ + "edit", body).status, 400) << body;
-  // An environment that could be read, but was not named when the server was started.
+  // A readable environment that was not given when the server started.
   Image sky(2, 1, {"R", "G", "B"});
   sky.pixels.assign(6, 1.0f);
   write_exr(path("sky.exr"), sky);
@@ -313,7 +313,7 @@ TEST_F(Serve, AViewTellsWhatAutoHasFound) {
   EXPECT_TRUE(contains(frame(is_finished)["remark"], "caustics"));
 }
 
-// Not around what is seen between its parts.
+// Not around the surface seen between its parts.
 TEST_F(Serve, AModelTurnsAroundItsMiddle) {
   dir_.write("bars.obj",
              "v -1 -1 0\nv -.6 -1 0\nv -.6 1 0\nv -1 1 0\nf 1 2 3 4\n"
@@ -325,7 +325,7 @@ TEST_F(Serve, AModelTurnsAroundItsMiddle) {
   EXPECT_LT(std::hypot(target[0] - middle[0], target[1] - middle[1], target[2] - middle[2]), 0.3);
 }
 
-// A model without camera and light, which has a studio and frames itself.
+// A model without camera and light, which gets a studio and a framing camera.
 TEST_F(Serve, TheCommandLineRendersTheSamePictureOfAModel) {
   dir_.write("model.obj", "v -1 0 0\nv 1 0 0\nv 1 2 0\nv -1 2 .5\nf 1 2 3 4\n");
   write_exr(path("sky.exr"), [] {
@@ -364,7 +364,7 @@ TEST_F(Serve, FocusIsPickedInThePicture) {
   EXPECT_EQ(home["lens"], middle["lens"]);
 }
 
-// Environments come and go as lights; their factors go with them.
+// Environments add and remove lights, together with their factors.
 TEST_F(Serve, LightsAreThoseOfTheEnvironment) {
   start({"-p", "1"});
   const auto lights = [&] { return nlohmann::json::parse(get("scene").body)["lights"]; };
@@ -395,7 +395,7 @@ TEST_F(Serve, MethodAndSizeCanBeChanged) {
   EXPECT_TRUE(contains(again["command"], "--set radius=0.1")) << again["command"];
 }
 
-// The picture stays, with the reason, and the server goes on from it.
+// The picture stays, with the reason, and the server continues from it.
 TEST_F(Serve, WhatDoesNotFitIntoMemoryIsTakenBack) {
   start({"-p", "2", "--memory", "64M"});
   const nlohmann::json first = frame(is_finished);
@@ -454,7 +454,7 @@ TEST_F(Serve, TenThousandRequestsLeaveTheMemoryAsItWas) {
   std::vector<std::jthread> clients;
   for (int i = 0; i < 8; ++i) clients.emplace_back([&] { ask(1250); });
   clients.clear();
-#ifndef __SANITIZE_THREAD__  // which remembers accesses in the same process's memory
+#ifndef __SANITIZE_THREAD__  // ThreadSanitizer keeps a history of accesses in the process's memory
   EXPECT_LT(memory(), before + 32 * 1024);
 #endif
   EXPECT_EQ(get("").status, 200);
@@ -476,7 +476,7 @@ TEST_F(Serve, ASignalEndsItAtOnceAndSavesThePictureOfWhatIsSeen) {
   const Ending ending = process_->wait();
   EXPECT_EQ(ending.exit_code, 0) << ending.err;
   EXPECT_FALSE(bytes("last.exr").empty());
-  // It can be gone on with by the command line.
+  // The command line can resume it.
   succeed({"render", "tiny.pbrt", "-n", "300", "-q", "--light", "area1=0", "--resume", "last.state", "-p", "100000",
            "-t", "0.01s", "-o", "more.exr"});
 }

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// render --tev, against a viewer that reads its packets by the description of the protocol in tev's README and source.
+// render --tev against a test viewer that parses packets as described in tev's README and source.
 #include <gtest/gtest.h>
 #include <sys/socket.h>
 
@@ -106,7 +106,7 @@ TEST(TevPackets, AddressesOfViewers) {
     EXPECT_THROW(parse_host_port(wrong, "--tev"), Error) << wrong;
 }
 
-// Takes one connection and reads packets until it ends.
+// Accepts one connection and reads packets until it ends.
 class TestViewer {
  public:
   explicit TestViewer(int most_packets = 1 << 30)
@@ -148,7 +148,7 @@ TEST_F(Tev, TheViewerHasTheFinishedPictureWithAllLayers) {
   EXPECT_GE(seen.updates, 1);
   const Image rendered = with_denoised_light(read_image(path("a.exr")));  // without the layers for a denoiser
   ASSERT_EQ(seen.image.channel_count(), rendered.channel_count());
-  for (std::size_t c = 0; c < rendered.channel_count(); ++c) {  // files have them in another order
+  for (std::size_t c = 0; c < rendered.channel_count(); ++c) {  // files order them differently
     const auto channel = seen.image.find_channel(rendered.channels[c]);
     ASSERT_TRUE(channel) << rendered.channels[c];
     for (int y = 0; y < rendered.height; ++y)

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Closures: their samples against their densities (chi-squared), and energy (z-tests).
+// Closures: chi-squared tests of samples against densities, and z-tests of energy.
 #include "surface/bsdf.h"
 
 #include <gtest/gtest.h>
@@ -35,7 +35,7 @@ const Spectrum colour(0.8f, 0.5f, 0.2f, 0.1f);
 const ThinFilm oil(1.7f, 430, Wavelengths::spectral(0.4f));
 const CoatPassage smooth_coat({}, 0.1f);
 const CoatPassage rough_coat({.eta = 1.5f, .alpha_x = 0.3f, .alpha_y = 0.3f}, 0.1f);
-/// Reflects everything: k is much larger than eta and both are large.
+/// Reflects everything: k is much larger than eta, and both are large.
 const Spectrum white_eta(1e-3f);
 const Spectrum white_k(1e3f);
 
@@ -96,7 +96,7 @@ TEST(Chi2, Conductor) {
       EXPECT_TRUE(chi2_test(bsdf_sampler(Conductor{gold_eta, gold_k, a.x, a.y}, wi), options)) << describe(wi, a);
 }
 
-// Of both walks, from where the plane mirrors much of their lobes and from where it does not.
+// For both walks, where the plane mirrors much of their lobes and where it does not.
 TEST(Chi2, Bent) {
   const Normal plane = at_angles(25, 0);
   const std::vector<Bsdf> closures{Bent<Conductor>{{gold_eta, gold_k, 0.1f, 0.1f}, plane},
@@ -179,7 +179,7 @@ TEST(Chi2, Measured) {
   }
 }
 
-/// Fraction scattered from wi: the mean weight of samples, delta lobes left out or not.
+/// Fraction scattered from wi: the mean weight of samples, with or without delta lobes.
 Mean sampled_albedo(const Bsdf& bsdf, const Vec3& wi, int n, bool with_delta,
                     Transport transport = Transport::importance) {
   HashRng rng(test::seed(7));
@@ -192,7 +192,7 @@ Mean sampled_albedo(const Bsdf& bsdf, const Vec3& wi, int n, bool with_delta,
   return mean;
 }
 
-/// The same by integration of eval over cosine-distributed directions: for lobes that are not much narrower.
+/// As `sampled_albedo`, by integrating eval over cosine-distributed directions; for lobes that are not very narrow.
 Mean integrated_albedo(const Bsdf& bsdf, const Vec3& wi, int n) {
   HashRng rng(test::seed(8));
   Mean mean;
@@ -250,7 +250,7 @@ TEST(Coated, SamplesHaveTheMeanOfEval) {
   }
 }
 
-/// Share of Lambertian light that a smooth interface of this index ratio reflects.
+/// Diffuse reflectance of a smooth interface with this index ratio.
 double diffuse_reflectance(float eta) {
   double sum = 0;
   const int n = 100000;
@@ -277,7 +277,7 @@ TEST(Coated, ClearPlasticHasAClosedForm) {
   }
 }
 
-/// Mean of `eval` of a closure that walks, over directions too near to wo to differ otherwise.
+/// Mean of `eval` of a stochastic closure over directions so close to wo that they hardly differ otherwise.
 Mean mean_of_walks(CoatedDiffuse closure, const Vec3& wi, const Vec3& wo) {
   closure.n_samples = 30000;
   Mean mean;
@@ -319,11 +319,11 @@ TEST(Coated, WalksBelowAClearCoatHaveAClosedForm) {
 }
 
 float largest_weight(const Bsdf& bsdf) {
-  // Facets at grazing angles reflect more than the reflection's albedo, by which plastic chooses it.
+  // Facets at grazing angles reflect more than the lobe's albedo, which is plastic's selection probability.
   constexpr float facets = 1.15f;
   if (std::holds_alternative<CoatedPlastic>(bsdf)) return 2;
-  // Of two albedos a + b <= 1, chosen by their roots, one gives the weight a + sqrt(ab) <= 1.207. (The base alone,
-  // sampled by the cosine: 1.06 times that.)
+  // Of two albedos a + b <= 1, chosen in proportion to their square roots, one gets the weight a + sqrt(ab) <= 1.207.
+  // (The base alone, sampled by the cosine: 1.06 times that.)
   if (std::holds_alternative<ClearCoated>(bsdf)) return 1.207f * facets;
   return 1.001f;
 }
@@ -340,8 +340,8 @@ TEST(Coated, WeightsAreBounded) {
   }
 }
 
-/// `pdf` is only an approximation there, but multiple importance sampling profits as far as it is near: it must be
-/// a density, and where samples fall it must not be far too small.
+/// There `pdf` is only an approximation, but multiple importance sampling benefits if it is close: it must be a
+/// density, and must not be far too small where samples fall.
 TEST(Coated, PdfIsAUsefulDensity) {
   for (const auto& [name, bsdf] : layered_closures()) {
     for (const Vec3& wi : {at_angles(10, 30), at_angles(60, 100)}) {
@@ -358,7 +358,7 @@ TEST(Coated, PdfIsAUsefulDensity) {
   }
 }
 
-// Over a white base all is scattered that Smith's single scattering does not lose, to within the table's error.
+// Over a white base, only the loss of Smith's single scattering is missing, to within the table's error.
 TEST(Energy, WhitePlasticScattersEverything) {
   for (const float alpha : {0.0f, 0.04f, 0.25f, 0.6f, 1.0f})
     for (const Vec3& wi : {at_angles(5, 0), at_angles(50, 10), at_angles(82, 20), at_angles(130, -30)})
@@ -391,7 +391,7 @@ TEST(Energy, PlasticHasTheAlbedoItSays) {
     }
 }
 
-// The plane takes nothing of what the closure reflects by itself, wherever the eye is before both normals.
+// The plane removes nothing from the closure's reflection, wherever the eye is in front of both normals.
 TEST(Energy, BentMetalsReflectAllThatTheyReflect) {
   for (const float alpha : {0.0f, 0.05f, 0.3f, 0.8f})
     for (const double tilt : {5.0, 30.0})
@@ -405,7 +405,7 @@ TEST(Energy, BentMetalsReflectAllThatTheyReflect) {
       }
 }
 
-// White fibres over a white base: the base gets what the fibres leave it, or less where wo is at a grazing angle.
+// White fibres over a white base: the base receives what the fibres leave, or less if wo is at a grazing angle.
 TEST(Energy, ClothGainsNothing) {
   for (const float alpha : {0.02f, 0.1f, 0.4f, 1.0f})
     for (const Vec3& wi : {at_angles(5, 0), at_angles(60, 10), at_angles(85, 20), at_angles(130, -30)}) {
@@ -414,7 +414,7 @@ TEST(Energy, ClothGainsNothing) {
       const double noise = limit_of(48) * mean.error();
       EXPECT_LE(mean.mean(), 1.01 + noise) << wi.z << " alpha " << alpha;
       EXPECT_GT(mean.mean(), 0.6 - noise) << wi.z << " alpha " << alpha;
-      // The fibres alone.
+      // Only the fibres.
       const Cloth alone{{.reflectance = Spectrum(0), .f0 = Spectrum(0), .f90 = 0}, Spectrum(1), alpha};
       const Mean fibres = sampled_albedo(alone, wi, 40000, true);
       const auto expected = static_cast<double>(sheen_albedo(alpha, abs_cos_theta(wi)));
@@ -432,8 +432,8 @@ TEST(Energy, SmoothGlassScattersEverything) {
   }
 }
 
-/// Single scattering loses what several bounces between microfacets would bring back, the more the rougher, and gains
-/// nothing. The bounds are those of the model: below 1, and near 1 where smooth.
+/// Single scattering loses what multiple bounces between microfacets would return, more for rougher surfaces, and gains
+/// nothing. The bounds are those of the model: below 1, and near 1 for smooth surfaces.
 TEST(Energy, RoughClosuresGainNothing) {
   for (const Widths& a : widths) {
     for (const Vec3& wi : directions) {
@@ -448,7 +448,7 @@ TEST(Energy, RoughClosuresGainNothing) {
   }
 }
 
-/// In a white furnace radiance is in equilibrium, index^2 on each side, and what glass sends out is the same.
+/// In a white furnace, radiance is in equilibrium, index^2 on each side, and glass emits the same.
 TEST(Energy, GlassKeepsTheRadianceOfAFurnace) {
   for (const float alpha : {0.0f, 0.05f}) {
     for (const float theta : {10.0f, 130.0f}) {
@@ -480,15 +480,15 @@ TEST(Chi2, Hair) {
       EXPECT_TRUE(chi2_test(bsdf_sampler(hair, wi), {.tests = 12})) << describe(wi, {hair.beta_m, hair.beta_n});
 }
 
-// Without absorption nothing is lost: the integral of f times the cosine over all directions is 1, for any light and
-// roughness, but for the lobes' cut at grazing angles; and the weights of samples, which are its estimates, agree.
+// Without absorption nothing is lost: the integral of f times the cosine over all directions is 1, for any incidence
+// and roughness, except for the lobes' cut at grazing angles; the weights of samples agree with this.
 TEST(Hair, WhiteFurnace) {
   HashRng rng(test::seed(11));
   for (const float h : {-0.9f, 0.0f, 0.6f})
     for (const float beta : {0.25f, 0.6f, 1.0f}) {
       const Hair hair{Spectrum(), h, 1.55f, beta, beta, 2};
       const Vec3 wi = at_angles(70, 30);
-      constexpr int side = 200;  // midpoints resolve the lobes: no noise
+      constexpr int side = 200;  // midpoints that resolve the lobes: no noise
       double integral = 0;
       Mean sampled;
       for (int i = 0; i < side * side; ++i) {
@@ -505,7 +505,7 @@ TEST(Hair, WhiteFurnace) {
     }
 }
 
-// Along the same path, which light passes mirrored: what a light path scatters is what the eye sees.
+// A light path scatters as the eye path along the same path in reverse.
 TEST(Hair, LightPathsScatterWhatIsSeen) {
   HashRng rng(test::seed(12));
   for (const Hair& hair : hairs) {
@@ -523,7 +523,7 @@ TEST(Hair, LightPathsScatterWhatIsSeen) {
   }
 }
 
-// The density of the way back is about that of the way there: lobes turn by as much the other way.
+// The density of the reverse direction is about that of the forward one: lobes turn by the same angle the other way.
 TEST(Hair, WayBackIsInTheSameLobes) {
   const Hair hair{Spectrum(0.1f), 0.6f, 1.55f, 0.3f, 0.1f, 0};
   HashRng rng(test::seed(13));

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Light traced to the camera equals radiance seen from it: inside a sphere that emits radiance 1, every pixel of every
-// camera is 1.
+// Light traced to the camera equals the radiance that it sees: inside a sphere that emits radiance 1, every pixel of
+// every camera is 1.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -20,14 +20,14 @@ constexpr int width = 48, height = 32, tile = 8;
 constexpr int tiles_x = width / tile, tiles_y = height / tile;
 constexpr float radius = 5;
 
-/// Mean of so many samples, of which those that are not added are 0; variance of the mean.
+/// Mean of a given number of samples, where missing samples count as 0; and the variance of the mean.
 struct Tile {
   double sum = 0, sum2 = 0;
 };
 
 double z_limit(int checks) { return test::z_limit(test::sidak(test::false_alarm_rate, checks)); }
 
-// Splats points drawn uniformly on the sphere; the means of tiles of pixels, with the variances of the means.
+// Splats uniformly distributed points of the sphere; returns means of tiles of pixels with their variances.
 std::vector<Tile> traced(const Camera& camera, int samples) {
   std::vector<Tile> tiles(tiles_x * tiles_y);
   HashRng rng(test::seed(1));
@@ -49,7 +49,7 @@ std::vector<Tile> traced(const Camera& camera, int samples) {
   return tiles;
 }
 
-// z-test of every tile and of the whole: 24 and 1 of 6 cameras. Tiles have standard errors of up to 3.6 %.
+// z-test of every tile and of the whole picture: 24 and 1 for each of 6 cameras. Standard errors of tiles: up to 3.6 %.
 TEST(CameraStatistics, LightTracedFromASphereOfRadianceOneIsOne) {
   const AnimatedTransform placed(look_at({0.5f, 0.3f, 1.2f}, {0.2f, -0.1f, -2}, {0.1f, 1, 0}).inverted());
   const std::vector<std::pair<std::string, decltype(description::Camera::node)>> nodes{
@@ -77,7 +77,7 @@ TEST(CameraStatistics, LightTracedFromASphereOfRadianceOneIsOne) {
 }
 
 // A realistic camera measures irradiance: light traced through its lens from a cone of directions of the sphere gives
-// what rays from its film give. z-test of every tile, both sides noisy.
+// the same as rays from its film. z-test of every tile, with noise on both sides.
 TEST(CameraStatistics, BothDirectionsThroughALensAgree) {
   description::Camera description;
   description::RealisticCamera lens;
@@ -114,7 +114,7 @@ TEST(CameraStatistics, BothDirectionsThroughALensAgree) {
   }
 }
 
-// A camera's densities integrate to 1: uniform directions (or, orthographic, positions), weighted by pdf.
+// A camera's densities integrate to 1: uniform directions (for an orthographic camera, positions), weighted by pdf.
 TEST(CameraStatistics, DensityOfDirectionsIntegratesToOne) {
   for (const auto& [name, node] : std::vector<std::pair<std::string, decltype(description::Camera::node)>>{
            {"perspective", description::PerspectiveCamera{70, 0, 1e6f}},
@@ -131,7 +131,7 @@ TEST(CameraStatistics, DensityOfDirectionsIntegratesToOne) {
       const bool seen = camera.connect(d, {0.5f, 0.5f}, 0).has_value();
       mean.add(seen ? static_cast<double>(camera.pdf({Point(0), d}).direction) / pdf_uniform_sphere : 0);
     }
-    // Single precision: of cameras whose density is the same all round, samples hardly differ.
+    // Tolerance for single precision: for cameras with a nearly constant density, samples hardly differ.
     EXPECT_TRUE(test::agrees(mean, 1, z_limit(3), 1e-5)) << name;
     EXPECT_LT(mean.error(), 0.005) << name;
   }

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Density estimates on a uniformly lit plane: points of a uniform field must be estimated at the field's density in
-// expectation.
+// Density estimates on a uniformly lit plane: for points of a uniform field, the expected estimate is the field's
+// density.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -28,7 +28,7 @@ constexpr float side = 500;  // of the lit square, whose density is 1 per unit o
 constexpr float margin = 15;
 constexpr int fields = 32;
 
-/// Uniform points on an oblique plane, and a way onto it.
+/// Uniform points on an oblique plane, and the map onto it.
 struct Field {
   explicit Field(std::uint64_t seed) : points(static_cast<std::size_t>(side * side)) {
     HashRng rng(seed);
@@ -39,7 +39,7 @@ struct Field {
   }
   static Point at(float x, float y) { return x * Vec3(0.6f, 0.8f, 0) + y * Vec3(0.48f, -0.36f, 0.8f); }
 
-  /// Calls `visit` with query points of this spacing, far from the border.
+  /// Calls `visit` with query points at this spacing, far from the border.
   template <class Visit>
   static void for_each_query(float spacing, Visit&& visit) {
     for (float y = margin; y < side - margin; y += spacing)
@@ -69,7 +69,7 @@ class NearestDensity : public testing::TestWithParam<std::size_t> {};
 
 TEST_P(NearestDensity, IsRightForEveryKernel) {
   const std::size_t k = GetParam();
-  // Nearly no two queries share points: the radius is sqrt(k / pi) on average.
+  // Hardly any two queries share points: the radius is sqrt(k / pi) on average.
   const float spacing = 2.5f * std::sqrt(static_cast<float>(k) / pi);
   std::array<Mean, kernels.size()> means;
   std::vector<Neighbour> memory(k);
@@ -85,7 +85,7 @@ TEST_P(NearestDensity, IsRightForEveryKernel) {
 
 INSTANTIATE_TEST_SUITE_P(Photons, NearestDensity, testing::Values(10, 50));
 
-// Half of the photons are the other side's: those of this side are counted up to k, and their density is right.
+// Half of the photons are on the other side: those on this side are counted up to k, and their density is correct.
 TEST(EstimateDensity, PhotonsOfTheOtherSideDoNotCount) {
   constexpr std::size_t k = 20;
   Mean density, photons, counted;
@@ -114,8 +114,8 @@ TEST(EstimateDensity, PhotonsOfTheOtherSideDoNotCount) {
   EXPECT_LT(density.error(), 0.002);
 }
 
-// Half of the field has nine times the light of the other. Of the darker half's points near the border, those whose
-// nearest photons reach over it.
+// Half of the field has nine times the light of the other. Considers points of the darker half near the border whose
+// nearest photons reach across it.
 TEST(EstimateDensity, DifferentialCheckingKeepsBordersOfLight) {
   Mean plain, checked, even;  // of fields
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
@@ -136,7 +136,7 @@ TEST(EstimateDensity, DifferentialCheckingKeepsBordersOfLight) {
       return static_cast<double>(estimate_density(map, q, settings, bring).light[0]);
     };
     double in_plain = 0, in_checked = 0, in_even = 0;
-    constexpr int queries = 17;  // that share photons
+    constexpr int queries = 17;  // that use the same photons
     for (int i = 0; i < queries; ++i) {
       const Point q(-2.5f, 0.5f * static_cast<float>(i) - 4, 0);
       in_plain += estimate(halves, q, 0) / queries;

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Filters against quadrature, and their samples against them (chi-squared). The other tests with random numbers check
-// each of them, and no mean.
+// Filters against quadrature, and chi-squared tests of their samples. The other tests with random numbers check each
+// sample, not means.
 #include "film/filter.h"
 
 #include <gtest/gtest.h>
@@ -52,7 +52,7 @@ TEST(Filter, KnownValues) {
   EXPECT_NEAR(Filter(MitchellFilter{}).evaluate({1, 0}), 1.0f / 18 * 16 / 18, 1e-6);
   EXPECT_NEAR(Filter(SincFilter{}).evaluate({0, 0.5f}), 2 / std::numbers::pi * (3 / std::numbers::pi), 1e-6);
   EXPECT_LT(Filter(SincFilter{}).evaluate({1.5f, 0}), 0);
-  // Mitchell & Netravali's filters integrate to 1 over [-2, 2] whatever B and C.
+  // Mitchell & Netravali's filters integrate to 1 over [-2, 2] for all B and C.
   EXPECT_NEAR(Filter(MitchellFilter{{2, 2}, 0.7f, 0.2f}).integral(), 1, 1e-5);
 }
 
@@ -76,7 +76,7 @@ TEST(Filter, WeightIsTheRatioOfIntegrals) {
     for (int i = 0; i < 1000; ++i) {
       const FilterSample s = filter.sample(rng.next2());
       EXPECT_NEAR(std::fabs(s.weight), expected, 1e-3 * expected);
-      // A cell of the sampler's table has one sign; the filter may change its own inside, where it is near 0.
+      // Each cell of the sampler's table has one sign; the filter may change sign inside it, where it is near 0.
       const float f = filter.evaluate(s.offset);
       if (std::fabs(f) > 0.01f) {
         EXPECT_EQ(s.weight > 0, f > 0) << s.offset.x << " " << s.offset.y;
@@ -107,7 +107,7 @@ TEST(Filter, SamplesFollowTheFilter) {
             samples / total *
             integrate(filter, edge(i, r.x), edge(i + 1, r.x), edge(j, r.y), edge(j + 1, r.y), 20, absolute);
         const double observed = counts[static_cast<std::size_t>(j * cells + i)];
-        if (expected < 10) {  // too few for the approximation: pooled
+        if (expected < 10) {  // too few for the approximation: pool cells
           rest_expected += expected;
           rest_observed += observed;
           continue;
@@ -125,7 +125,7 @@ TEST(Filter, SamplesFollowTheFilter) {
   }
 }
 
-// Stratified and low-discrepancy numbers keep their structure only if the warp is monotonic without steps.
+// Stratified and low-discrepancy numbers keep their structure only if the warp is monotonic and continuous.
 TEST(Filter, SamplingIsContinuous) {
   for (const FilterShape& shape : shapes) {
     const Filter filter(shape);
@@ -139,7 +139,7 @@ TEST(Filter, SamplingIsContinuous) {
   }
 }
 
-// Splats and samples must reconstruct alike: the mean over raster positions of a splat's weight in a pixel is the
+// Splats and samples must reconstruct equally: the mean weight of a splat in a pixel, over raster positions, is the
 // filter's share.
 TEST(Filter, SplatsReconstructLikeSamples) {
   for (const FilterShape& shape : shapes) {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Guided directions against their densities, and the light that they bring against that of closures alone.
+// Chi-squared tests of guided directions, and their light against that of the closures alone.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -19,10 +19,10 @@ namespace {
 
 const Normal oblique = normalize(Vec3(0.3f, -0.7f, 0.5f));
 
-/// From a small part of the hemisphere, and a little from everywhere.
+/// Photons from a small part of the hemisphere, and a few from everywhere.
 std::vector<DirectionGuide::Seen> uneven_light(const Frame& frame) {
   std::vector<DirectionGuide::Seen> light;
-  HashRng rng(3);  // a part of what is tested
+  HashRng rng(3);  // part of what is tested
   for (int i = 0; i < 100; ++i) light.push_back({frame.to_world(sample_cosine_hemisphere(rng.next2())), 0.3f});
   for (int i = 0; i < 100; ++i)
     light.push_back({frame.to_world(normalize(at_angles(55, 70) + 0.1f * sample_uniform_sphere(rng.next2()))), 1});
@@ -50,7 +50,7 @@ TEST(DirectionGuide, SamplesFollowTheDensity) {
   const DirectionSampler sampler{[&](float, const Vec2& u) { return guide.sample(u); },
                                  [&](const Vec3& w) { return guide.pdf(w); }};
   EXPECT_TRUE(chi2_test(sampler));
-  EXPECT_TRUE(jacobian_test(sampler, {.share = 0.85}));  // edges of cells are seams too
+  EXPECT_TRUE(jacobian_test(sampler, {.share = 0.85}));  // cell boundaries are seams, too
 }
 
 TEST(DirectionGuide, WithoutLightHasNoSamples) {
@@ -60,7 +60,7 @@ TEST(DirectionGuide, WithoutLightHasNoSamples) {
   EXPECT_EQ(guide.pdf(oblique), 0);
 }
 
-// As a walk draws them, at a closure that has a density of its own.
+// Directions as sampled by a walk, at a closure that has its own density.
 TEST(GuidedWalk, DirectionsFollowTheMixture) {
   const TestVertex test(glossy, at_angles(40, 20));
   const SurfaceVertex& v = test.vertex;
@@ -84,8 +84,8 @@ TEST(GuidedWalk, DirectionsFollowTheMixture) {
   }
 }
 
-// A coat of mirror-like lacquer over a diffuse base: its samples are of a delta lobe or, of the base, stochastic with a
-// density that is known only nearly. From a sky that is brighter on one side.
+// A mirror-like coat over a diffuse base: samples are of a delta lobe or of the base, stochastic with an approximate
+// density. Lit by a sky that is brighter on one side.
 TEST(GuidedWalk, BringsTheLightOfTheClosureAlone) {
   const Bsdf lacquer = CoatedDiffuse{.base = {Spectrum(0.7f)}};
   const TestVertex test(lacquer, at_angles(30, -60));
@@ -108,7 +108,7 @@ TEST(GuidedWalk, BringsTheLightOfTheClosureAlone) {
   }
 }
 
-// What roulette judges by is what the closure's own samples would carry: a diffuse surface's reflectance.
+// Russian roulette uses what the closure's own samples would carry: for a diffuse surface, its reflectance.
 TEST(GuidedWalk, RouletteDoesNotSeeTheGuide) {
   const TestVertex test(Diffuse{Spectrum(0.7f)}, at_angles(30, -60));
   const DirectionGuide guide(oblique, uneven_light(test.at.shading));

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Lights against their densities (chi-squared) and against irradiance by quadrature or in closed form (z-tests).
+// Lights: chi-squared tests of densities, and z-tests of irradiance against quadrature or closed forms.
 #include "light/light.h"
 
 #include <gtest/gtest.h>
@@ -25,12 +25,12 @@ constexpr double pi_d = std::numbers::pi;
 
 double to_double(float x) { return static_cast<double>(x); }
 
-/// Of quadrature and rounding, relative.
+/// Relative tolerance for quadrature and rounding.
 constexpr double slack = 2e-4;
 
 double limit_of(int checks) { return z_limit(sidak(false_alarm_rate, checks)); }
 
-/// Counts of surface points by voxel and by side of the normal.
+/// Numbers of surface points by voxel and by side of the normal.
 using Cells = std::map<int, detail::Cell>;
 int cell_of(const Bounds& box, const glm::dvec3& p, const glm::dvec3& n) {
   int cell = 0;
@@ -47,7 +47,7 @@ int cell_of(const Bounds& box, const glm::dvec3& p, const glm::dvec3& n) {
   return detail::judge(list, options);
 }
 
-/// Convex surfaces hide their far side from a cone of directions.
+/// Convex surfaces hide their far side for a cone of directions.
 bool hides_far_side(const EmitterShape& shape, const Point& from) {
   const auto* sphere = std::get_if<SphereEmitter>(&shape);
   return sphere && sphere->world_radius > 0 && distance_squared(from, sphere->centre) > sqr(sphere->world_radius);
@@ -143,7 +143,7 @@ TEST(LightStatistics, PointsOfScreensFollowTheirBrightness) {
   }
 }
 
-/// Where a light's rays of all its directions start, if it matters.
+/// The start of a light's rays in all its directions, if it matters.
 EmitterHit on_light(const Light& light) {
   const auto* portal = std::get_if<PortalLight>(&light);
   return portal ? EmitterHit{portal->portal->corner + 0.4f * (portal->portal->width * portal->portal->frame.s +
@@ -380,7 +380,7 @@ TEST(LightStatistics, IrradianceOfImagesByQuadrature) {
   }
 }
 
-/// A square that receives on one side.
+/// A square that receives light on one side.
 struct Receiver {
   Point centre;
   Frame frame;
@@ -401,7 +401,7 @@ TEST(LightStatistics, PhotonsBringWhatNextEventEstimationSees) {
   const double z = limit_of(static_cast<int>(lights.size()));
   int seen = 0;
   for (const NamedLight& l : lights) {
-    // Occlusion is left out on both sides, which differ where the inside of a sphere is seen through its front.
+    // Occlusion is ignored on both sides, which differ where the inside of a sphere is visible through its front.
     const auto* surface = std::get_if<AreaLight>(&l.light);
     const Point centre = surface ? Point(1.2f, 1.8f, -1.5f) : Point(0.6f, -0.2f, 0.1f);
     if (surface && hides_far_side(surface->shape, centre) && (surface->two_sided || surface->flip_normal)) continue;

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// A sampler's pdf is the inverse of how much it stretches the unit square: |d sample / d u| * pdf = 1. Finite
-// differences check that point by point, which finds wrong factors that statistics would need many samples for.
+// A sampler's pdf is the inverse of its area stretch of the unit square: |d sample / d u| * pdf = 1. Finite differences
+// check this point by point, which finds wrong factors that statistics would need many samples for.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -18,9 +18,9 @@ namespace lanthorn::test {
 
 struct JacobianOptions {
   int points = 400;         ///< of the unit square
-  float step = 2e-3f;       ///< of the central differences
+  float step = 2e-3f;       ///< step of the central differences
   double tolerance = 0.03;  ///< relative
-  /// Share of the points that must agree: differences across a seam of the warp (phi = 0, the diagonals of the
+  /// Fraction of the points that must agree: differences across a seam of the warp (phi = 0, the diagonals of the
   /// concentric disk) do not.
   double share = 0.94;
   float u1 = 0.5f;  ///< the first number given to `sample`, held fixed

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// A measurement that never took place: the tables of a rough conductor with GGX microfacets, as the database of
-// measured materials would hold them, and the bytes of such a file.
+// A synthetic measurement: the tables of a rough conductor with GGX microfacets in the format of the database of
+// measured materials, and the bytes of such a file.
 #pragma once
 
 #include <cmath>

@@ -25,7 +25,7 @@
 
 namespace lanthorn::test {
 
-/// By the view that the scene's file describes.
+/// Renders with the view of the scene's file.
 inline RenderPlan plan_render(const Scene& scene, const RenderOptions& options) {
   return lanthorn::plan_render(scene, scene.description().view, options);
 }
@@ -35,7 +35,7 @@ inline RenderState render_state(const Scene& scene, const RenderOptions& options
   if (resumed.film.width() > 0) plan.state = std::move(resumed);
   render(scene, plan, plan.stop);
   const FilmReport lost = plan.state.film.report();
-  // Light of any strength may be too large for a film; a sample that is not a number is a defect.
+  // Light of any strength may exceed a film's range; a NaN sample is a defect.
   EXPECT_EQ(lost.non_finite, 0u) << plan.state.integrator << ": " << describe_problems(lost).value_or("");
   plan.state.seconds = 0;  // the only part of a state that may differ between equal renders
   return std::move(plan.state);
@@ -50,7 +50,7 @@ inline Scene scene_from_text(const std::string& text, const std::filesystem::pat
   return Scene(read_pbrt_string(text, folder, "test scene"));
 }
 
-/// `integrator`: its name, and after colons parameters: "mlt:over=path". The seed is test::seed(number).
+/// `integrator`: its name, followed by parameters after colons: "mlt:over=path". The seed is test::seed(number).
 inline RenderOptions options_for(const std::string& integrator, std::uint64_t passes, std::uint64_t number = 0) {
   RenderOptions options;
   std::istringstream words(integrator);
@@ -66,16 +66,16 @@ inline RenderOptions options_for(const std::string& integrator, std::uint64_t pa
   return options;
 }
 
-/// Whether a method, named as for `options_for`, has this parameter.
+/// True if a method, named as for `options_for`, has this parameter.
 inline bool has_parameter(const std::string& integrator, const std::string& name) {
   const std::vector<ParameterInfo>& known = find_integrator(integrator.substr(0, integrator.find(':'))).parameters;
   return std::any_of(known.begin(), known.end(), [&](const ParameterInfo& p) { return p.name == name; });
 }
 
-/// Whether a method estimates densities: such methods take a "radius".
+/// True if a method estimates densities: such methods take a "radius".
 inline bool has_radius(const std::string& integrator) { return has_parameter(integrator, "radius"); }
 
-/// For names of tests: what is no letter or digit becomes an underscore.
+/// For test names: everything except letters and digits becomes an underscore.
 inline std::string identifier(std::string text) {
   for (char& c : text)
     if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';

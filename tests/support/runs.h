@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Independent renders, and t-tests of them. A single render does not say how noisy it is: the spread of several does,
-// and with it the limit is right whatever the noise.
+// Independent renders and t-tests of them. The noise of a single render is unknown; the spread of several measures it,
+// so that the limit is right for any noise.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@
 
 namespace lanthorn::test {
 
-/// Renders whose seeds count up from seed(first), all layers.
+/// Renders with consecutive seeds from seed(first), all layers.
 inline std::vector<Image> independent_renders(const Scene& scene, RenderOptions options, std::uint64_t runs,
                                               std::uint64_t first) {
   std::vector<Image> images;
@@ -41,15 +41,15 @@ inline double mean_of(const Image& image) {
   return sum / static_cast<double>(image.pixels.size());
 }
 
-/// Of pictures' means.
+/// Mean of the pictures' means.
 inline Mean mean_of_means(const std::vector<Image>& images) {
   Mean mean;
   for (const Image& image : images) mean.add(mean_of(image));
   return mean;
 }
 
-/// Of two sets of renders with the same seeds, and so of the same photons, pair by pair: 1 + difference of the means of
-/// a pair over the mean of all of `expected`. What both share is no noise of it.
+/// For two sets of renders with equal seeds, and therefore equal photons, pair by pair: 1 + difference of a pair's
+/// means divided by the mean of all of `expected`. Noise that both share cancels.
 inline Mean paired_ratio(const std::vector<Image>& found, const std::vector<Image>& expected) {
   const double mean = mean_of_means(expected).mean();
   Mean ratio;
@@ -58,7 +58,8 @@ inline Mean paired_ratio(const std::vector<Image>& found, const std::vector<Imag
   return ratio;
 }
 
-/// What |t| of Student's distribution exceeds at this rate: for 1e-6 and 7, 15 or 30 degrees of freedom 13.2, 7.5, 6.1.
+/// The value that |t| of Student's distribution exceeds at this rate: for 1e-6 and 7, 15 or 30 degrees of freedom 13.2,
+/// 7.5, 6.1.
 inline double t_limit(double rate, double degrees) {
   double low = 0, high = 1e5;
   for (int i = 0; i < 80; ++i) {
@@ -68,10 +69,10 @@ inline double t_limit(double rate, double degrees) {
   return high;
 }
 
-/// t-test: the mean of at least two numbers is within `slack` of `expected` (relative) and what their spread allows at
-/// this rate. That itself must not exceed `noise` (relative), for the test to tell anything. Of n runs, the measured
-/// spread is more than twice the true one with probability 1e-6 for n = 12, 1e-8 for n = 16: `noise` is at least three
-/// times what is allowed in the mean.
+/// t-test: the mean of at least two numbers is within `slack` of `expected` (relative) plus what their spread allows at
+/// this rate. This allowance must not exceed `noise` (relative), so that the test is meaningful. Of n runs, the
+/// measured spread is more than twice the true one with probability 1e-6 for n = 12, 1e-8 for n = 16: `noise` is at
+/// least three times the mean allowance.
 inline ::testing::AssertionResult runs_agree(const Mean& mean, double expected, double slack, double noise,
                                              double rate = false_alarm_rate) {
   const double allowed = t_limit(rate, mean.count() - 1) * mean.error();
@@ -94,7 +95,7 @@ inline ::testing::AssertionResult runs_agree(const Mean& a, const Mean& b, doubl
   return within(a.mean(), b.mean(), slack * std::fabs(b.mean()) + allowed) << ", standard error " << error;
 }
 
-/// Welch's t-test of each tile of two sets of renders, all tiles together at this rate.
+/// Welch's t-test of each tile of two sets of renders, with this false-alarm rate for all tiles together.
 inline ::testing::AssertionResult tiles_agree(const std::vector<Image>& a, const std::vector<Image>& b,
                                               double rate = false_alarm_rate) {
   const Comparison result = welch_tile_test(a, b);

@@ -4,7 +4,7 @@
 
 namespace lanthorn::test {
 
-/// A room lit by what a small place of a wall reflects, on which a spotlight shines.
+/// A room lit only by reflection from a small spot-lit area of a wall.
 inline const char* const spotlit_room = R"(
 LookAt 0 1 3.4  0 0.9 0  0 1 0
 Camera "perspective" "float fov" [42]

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// What statistical tests share: seeds that can be changed, means with their standard errors, and limits that a right
-// program exceeds at a stated rate. A fixed seed fixes nothing by itself: bytes differ between instruction sets.
+// Common parts of statistical tests: variable seeds, means with standard errors, and limits that a correct program
+// exceeds at a stated rate. A fixed seed alone does not fix results, since bytes differ between instruction sets.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -14,18 +14,18 @@
 
 namespace lanthorn::test {
 
-/// A test fails by chance at most at this rate, all its checks together.
+/// Maximum rate at which a test fails by chance, over all its checks.
 inline constexpr double false_alarm_rate = 1e-6;
 
-/// `n`; with --gtest_random_seed=S another number for each S, so that a test can be run with other random numbers.
+/// `n`, or with --gtest_random_seed=S a different number for each S, to run a test with other random numbers.
 inline std::uint64_t seed(std::uint64_t n) {
   return n + 1'000'003 * static_cast<std::uint64_t>(GTEST_FLAG_GET(random_seed));
 }
 
-/// The rate per check for which `checks` independent ones raise a false alarm at `rate` (Šidák 1967).
+/// The false-alarm rate per check that gives `rate` for `checks` independent checks together (Šidák 1967).
 inline double sidak(double rate, int checks) { return -std::expm1(std::log1p(-rate) / checks); }
 
-/// What |z| of a normal variable exceeds at this rate: 4.9 for 1e-6.
+/// The value that |z| of a normal variable exceeds at this rate: 4.9 for 1e-6.
 inline double z_limit(double rate = false_alarm_rate) {
   double low = 0, high = 40;
   for (int i = 0; i < 60; ++i) {
@@ -35,8 +35,8 @@ inline double z_limit(double rate = false_alarm_rate) {
   return high;
 }
 
-/// Notes how near a check came to a limit (1: at it). The largest of a test is this property in the report of
-/// --gtest_output=xml:FILE.
+/// Records how close a check came to its limit (1: at the limit). The largest value of a test becomes this property in
+/// the report of --gtest_output=xml:FILE.
 inline void note_share(const char* property, double share) {
   static const ::testing::TestInfo* test = nullptr;
   static std::map<std::string, double> largest;
@@ -47,9 +47,9 @@ inline void note_share(const char* property, double share) {
   of_property = std::max(of_property, share);
   ::testing::Test::RecordProperty(property, std::to_string(of_property));
 }
-/// Of the limit of what is tested.
+/// Records the share of the tested limit.
 inline void note_share_of_limit(double share) { note_share("share_of_limit", share); }
-/// Of the noise that a test may have, for it to tell anything.
+/// Records the share of the noise that a test may have while remaining meaningful.
 inline void note_share_of_noise(double share) { note_share("share_of_noise", share); }
 
 /// True if |a - b| <= limit.
@@ -60,14 +60,14 @@ inline ::testing::AssertionResult within(double a, double b, double limit) {
   return result << a << " and " << b << " differ by " << difference << ", limit " << limit;
 }
 
-/// True if a positive number is below its limit. What is written beside the limit says how far it is from the number's
-/// mean in standard deviations over seeds.
+/// True if a positive number is below its limit. The comment beside a limit states its distance from the number's mean,
+/// in standard deviations over seeds.
 inline ::testing::AssertionResult below(double x, double limit) {
   note_share_of_limit(x / limit);
   return (x < limit ? ::testing::AssertionSuccess() : ::testing::AssertionFailure()) << x << ", limit " << limit;
 }
 
-/// True if a probability under chance is not below `limit`.
+/// True if a p-value is not below `limit`.
 inline ::testing::AssertionResult not_below(double p, double limit) {
   note_share_of_limit(p > 0 ? std::log(p) / std::log(limit) : 100);
   auto result = p >= limit ? ::testing::AssertionSuccess() : ::testing::AssertionFailure();
@@ -93,8 +93,8 @@ class Mean {
   double n_ = 0, mean_ = 0, squares_ = 0;
 };
 
-/// z-test of a mean of so many numbers that their standard error is known: within z standard errors of `expected`, and
-/// `slack` of it for quadrature and rounding.
+/// z-test of a mean of so many numbers that their standard error is reliable: within z standard errors of `expected`,
+/// plus `slack` times it for quadrature and rounding.
 inline ::testing::AssertionResult agrees(const Mean& mean, double expected, double z, double slack = 0) {
   return within(mean.mean(), expected, z * mean.error() + slack * std::fabs(expected))
          << ", standard error " << mean.error();

@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// A room with something of everything, for tests of what integrators have in common.
+// A room that exercises many features, for tests of what all integrators have in common.
 #pragma once
 
 namespace lanthorn::test {
 
-/// Clear glass, a rough coat, rough metal, a textured wall, fog, three kinds of light, motion and a thin lens:
-/// everything that could draw from a wrong stream.
+/// Clear glass, a rough coat, rough metal, a textured wall, fog, three kinds of light, motion and a thin lens: anything
+/// that could draw random numbers from a wrong stream.
 inline const char* const varied_room = R"(
 TransformTimes 0 1
 LookAt 0 1 4.4  0 1 0  0 1 0

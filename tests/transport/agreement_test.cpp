@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Integrators agree with each other where their path classes overlap: Welch's t-test per tile, and of the whole.
+// Integrators agree where their sets of paths overlap: Welch's t-test per tile and for the whole picture.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -27,7 +27,7 @@ namespace {
 
 const std::filesystem::path test_scenes = std::filesystem::path(LANTHORN_SOURCE_DIR) / "tests/scenes";
 const std::string overview = "LookAt 0 1 4.4  0 1 0  0 1 0\n";
-// So near to the ball that its facets cover tiles.
+// So close to the ball that its facets cover tiles.
 const std::string close_up = "LookAt 0.1 0.6 1.7  0.1 0.6 0  0 1 0\n";
 const std::string film =
     "Camera \"perspective\" \"float fov\" [36]\n"
@@ -54,7 +54,7 @@ const std::string varnished_floor =
     "Material \"coateddiffuse\" \"rgb reflectance\" [0.2 0.3 0.6] \"float roughness\" [0.02]\n" +
     test::patch("-0.4 0.01 -1  0.2 0.01 -1  -0.4 0.01 1  0.2 0.01 1") +
     "Material \"conductor\" \"float roughness\" [0.06]\n" + test::patch("0.2 0.01 -1  1 0.01 -1  0.2 0.01 1  1 0.01 1");
-// Metal that photons and walk halve, lit by a ceiling alone: the lamp shines upwards.
+// A metal surface on which both photons and walks find half of the light, lit only by a ceiling: the lamp shines up.
 const std::string metal_room =
     "Material \"diffuse\" \"rgb reflectance\" [0.8 0.8 0.8]\n" + test::patch("-1 2 -1  1 2 -1  -1 2 1  1 2 1") +
     "Material \"conductor\" \"float roughness\" [0.06]\n" + test::patch("-1 0 1  1 0 1  -1 0 -1  1 0 -1") +
@@ -62,7 +62,7 @@ const std::string metal_room =
     test::patch("1 0 1  1 0 -1  1 2 1  1 2 -1") +
     "AreaLightSource \"diffuse\" \"rgb L\" [17 12 4]\nMaterial \"diffuse\" \"rgb reflectance\" [0 0 0]\n"
     "Translate 0 1.7 0\nRotate -90 1 0 0\nShape \"disk\" \"float radius\" [0.3]\n";
-// A tessellated ball with interpolated normals: the adjoint of shading normals decides whether light paths agree.
+// A tessellated ball with interpolated normals: light paths agree only with the adjoint of shading normals.
 const std::string smooth_ball_material = "Translate 0.1 0.6 0\nScale 0.5 0.5 0.5\n";
 
 // An icosahedron whose vertex normals point from its centre.
@@ -93,7 +93,7 @@ std::string hairs() {
   return text;
 }
 
-// With a radius as small as the others'.
+// With a radius as small as that of the others.
 const char* const photonmap = "photonmap:nearest=0:caustic-nearest=0:max-radius=0.012:gather=4:irradiance=estimated";
 const char* const reversephotonmap = "reversephotonmap:caustic-nearest=0:max-radius=0.012:gather=4";
 
@@ -111,8 +111,8 @@ const std::map<std::string, std::string>& scenes() {
   };
   const std::string diffuse_ball = ball("Material \"diffuse\" \"rgb reflectance\" [0.6 0.6 0.2]\n");
   const std::string under_lamp = overview + film + area_light + walls;
-  // A lamp in a glass globe: all light comes by photons, and lights a ball whose shading normals are far from its
-  // facets'.
+  // A lamp in a glass globe: all light comes from photons, and illuminates a ball whose shading normals differ much
+  // from its facets'.
   const std::string globe =
       "AttributeBegin\nMaterial \"dielectric\" \"float eta\" [1.5]\nTranslate 0 1.7 0\n"
       "Shape \"sphere\" \"float radius\" [0.3]\nAttributeEnd\n";
@@ -121,8 +121,8 @@ const std::map<std::string, std::string>& scenes() {
       {"small_lights", overview + film + small_lights + walls + diffuse_ball},
       {"rough_glass", under_lamp + ball("Material \"dielectric\" \"float eta\" [1.5] \"float roughness\" [0.3]\n")},
       {"rough_metal", under_lamp + ball("Material \"conductor\" \"float roughness\" [0.3]\n")},
-      // Narrow lobes, on wide ones and alone, which photons and eye paths share: of indirect light, and of direct light
-      // that both techniques find.
+      // Narrow lobes, over wide ones and alone, whose light photons and eye paths share: indirect light, and direct
+      // light found by both techniques.
       {"varnish", from_above + film + area_light + walls + diffuse_ball + varnished_floor},
       {"varnish_under_sky",
        from_above + film + "LightSource \"infinite\" \"rgb L\" [0.3 0.4 0.6]\n" + walls + varnished_floor},
@@ -130,24 +130,24 @@ const std::map<std::string, std::string>& scenes() {
       {"leaf", under_lamp + ball("Material \"diffusetransmission\" \"rgb reflectance\" [0.3 0.3 0.1] \"rgb "
                                  "transmittance\" [0.2 0.6 0.2]\n")},
       {"sky", overview + film + "LightSource \"infinite\" \"rgb L\" [0.3 0.4 0.6]\n" + walls + diffuse_ball},
-      // A sky in an opening, which the line through the world's origin in the direction of the light mostly misses.
+      // A sky in an opening, which lines through the world's origin in the direction of the light mostly miss.
       {"window", overview + film +
                      "LightSource \"infinite\" \"rgb L\" [3 4 6] \"point3 portal\" [1 0.5 -0.5  1 0.5 0.5  1 1.5 0.5  "
                      "1 1.5 -0.5]\n" +
                      walls + diffuse_ball},
       // Light through clear glass with strongly interpolated normals: photons must carry the adjoint of shading
-      // normals. (What the eye sees through clear glass light tracing cannot find.)
+      // normals. (Light tracing cannot find what the eye sees through clear glass.)
       {"clear_glass", close_up + film + area_light + walls + ball("Material \"dielectric\" \"float eta\" [1.5]\n")},
       {"lamp_in_glass", close_up + film + area_light + globe + diffuse_ball},
-      // Hair, whose rays each have a normal of their own: light goes from strand to strand.
+      // Hair, with a different normal for each ray: light passes from strand to strand.
       {"hair", under_lamp + hairs()},
       {"spotlit_room", test::spotlit_room},
       {"varied_room", test::varied_room},
-      // Images, alpha and instances on what emits.
+      // Images, alpha and instances on emitters.
       {"emitters", read_file(test_scenes / "emitters.pbrt")},
-      // Curves, which are meshes where they emit.
+      // Curves; emitting ones are meshes.
       {"curve_lamps", read_file(test_scenes / "curve-lamps.pbrt")},
-      // Shading normals that no surface has, on all kinds of closures.
+      // Shading normals far from the surface's, with all kinds of closures.
       {"relief", read_file(test_scenes / "relief.pbrt")}};
   return all;
 }
@@ -156,10 +156,10 @@ constexpr ColorMode rgb = ColorMode::rgb, spectral = ColorMode::spectral;
 const std::string guided_photonmap = std::string(photonmap) + ":guide=photons";
 const std::string own_caustics = std::string(photonmap) + ":caustic-photons=60000:emission=";
 
-// Each method meets each closure, kind of light and technique that it handles by code of its own; closures and lights
-// are shared among methods, so that not every method meets every one.
+// Each method meets each closure, kind of light and technique for which it has its own code; methods share closures and
+// lights, so that not every method meets every one.
 const std::vector<Case> cases{
-    // Photons and light paths that reach the lens, one technique each: an error is seen in full.
+    // Photons, and light paths to the lens, with a single technique each, so that errors are fully visible.
     {"shading_normals", "light", rgb, 1, 12},
     {"small_lights", "light", rgb, 1, 12},
     {"rough_glass", "light", spectral, 1, 12},
@@ -208,13 +208,13 @@ const std::vector<Case> cases{
     {"metal_room", photonmap, rgb},
     {"clear_glass", photonmap, spectral},
     {"rough_metal", reversephotonmap, rgb},
-    // Photons that start where it is worth it: by lights of all kinds, and through glass.
+    // Photons emitted where they matter: for lights of all kinds, and through glass.
     {"small_lights", "probppm:emission=projected", rgb},
     {"small_lights", "probppm:emission=learned", rgb, 1, 12},
     {"leaf", "vcm:emission=learned", rgb, 1, 12},
     {"sky", "bpm:emission=learned", rgb, 1, 12},
     {"clear_glass", own_caustics + "projected", rgb},
-    // Guided walks, in all that they meet.
+    // Guided walks with all that they meet.
     {"rough_metal", "path:guide=photons", spectral},
     {"leaf", "path:guide=photons", rgb},
     {"spotlit_room", "path:guide=photons", rgb},
@@ -223,7 +223,7 @@ const std::vector<Case> cases{
     {"leaf", guided_photonmap, rgb},
 };
 
-// Further pairs of scenes and methods, whose parts the others test in other pairs.
+// Further pairs of scenes and methods, whose parts are tested in other pairs above.
 const std::vector<Case> nightly_cases{
     {"rough_metal", "light", spectral, 1, 12},
     {"leaf", "light", spectral, 1, 12},
@@ -268,7 +268,7 @@ std::vector<Image> renders(const Scene& scene, const Case& c, const std::string&
   options.color = c.color;
   options.max_depth = 5;
   options.photons = 60'000;
-  if (options.integrator == "mlt") {  // whose means are as good as its independent paths are many
+  if (options.integrator == "mlt") {  // the accuracy of its means depends on the number of independent paths
     options.photons = 10'000;
     options.set["bootstrap"] = "1";
   }
@@ -276,7 +276,7 @@ std::vector<Image> renders(const Scene& scene, const Case& c, const std::string&
   return test::select_layers(test::independent_renders(scene, options, runs, first_seed), "color");
 }
 
-// The same for all integrators that it is compared with.
+// The same for all integrators with which it is compared.
 const std::vector<Image>& reference_renders(const Scene& scene, const Case& c) {
   static std::map<std::tuple<std::string, ColorMode, std::uint64_t>, std::vector<Image>> known;
   std::vector<Image>& images = known[{c.scene, c.color, c.effort}];
@@ -285,8 +285,8 @@ const std::vector<Image>& reference_renders(const Scene& scene, const Case& c) {
 }
 
 // Many runs of few passes: limits of t-tests fall faster with the number of runs than the noise of a run grows. Half as
-// many where the start of each is dear, and for light tracing, whose few splats in a dark tile are far from normally
-// distributed: with 24 runs of one pass, one seed of three gave p = 3e-6, and with 12 of two passes another 2e-7.
+// many where starting each is expensive, and for light tracing, whose few splats in a dark tile are far from normally
+// distributed: with 24 runs of one pass, one of three seeds gave p = 3e-6, and with 12 of two passes another 2e-7.
 TEST_P(Agreement, WithPath) {
   const Case& c = GetParam();
   const Scene scene = test::scene_from_text(scenes().at(c.scene), test_scenes);
@@ -294,7 +294,7 @@ TEST_P(Agreement, WithPath) {
   const std::vector<Image>& reference = reference_renders(scene, c);
   const std::vector<Image> other = renders(scene, c, c.integrator, passes, c.runs, 200);
   EXPECT_TRUE(test::tiles_agree(other, reference, test::false_alarm_rate / 2));
-  // The whole image: catches small errors that are spread out. 0.5 % are for the bias of radii.
+  // The whole image: finds small errors that are spread out. 0.5 % allows for the bias of radii.
   EXPECT_TRUE(test::runs_agree(test::mean_of_means(other), test::mean_of_means(reference), 0.005, 0.2,
                                test::false_alarm_rate / 2));
 }
@@ -312,7 +312,7 @@ std::string room_with_emissive_fog() {
   return text.insert(text.find("\"rgb sigma_a\""), "\"rgb Le\" [1 2 3] ");
 }
 
-// Of one seed, and each strategy shows some light.
+// With one seed; each strategy shows some light.
 TEST(Bidirectional, StrategiesAddUpToTheImage) {
   const Scene scene = test::scene_from_text(test::varied_room);
   constexpr int depth = 2;
@@ -332,7 +332,7 @@ TEST(Bidirectional, StrategiesAddUpToTheImage) {
         sum[i] += static_cast<double>(one.pixels[i]);
         light += static_cast<double>(one.pixels[i]);
       }
-      if (vertices > 2 || s == 0) {  // no light is joined to the lens itself
+      if (vertices > 2 || s == 0) {  // no light is connected to the lens itself
         EXPECT_GT(light, 0) << s << ", " << vertices - s;
       }
     }
@@ -383,8 +383,8 @@ TEST(Layers, OfOneScatteringAreDirect) {
   }
 }
 
-// The room's only delta surface is of dispersive glass, and a pass of these methods has two sets of wavelengths: light
-// of its caustics is of two hero wavelengths alone, so that the colours of all pixels lie in one plane.
+// The room's only delta surface is dispersive glass, and a pass of these methods has two sets of wavelengths: light of
+// its caustics has only two hero wavelengths, so that the colours of all pixels lie in one plane.
 TEST(Layers, DispersedCausticsOfAPassAreOfTwoColors) {
   const Scene scene = test::scene_from_text(test::varied_room);
   for (const char* integrator : {"probppm", "bdpt", "vcm", "bpm", "mlt", "mlt:over=path"}) {
@@ -407,8 +407,8 @@ TEST(Layers, DispersedCausticsOfAPassAreOfTwoColors) {
   }
 }
 
-// Whatever finds it, light is of its path's class. A glass ball under a lamp that path can hit: a fifth of what the
-// camera sees is its caustic.
+// Light is in the class of its path, whichever technique finds it. A glass ball under a lamp that path can hit: a fifth
+// of the light that the camera sees is its caustic.
 TEST(Layers, AgreeWithPath) {
   const Scene scene = test::scene_from_text(
       "LookAt 0 1 1.4  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [36]\n"

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Scenes whose radiance is known in closed form, by every integrator that can find their paths, at truncated depths.
+// Scenes with closed-form radiance, by every integrator that can find their paths, at limited depths.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -22,7 +22,7 @@ struct AnalyticScene {
 // Inside a diffuse sphere of albedo 1/2 that emits 1/2: sum over k <= depth of emission * albedo^k.
 double furnace(int depth) { return 0.5 * (1 - std::pow(0.5, depth + 1)) / (1 - 0.5); }
 // A point light of intensity pi in the middle of a unit sphere of albedo 1/2: irradiance pi, so 1/2 after one
-// scattering, and each further one adds half of the one before.
+// scattering, and each further scattering adds half of the previous term.
 double lit_sphere(int depth) { return depth == 0 ? 0 : 0.5 * (1 - std::pow(0.5, depth)) / (1 - 0.5); }
 // A convex diffuse body of albedo 0.7 under a uniform sky of radiance 1.
 double under_sky(int depth) { return depth == 0 ? 0 : 0.7; }
@@ -69,7 +69,7 @@ std::vector<Case> cases() {
 }
 
 RenderOptions options_of(const Case& c) {
-  // Where light paths of a pass are kept they share its wavelengths: the tint takes some passes to go.
+  // Where a pass keeps light paths, eye paths share its wavelengths: the tint averages out only over several passes.
   const bool shares_wavelengths = c.integrator != "path" && c.integrator != "light";
   const bool is_tinted = shares_wavelengths && c.color == ColorMode::spectral;
   RenderOptions options = test::options_for(c.integrator, is_tinted ? 6 : shares_wavelengths ? 2 : 1);

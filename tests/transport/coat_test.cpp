@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Coated closures, which walk between coat and base without positions, against the same coats as geometry: a sheet of
-// rough dielectric over a floor, path traced. Both planes are so wide (1000 times their distance) that one path in a
-// million sees an end. The closures know no cut of their walks here that matters (maxdepth).
+// Coated closures, which simulate walks between coat and base without positions, against the same coats as geometry: a
+// sheet of rough dielectric over a floor, path traced. Both planes are so wide (1000 times their distance) that one
+// path in a million sees an edge. The closures' walks are not noticeably truncated here (maxdepth).
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@
 namespace lanthorn::coat_test {
 namespace {
 
-/// Everywhere above, or within 45 degrees of the zenith alone.
+/// Everywhere above, or only within 45 degrees of the zenith.
 const std::string sky = "LightSource \"infinite\" \"rgb L\" [1 1 1]\n";
 const std::string lamp =
     "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [1 1 1]\nReverseOrientation\n"
@@ -93,7 +93,7 @@ class CoatAsGeometry : public testing::TestWithParam<Coat> {};
 // Standard errors of the ratio are 0.2 % (nearly smooth) to 0.9 % (milky, lamp). With twice the passes all 27 ratios
 // were within 1.1 standard errors of 1. With a million samples each, at 45 degrees: `nearly smooth` 0.5399 and 0.5401,
 // `rough` 0.4266 both ways, `rougher` 0.3337 and 0.3338. pbrt-v4's coats are 4 to 6 % brighter; walks that count
-// next-event estimation and hits both in full, 9 to 18 %.
+// next-event estimation and hits both fully, 9 to 18 %.
 TEST_P(CoatAsGeometry, AgreesWithTheClosure) {
   const std::vector<int> angles{10, 45, 75};
   const double rate = test::false_alarm_rate / static_cast<double>(2 * angles.size());

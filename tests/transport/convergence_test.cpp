@@ -27,7 +27,7 @@ struct Expected {
   double deviation = 0, bias = 0, error = 0;
 };
 
-// Of renders whose seeds count up: the bias without what noise adds to it.
+// For renders with consecutive seeds: the bias without the contribution of noise.
 Expected expected_of(const std::vector<Image>& renders, const Image& reference) {
   const auto runs = static_cast<double>(renders.size()), values = static_cast<double>(reference.pixels.size());
   double variance = 0, bias2 = 0, error2 = 0;
@@ -45,7 +45,7 @@ Expected expected_of(const std::vector<Image>& renders, const Image& reference) 
   return {std::sqrt(variance), std::sqrt(bias2 - variance / runs), std::sqrt(error2)};
 }
 
-// Splats, too, are means over the passes.
+// Splats are means over the passes as well.
 RenderOptions options(std::uint64_t passes, std::uint64_t seed) {
   RenderOptions result = test::options_for("bdpt", passes, seed);
   result.photons = 100;
@@ -80,7 +80,7 @@ TEST(Convergence, IsMeasuredByItsDefinition) {
     EXPECT_NEAR(*all.points[i].bias, expected[i].bias, 1e-9);
     EXPECT_NEAR(*all.points[i].error, expected[i].error, 1e-9);
   }
-  // Least squares through points at 0, 1 and 2 go by the outer two.
+  // A least-squares line through points at 0, 1 and 2 is determined by the outer two.
   const auto slope = [](double from, double to, double octaves) { return std::log2(to / from) / octaves; };
   EXPECT_NEAR(*all.variance_slope, 2 * slope(expected[0].deviation, expected[2].deviation, 2), 1e-6);
   EXPECT_NEAR(*all.bias_slope, slope(expected[0].bias, expected[2].bias, 2), 1e-6);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The same bytes for any number of threads, resumed, and merged from shards, for every integrator and colour mode.
+// Equal bytes for any number of threads, resumed, and merged from shards, for every integrator and colour mode.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -103,7 +103,7 @@ class EveryMethod : public testing::TestWithParam<Case> {
   static const Scene& scene() { return GetParam().spectral_film ? scene_with_spectral_film() : test_scene(); }
 };
 
-// One test, because all of its parts are compared with the same render.
+// A single test, because all its parts are compared with the same render.
 TEST_P(EveryMethod, BytesDoNotDependOnThreadsResumingOrShards) {
   const RenderState whole = render_with(2, {0, 3});
   const std::vector<std::byte> expected = encode_state(whole);
@@ -117,8 +117,8 @@ TEST_P(EveryMethod, BytesDoNotDependOnThreadsResumingOrShards) {
   EXPECT_EQ(expected, encode_state(merge_states(merge_states(third, first), second)));
 }
 
-// Radii of `auto` depend on the photons of the first 16 passes: of those that are rendered, traced once more by a shard
-// that begins later, or known from a saved state.
+// Radii of `auto` depend on the photons of the first 16 passes: these are rendered, retraced by a shard that begins
+// later, or known from a saved state.
 TEST(Determinism, RadiiOfAutoAreThoseOfItsFirstPasses) {
   const auto render = [](PassRange passes, const RenderState& resumed = {}) {
     RenderOptions options = test::options_for("auto", 0, 7);
@@ -153,7 +153,7 @@ TEST(Determinism, SeedsDiffer) {
   }
 }
 
-// In whatever order they are traced, the light paths of a pass are those of the allocation, each once.
+// Whatever the tracing order, the light paths of a pass are those of the allocation, each exactly once.
 TEST(LightPaths, OrderIsAPermutation) {
   const LightPass pass{7, Stream::light, 3, 5000};
   const LightPaths paths(test_scene(), pass);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// What disperses light has no colour of its own, although each pass of most methods sees it at few wavelengths.
+// Dispersive objects are colourless on average, although each pass of most methods uses few wavelengths.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -11,7 +11,7 @@
 namespace lanthorn::dispersion_test {
 namespace {
 
-// A clear ball alone in a white sky cannot be seen, whatever its index of refraction. It fills the picture.
+// A lone clear ball under a white sky is invisible, whatever its index of refraction. It fills the picture.
 const std::string ball_in_white_sky =
     "LookAt 0 0 -8  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [8]\nPixelFilter \"box\"\n"
     "Film \"rgb\" \"integer xresolution\" [12] \"integer yresolution\" [12]\nWorldBegin\n"
@@ -27,8 +27,8 @@ std::array<double, 3> mean_of(const Image& image) {
 
 class Dispersion : public testing::TestWithParam<const char*> {};
 
-// Every path through the ball brings radiance 1: what differs is the colour of the wavelengths alone. Each half of the
-// passes has a block of them (`wavelengths_in_order`).
+// Every path through the ball has radiance 1: only the colours of the wavelengths differ. Each half of the passes
+// contains a block of them (`wavelengths_in_order`).
 TEST_P(Dispersion, IsWhiteAfterThirtyTwoPasses) {
   const Scene scene = test::scene_from_text(ball_in_white_sky);
   for (std::uint64_t seed = 0; seed < 4; ++seed) {

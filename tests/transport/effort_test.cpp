@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The variance that the pilot of "auto" expects of other numbers of samples, against that of renders with them.
+// The variance that the pilot of "auto" predicts for other numbers of samples, against that of actual renders.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@
 namespace lanthorn::effort_test {
 namespace {
 
-// The lower part of the picture, without the lamp, whose edges would be most of the variance of every choice.
+// The lower part of the picture, without the lamp, whose edges would dominate the variance of every choice.
 constexpr int size = 64, height = 36;
 const std::map<std::string, std::string> fixed{{"radius", "0.04"}, {"alpha", "1"}, {"emission", "power"}};
 
@@ -35,7 +35,7 @@ RenderOptions options_of(const std::string& method, double light_paths, std::uin
   return options;
 }
 
-// Of a pass: the mean over pixels, of the sum of the components of radiance.
+// Variance per pass: the mean over pixels of the variance of the sum of radiance components.
 double variance_of(const Scene& scene, const std::string& method, double light_paths) {
   constexpr unsigned count = 96;
   std::vector<double> sum(size * height), squares(sum.size());
@@ -54,7 +54,7 @@ double variance_of(const Scene& scene, const std::string& method, double light_p
   return result;
 }
 
-// The same, as the pilot expects it of a candidate.
+// The same as predicted by the pilot for a candidate.
 double expected_variance(const EffortMeasurement& measured, std::size_t candidate) {
   double sum = 0;
   for (const EffortBlock& block : measured.blocks) {
@@ -66,7 +66,7 @@ double expected_variance(const EffortMeasurement& measured, std::size_t candidat
 
 struct Case {
   const char* scene;
-  const char* method;  // that renders with these numbers
+  const char* method;  // renders with these numbers
   float light_paths;
   bool merges;
 };
@@ -76,7 +76,7 @@ class Estimates : public testing::TestWithParam<Case> {};
 TEST_P(Estimates, OfVarianceAreThoseOfRendersWithinAFifth) {
   const Case& c = GetParam();
   const Scene scene(read_scene(std::string(LANTHORN_SOURCE_DIR "/scenes/") + c.scene));
-  // The mean of many pilots: one alone has few samples of a picture as small as this.
+  // Averages many pilots: a single one has few samples of such a small picture.
   double expected = 0;
   constexpr unsigned pilots = 24;
   for (unsigned seed = 0; seed < pilots; ++seed) {
@@ -96,7 +96,7 @@ TEST_P(Estimates, OfVarianceAreThoseOfRendersWithinAFifth) {
   }
   EXPECT_NEAR(expected / variance_of(scene, c.method, static_cast<double>(c.light_paths)), 1, 0.2);
 }
-// Single bright contributions make the noise of the first scene, the sums of many that of the others.
+// In the first scene, rare bright contributions dominate the noise; in the others, sums of many.
 INSTANTIATE_TEST_SUITE_P(
     Cases, Estimates,
     testing::Values(Case{"cornell-caustics.pbrt", "vcm", 1, true}, Case{"cornell-caustics.pbrt", "vcm", 0.25f, true},
@@ -106,7 +106,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"glossy.pbrt", "vcm", 1, true}, Case{"glossy.pbrt", "bdpt", 0.25f, false},
                     Case{"glossy.pbrt", "path", 0, false}));
 
-// Eight passes of four light paths a pixel leave the radius where 32 passes of one do.
+// After eight passes of four light paths per pixel, the radius is that after 32 passes of one.
 TEST(Effort, RadiiDependOnThePhotonsOfAllPasses) {
   EXPECT_FLOAT_EQ(merge_radius_shrink(0.5, 7, 4), merge_radius_shrink(0.5, 31, 1));
   EXPECT_FLOAT_EQ(merge_radius_shrink(0.5, 31, 0.25), merge_radius_shrink(0.5, 7, 1));
@@ -123,7 +123,7 @@ Effort effort_of(const Scene& scene, std::optional<int> side = {}) {
   return VcmPreparation(job, settings).effort;
 }
 
-// A plain under an even sky: light paths bring nothing.
+// A plane under a uniform sky: light paths bring nothing.
 const std::string plain = R"(
 Film "rgb" "integer xresolution" 32 "integer yresolution" 32
 LookAt 0 -3 2  0 0 0  0 0 1
@@ -141,15 +141,15 @@ TEST(Effort, OfAPlainUnderTheSkyIsPathTracing) {
   EXPECT_EQ(select_layer(own, "color")->pixels, select_layer(path, "color")->pixels);
 }
 
-// At 128 x 128 path tracing was 1.4 times better than the best use of light paths, at equal time. At 512 x 512 photons
-// lie closer, and light paths were 1.3 to 2.2 times better.
+// At 128 x 128, path tracing was 1.4 times better than the best use of light paths, at equal time. At 512 x 512,
+// photons are denser, and light paths were 1.3 to 2.2 times better.
 TEST(Effort, OfADiffuseBoxDependsOnTheDensityOfPhotons) {
   const Scene scene(read_scene(LANTHORN_SOURCE_DIR "/scenes/cornell-diffuse.pbrt"));
   EXPECT_EQ(effort_of(scene, 128).light_paths(), 0u);
   EXPECT_GT(effort_of(scene, 512).light_paths(), 0u);
 }
 
-// A room of 4 m with a window of 40 cm, in the sun. All its light comes by a small patch on the floor.
+// A sunlit room of 4 m with a window of 40 cm. All its light comes from a small patch on the floor.
 const std::string room_in_the_sun = R"(
 Film "rgb" "integer xresolution" 48 "integer yresolution" 36
 LookAt 0 -1.8 1  0 2 1.6  0 0 1
@@ -169,16 +169,16 @@ Shape "bilinearmesh" "point3 P" [2 -.2 1.6  2 -.2 2  2 .2 1.6  2 .2 2]
 Shape "bilinearmesh" "point3 P" [-200 -200 -.01  200 -200 -.01  -200 200 -.01  200 200 -.01]
 )";
 
-// Photons must be aimed at the window, and weights must know that: path tracing has a noise of .90, aimed photons with
-// the weights of others .89, and with their own .45.
+// Photons must be aimed at the window, and MIS weights must know the guide: path tracing has a noise of .90, aimed
+// photons with unguided weights .89, and with guided weights .45.
 TEST(Effort, FindsSunlightThroughAWindow) {
   const Scene scene = test::scene_from_text(room_in_the_sun);
   EXPECT_GT(effort_of(scene).light_paths(), 0u);
   EXPECT_LT(estimate_error(test::render_state(scene, test::options_for("auto", 16, 1))).noise, 0.6);
 }
 
-// Glass asks for light paths. But what the lens sees of them is far noisier than next-event estimation and merging,
-// which find it all.
+// Glass needs light paths. But light traced to the lens is far noisier than next-event estimation and merging, which
+// find all of it.
 TEST(Effort, LeavesDirectLightToNextEventEstimation) {
   const Scene scene = test::scene_from_text(R"(
 Film "rgb" "integer xresolution" 32 "integer yresolution" 32
@@ -208,7 +208,7 @@ Shape "sphere" "float radius" .2
   EXPECT_LT(variance("auto"), 0.5 * variance("vcm"));
 }
 
-// A glass ball far too small for the pilot: its caustic must not get lost.
+// A glass ball far too small for the pilot: its caustic must not be lost.
 TEST(Effort, MergesEverywhereWhereThereIsGlass) {
   const Scene scene = test::scene_from_text(plain + R"(
 LightSource "point" "point3 from" [0 0 3] "rgb I" [1 1 1]

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Where photons start: projection maps, and what is learned. That no mean changes is tested in agreement_test.cpp.
+// Where photons start: projection maps and learned guides. agreement_test.cpp checks that means do not change.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -26,7 +26,7 @@
 namespace lanthorn::emission_test {
 namespace {
 
-// Mirrors and glass of all kinds of shapes, some of them placed, and matte things, far smaller than what lights reach.
+// Mirrors and glass of all kinds of shapes, some of them instanced, and matte objects, far smaller than the lit region.
 const std::string things =
     "Material \"diffuse\"\n" + test::patch("-2 0 -2  2 0 -2  -2 0 2  2 0 2") +
     "Material \"conductor\" \"float roughness\" [0]\n"
@@ -55,7 +55,7 @@ const std::vector<LitScene> lit_scenes{
     {"sky", "LightSource \"infinite\"\n", 2},
 };
 
-// Nothing that a light's photons can meet is held for empty, and what is not is small.
+// No part that a light's photons can hit is classified as empty, and the rest is small.
 TEST(ProjectionMap, MissesNothing) {
   for (const LitScene& lit : lit_scenes) {
     const Scene scene = test::world(things + lit.light);
@@ -83,7 +83,7 @@ TEST(ProjectionMap, MissesNothing) {
   }
 }
 
-// Lights that can meet no target have few photons, and a scene without targets is lit as ever.
+// Lights that cannot reach any target get few photons, and a scene without targets is lit as before.
 TEST(ProjectionMap, SharesPhotonsAmongLights) {
   const std::string up_lights = "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [100 100 100]\n" +
                                 test::patch("0 3 0  0 3 1  1 3 0  1 3 1") + "AttributeEnd\n";
@@ -104,8 +104,8 @@ TEST(ProjectionMap, SharesPhotonsAmongLights) {
   EXPECT_EQ(make_projection_map(matte, PhotonTarget::specular).lights[0].numbers.size(), 0u);
 }
 
-// A glass ball and what is around it, all that the camera shows, on a large plane under a lamp and a sky that light it
-// all alike.
+// A glass ball and its surroundings, which fill the view, on a large plane under a lamp and a sky that light the whole
+// plane uniformly.
 const std::string view_of_the_ball = "LookAt 0 0.5 1  0 0.05 0  0 1 0\nCamera \"perspective\" \"float fov\" [45]\n";
 std::string corner_of_a_plain(const std::string& lamp) {
   return "Film \"rgb\" \"integer xresolution\" [24] \"integer yresolution\" [24]\nPixelFilter \"box\"\nWorldBegin\n"
@@ -135,10 +135,10 @@ std::vector<Image> caustics_of(const Scene& scene, const std::string& integrator
   return layers_of(scene, "caustic", integrator, learned, runs);
 }
 
-// By 400 passes of probppm with a million photons each.
+// From 400 passes of probppm with a million photons each.
 constexpr double mean_caustic = 0.0170;
 
-// Squared differences of runs from each other, over the mean's square.
+// Squared differences between runs, divided by the square of the mean.
 double relative_variance(const std::vector<Image>& images, double mean) {
   double sum = 0;
   std::size_t count = 0;
@@ -149,8 +149,8 @@ double relative_variance(const std::vector<Image>& images, double mean) {
 }
 
 // One photon in 30 000 finds the ball, and few of these land within the radius of an eye path: about one in four
-// renders without a guide. That none of a hundred does, which would pass for no noise, has a probability of 1e-12.
-// Paths of vcm have other ways than photons to it. Gains are 2500 and 600.
+// renders without a guide. That none of a hundred does, which would look like zero noise, has a probability of 1e-12.
+// Paths of vcm also reach it without photons. Gains are 2500 and 600.
 TEST(LearnedEmission, FindsWhatIsSmall) {
   const Scene scene = test::scene_from_text(view_of_the_ball + corner_of_a_plain(near_lamp));
   for (const auto& [integrator, least_gain] : {std::pair<const char*, double>{"probppm", 10}, {"vcm", 10}}) {
@@ -164,8 +164,8 @@ TEST(LearnedEmission, FindsWhatIsSmall) {
   }
 }
 
-// Eye paths find the lamp through the ball, too, but in none of these renders. Merging has to bring the light, for
-// which weights must know how dense the guide makes the photons: without that, six sevenths of it are missing. The mean
+// Eye paths find the lamp through the ball, too, but in none of these renders. Merging must contribute the light, and
+// the weights must know how dense the guide makes the photons: without that, six sevenths of it are missing. The mean
 // is that of 60 passes with a million light paths each.
 TEST(LearnedEmission, IsKnownToWeights) {
   const Scene scene = test::scene_from_text(view_of_the_ball + corner_of_a_plain(far_lamp));
@@ -173,7 +173,7 @@ TEST(LearnedEmission, IsKnownToWeights) {
 }
 
 // Photons are dense around the ball, but next-event estimation finds the direct light there with less noise. Without
-// the exception that weights make for direct light it has thirteen times the variance.
+// the exception that weights make for direct light, the variance is thirteen times as high.
 TEST(LearnedEmission, LeavesDirectLightToNextEventEstimation) {
   const Scene scene = test::scene_from_text(view_of_the_ball + corner_of_a_plain(far_lamp));
   const std::vector<Image> guided = layers_of(scene, "direct", "vcm", true, 16),
@@ -182,7 +182,7 @@ TEST(LearnedEmission, LeavesDirectLightToNextEventEstimation) {
   EXPECT_LT(relative_variance(guided, 1), 2 * relative_variance(plain, 1));
 }
 
-// What is in view on a large plane, in the light of one lamp.
+// The visible part of a large plane under a single lamp.
 std::string on_a_plain(const std::string& lamp, const std::string& things_there) {
   return view_of_the_ball +
          "Film \"rgb\" \"integer xresolution\" [24] \"integer yresolution\" [24]\nPixelFilter \"box\"\nWorldBegin\n" +
@@ -191,7 +191,7 @@ std::string on_a_plain(const std::string& lamp, const std::string& things_there)
 }
 const std::string walls = test::patch("-.3 0 -.2  .3 0 -.2  -.3 .3 -.2  .3 .3 -.2") +
                           test::patch("-.3 0 -.2  -.3 0 .2  -.3 .3 -.2  -.3 .3 .2");
-// Curves so close that they run into each other.
+// Curves so close that they overlap.
 std::string curves() {
   std::string result;
   for (int i = 0; i < 8; ++i) {
@@ -202,9 +202,9 @@ std::string curves() {
   return result;
 }
 
-// Weights must see the same density of light paths whether a light path or an eye path makes a path. Merging is rare
-// here, so that connections bring what path tracing leaves to others. Where weights on flat curves took dense light
-// paths at their word, indirect light was 6 % too bright, and 27 % on hair.
+// Weights must use the same density of light paths whether a light path or an eye path generates a path. Merging is
+// rare here, so that connections provide the light that path tracing leaves to other techniques. When weights on flat
+// curves used the guided density, indirect light was 6 % too bright, and 27 % on hair.
 TEST(NightlyLearnedEmission, KeepsIndirectLight) {
   const std::string lamp = "AttributeBegin\nAreaLightSource \"diffuse\" " + near_lamp + "AttributeEnd\n";
   struct Plain {
@@ -232,7 +232,7 @@ TEST(NightlyLearnedEmission, KeepsIndirectLight) {
   }
 }
 
-// A sky whose light goes through the ball to the plane. Few places of the picture say where its photons must start.
+// A sky whose light passes through the ball to the plane. Few pixels determine where its photons must start.
 TEST(LearnedEmission, AimsSkyLightAtGlass) {
   const Scene scene = test::scene_from_text(
       view_of_the_ball +
@@ -248,12 +248,12 @@ TEST(LearnedEmission, AimsSkyLightAtGlass) {
     options.color = ColorMode::rgb;
     options.photons = 20'000;
     const std::vector<Image> images = test::select_layers(test::independent_renders(scene, options, 4, 0), "caustic");
-    // Over seeds .05 to .3; photons that the guide sends there by chance alone make it 70.
+    // Over seeds .05 to .3; 70 if only chance sends the guide's photons there.
     EXPECT_TRUE(test::below(relative_variance(images, test::mean_of_means(images).mean()) / 2, 1)) << integrator;
   }
 }
 
-// The first light's photons towards the ball, sorted: as how many each is drawn where it would be one without a guide.
+// Sorted densities of the first light's photons towards the ball, relative to those without a guide.
 std::vector<float> densities_towards(const Scene& scene, const EmissionGuide& guide, const Point& ball) {
   const EmissionGuide::OfLight& learned = guide.lights[0];
   const EmissionGuide map = make_projection_map(scene, PhotonTarget::specular);
@@ -278,19 +278,19 @@ EmissionGuide learned_for_caustics(const Scene& scene) {
   return learn_emission(plan.job(scene), PhotonUse::caustics).guide.value().emission;
 }
 
-// The picture shows a part of the caustic. Ways that no pilot photon has gone are drawn often too, for it is not known
-// that they lead elsewhere: else a few photons of huge flux would make the picture.
+// The picture shows a part of the caustic. Directions that no pilot photon has taken are also sampled often, because
+// they may matter: otherwise a few photons of huge flux would dominate the picture.
 TEST(LearnedEmission, LeavesNoWayThroughGlassToChance) {
   const Scene scene =
       test::scene_from_text("LookAt -0.1 0.5 -0.2  -0.1 0 -0.1  0 1 0\nCamera \"perspective\" \"float fov\" [10]\n" +
                             corner_of_a_plain(near_lamp));
   const std::vector<float> found = densities_towards(scene, learned_for_caustics(scene), {0, 0.25f, 0});
   EXPECT_TRUE(test::below(5000 / found.back(), 1));  // 1.5 to 8 million
-  // Of 10 000 ways all but a few at the rim of the ball (25 in a million): 151 to 179 over seeds.
+  // Of 10 000 directions all but a few at the rim of the ball (25 in a million): 151 to 179 over seeds.
   EXPECT_TRUE(test::below(50 / found[10], 1));
 }
 
-// Of two balls alike, one throws its caustic where a spot light outshines it.
+// One of two equal balls casts its caustic where a spot light outshines it.
 TEST(LearnedEmission, SparesWhatIsOutshone) {
   const Scene scene = test::scene_from_text(
       view_of_the_ball + corner_of_a_plain(near_lamp) +
@@ -298,12 +298,12 @@ TEST(LearnedEmission, SparesWhatIsOutshone) {
       "LightSource \"spot\" \"point3 from\" [-0.1 3 -0.07] \"point3 to\" [-0.1 0 -0.07] \"float coneangle\" [5] "
       "\"float conedeltaangle\" [1] \"float scale\" [2000]\n");
   const EmissionGuide guide = learned_for_caustics(scene);
-  // Over seeds the ratio of the medians is 20 with a standard deviation of 2.
+  // The ratio of the medians is 20, with a standard deviation of 2 over seeds.
   const auto median_towards = [&](const Point& ball) { return densities_towards(scene, guide, ball)[5000]; };
   EXPECT_TRUE(test::below(10 * median_towards({0.5f, 0.25f, 0}) / median_towards({0, 0.25f, 0}), 1));
 }
 
-// A court between walls with a ball in it, or the same in a large world, under a sun and a sky.
+// A court between walls with a ball in it, alone or in a large world, under a sun and a sky.
 std::string court(bool in_a_large_world) {
   return "Film \"rgb\" \"integer xresolution\" [24] \"integer yresolution\" [18]\nPixelFilter \"box\"\n"
          "LookAt -3.4 1.7 -3.4  1 1.2 1  0 1 0\nCamera \"perspective\" \"float fov\" [65]\nWorldBegin\n"
@@ -316,7 +316,7 @@ std::string court(bool in_a_large_world) {
          std::string(in_a_large_world ? test::patch("-300 -0.1 -300  300 -0.1 -300  -300 -0.1 300  300 -0.1 300") : "");
 }
 
-// Of the photons in the large world, one in 10 000 starts towards the court.
+// In the large world, one photon in 10 000 starts towards the court.
 TEST(AutomaticEmission, AimsWherePhotonsAreFew) {
   for (const bool in_a_large_world : {false, true}) {
     const Scene scene = test::scene_from_text(court(in_a_large_world));
@@ -327,7 +327,7 @@ TEST(AutomaticEmission, AimsWherePhotonsAreFew) {
   }
 }
 
-// A small ball of fog beside which nothing is, in a lamp's wide light, seen alone.
+// A small isolated ball of fog, in a lamp's wide light, which fills the view.
 const std::string ball_of_fog =
     "LookAt 0 0.25 2  0 0.25 0  0 1 0\nCamera \"perspective\" \"float fov\" [8]\n"
     "Film \"rgb\" \"integer xresolution\" [24] \"integer yresolution\" [24]\nPixelFilter \"box\"\nWorldBegin\n"
@@ -336,7 +336,7 @@ const std::string ball_of_fog =
     "MediumInterface \"fog\" \"\"\nMaterial \"interface\"\nTranslate 0 0.25 0\n"
     "Shape \"sphere\" \"float radius\" [0.1]\n";
 
-// Share of a guide's photons that meet the ball: without a guide 0.0008.
+// Fraction of a guide's photons that hit the ball; 0.0008 without a guide.
 double share_towards_fog(const EmissionGuide& guide, const Scene& scene) {
   HashRng rng(test::seed(4));
   int met = 0;
@@ -350,7 +350,7 @@ double share_towards_fog(const EmissionGuide& guide, const Scene& scene) {
   return static_cast<double>(met) / n;
 }
 
-// Photons are aimed at media, but where they leave none there.
+// Photons are aimed at media, except where they would not be stored.
 TEST(MediaAsTargets, GuidesAimAtThem) {
   const Scene scene = test::scene_from_text(ball_of_fog);
   const RenderPlan plan = test::plan_render(scene, test::options_for("probppm", 1));
@@ -363,7 +363,7 @@ TEST(MediaAsTargets, GuidesAimAtThem) {
   }
 }
 
-// Of fog without end no part is aimed at, and no photon is left out.
+// No part of unbounded fog is aimed at, and no photon is omitted.
 TEST(MediaAsTargets, FogWithoutEndIsEverywhere) {
   const Scene scene =
       test::scene_from_text("MediumInterface \"\" \"fog\"\n" + ball_of_fog +
@@ -373,7 +373,7 @@ TEST(MediaAsTargets, FogWithoutEndIsEverywhere) {
   EXPECT_EQ(make_projection_map(scene, PhotonTarget::surfaces_and_media).lights[0].numbers.size(), 0u);
 }
 
-// One block under the sun: nothing in view gets light from anything else.
+// One block under the sun: nothing visible is lit indirectly.
 TEST(AutomaticEmission, DoesNotAimForNothing) {
   const Scene scene = test::scene_from_text(
       "Film \"rgb\" \"integer xresolution\" [24] \"integer yresolution\" [18]\nLookAt 3 3 3  0 0 0  0 1 0\n"
@@ -384,7 +384,7 @@ TEST(AutomaticEmission, DoesNotAimForNothing) {
   EXPECT_EQ(emission.remark, "");
 }
 
-// Eye paths leave a block for nothing but the sky. Small glass, which they miss, is found by its projection map.
+// Eye paths that leave a block reach only the sky. Small glass objects, which they miss, are found by projection maps.
 TEST(LearnedEmission, TracesLightOnlyIfItCanAddToThePicture) {
   const std::string block =
       "Film \"rgb\" \"integer xresolution\" [12] \"integer yresolution\" [9]\nLookAt 3 3 3  0 0 0  0 1 0\n"
@@ -399,7 +399,7 @@ TEST(LearnedEmission, TracesLightOnlyIfItCanAddToThePicture) {
   EXPECT_TRUE(has_guide(block + glass));
 }
 
-// A guide that is asked for where there is nothing to learn leaves photons as they are without one.
+// A guide that has nothing to learn leaves photons unguided.
 TEST(LearnedEmission, LeavesScenesAloneWhereThereIsNothingToLearn) {
   const std::string film = "Film \"rgb\" \"integer xresolution\" [8] \"integer yresolution\" [6]\n";
   const std::string towards_origin = "LookAt 3 3 3  0 0 0  0 1 0\nCamera \"perspective\"\nWorldBegin\n";
@@ -428,7 +428,7 @@ TEST(LearnedEmission, LeavesScenesAloneWhereThereIsNothingToLearn) {
   }
 }
 
-// Without a guide two photons of a pass would start towards the court.
+// Without a guide, two photons per pass would start towards the court.
 TEST(AutomaticEmission, ShowsAPlaceInALargeWorldAsPathTracingDoes) {
   const Scene scene = test::scene_from_text(court(true));
   RenderOptions options = test::options_for("path", 64);
@@ -443,7 +443,7 @@ TEST(AutomaticEmission, ShowsAPlaceInALargeWorldAsPathTracingDoes) {
   }
 }
 
-// A room whose window shows sunlit ground, seen from inside.
+// A room with a window onto sunlit ground, seen from inside.
 const std::string room_with_a_window =
     "Film \"rgb\" \"integer xresolution\" [48] \"integer yresolution\" [27]\nPixelFilter \"box\"\n"
     "LookAt 0.5 1.6 -2.8  3 1.2 2.5  0 1 0\nCamera \"perspective\" \"float fov\" [60]\nWorldBegin\n"
@@ -456,8 +456,7 @@ const std::string room_with_a_window =
     "\"integer indices\" [0 1 2 1 3 2  4 5 6 5 7 6  0 1 4 1 5 4  2 3 6 3 7 6  0 2 4 2 6 4\n"
     "  1 3 8 3 9 8  3 7 9 7 11 9  7 5 11 5 10 11  5 1 10 1 8 10]\n";
 
-// Guided light paths bring many more photons into the room. (That the mean is the same is tested in
-// agreement_test.cpp.)
+// Guided light paths bring many more photons into the room. (agreement_test.cpp checks that the mean is the same.)
 TEST(LearnedDirections, LeadThroughTheWindow) {
   const Scene scene = test::scene_from_text(room_with_a_window);
   const RenderPlan plan = test::plan_render(scene, test::options_for("probppm", 1));
@@ -475,7 +474,7 @@ TEST(LearnedDirections, LeadThroughTheWindow) {
   EXPECT_TRUE(test::below(2 * at_ceiling(starts) / at_ceiling(guide), 1));
 }
 
-// The mean of flux times any function of the origin is that of the light without disks.
+// The mean of flux times any function of the origin equals that of the light without disks.
 TEST(AimedDisks, LeaveTheLightAsItIs) {
   const Scene scene = test::scene_from_text(court(true));
   const BoundingSphere& all = scene.bounding_sphere();
@@ -501,7 +500,7 @@ TEST(AimedDisks, LeaveTheLightAsItIs) {
   }
 }
 
-// Of the photons that a guide draws, as many are in a part of the rays as weights take them to be.
+// The guide samples photons in each part of the ray space with the density that weights assume.
 TEST(GuidedDensity, IsThatOfThePhotons) {
   const Scene scene = test::scene_from_text(court(true));
   const BoundingSphere& all = scene.bounding_sphere();
@@ -544,7 +543,7 @@ const std::string lamp =
     "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [100 100 100]\nTranslate 0 2 4\n"
     "Shape \"sphere\" \"float radius\" [0.05]\nAttributeEnd\n";
 
-// What path tracing finds only by rare chance is what is behind glass and small.
+// Light that path tracing finds only rarely is that of small lights behind glass.
 TEST(RareLight, IsThatOfSmallLightsBehindGlass) {
   const std::string glass = "Material \"dielectric\"\n";
   const std::string around_the_lamp = glass +
@@ -560,7 +559,7 @@ TEST(RareLight, IsThatOfSmallLightsBehindGlass) {
   EXPECT_EQ(rare_share(lamp), 0);
 }
 
-// Milk in front of the camera: next-event estimation in it sees the lamp unless there is an interface.
+// Milk in front of the camera: next-event estimation inside it sees the lamp unless there is an interface.
 TEST(RareLight, IsInMediaToo) {
   const std::string milk =
       "MakeNamedMedium \"milk\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [0 0 0] \"rgb sigma_s\" [9 9 9]\n"
@@ -572,8 +571,8 @@ TEST(RareLight, IsInMediaToo) {
   };
   EXPECT_GT(rare_share(lamp_of("0.01") + "Material \"dielectric\"\n" + milk), 0.1);
   EXPECT_EQ(rare_share(lamp_of("0.01") + "Material \"interface\"\n" + milk), 0);
-  // About one direction in 200 meets this lamp: not rarely, but the variance of a pass is 200. By chances below a
-  // thousandth alone .034; .094 found.
+  // About one direction in 200 hits this lamp: not rare, but the variance of a pass is 200. Probabilities below 0.001
+  // alone account for .034; found: .094.
   EXPECT_GT(rare_share(lamp_of("0.2") + "Material \"dielectric\"\n" + milk), 0.065);
   EXPECT_EQ(rare_share(lamp_of("0.2") + "Material \"interface\"\n" + milk), 0);
 }

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// What a render says of its error, against the error of many renders.
+// A render's own error estimate against the true error from many renders.
 #include "lanthorn/error_estimate.h"
 
 #include <gtest/gtest.h>
@@ -35,7 +35,7 @@ RenderOptions options_of(const std::string& method, std::uint64_t passes, std::u
   return options;
 }
 
-// Independent renders: their pictures, and what each says of itself.
+// Independent renders: their pictures and their error estimates.
 struct Runs {
   std::vector<Image> pictures;
   std::vector<ErrorEstimate> said;
@@ -58,7 +58,7 @@ struct Runs {
     }
   }
 
-  // Root of the mean of min(1, square / (r² + .01 m²)).
+  // The root of the mean of min(1, square / (r² + .01 m²)).
   template <class Square>
   static double relative(const Image& truth, Square&& square) {
     double m = 0, sum = 0;
@@ -69,7 +69,7 @@ struct Runs {
     }
     return std::sqrt(sum / static_cast<double>(truth.pixels.size()));
   }
-  // Root of the mean of the squares of the pictures' errors. Their mean is nearer to each than the truth is.
+  // Root mean square of the pictures' errors. The mean of the pictures is closer to each of them than the truth.
   double true_noise() const {
     const auto count = static_cast<double>(pictures.size());
     double sum = 0;
@@ -94,7 +94,7 @@ TEST_P(NoiseOf, AMethodIsKnownWithinAFifth) {
 INSTANTIATE_TEST_SUITE_P(Methods, NoiseOf,
                          testing::Values("path", "light", "bdpt", "vcm", "auto", "probppm", "sppm", "mlt"));
 
-// A radius that does not shrink, so that the bias is far above the noise.
+// A radius that does not shrink, so that the bias far exceeds the noise.
 class BiasOf : public testing::TestWithParam<const char*> {};
 
 TEST_P(BiasOf, AMethodIsKnown) {
@@ -109,8 +109,8 @@ TEST_P(BiasOf, AMethodIsKnown) {
 }
 INSTANTIATE_TEST_SUITE_P(Methods, BiasOf, testing::Values("vcm", "probppm", "sppm"));
 
-// Renders that end when they say that their error is below a bound, compared with a far better picture. A promise of
-// 90 % must be kept about as often, over scenes and methods of different kinds.
+// Renders that stop when their estimated error is below a bound, compared with a far better picture. The 90 % bound
+// must hold about as often, over scenes and methods of different kinds.
 class Promise : public testing::TestWithParam<double> {};
 
 RenderState render_to(const Scene& scene, const std::string& method, double noise, std::uint64_t seed) {

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Closures, phase functions, lights and cameras with extreme but legal parameters: no method loses a sample
-// (`test::render_state` counts those that are not finite).
+// Closures, phase functions, lights and cameras with extreme but valid parameters: no method loses a sample
+// (`test::render_state` counts non-finite samples).
 #include <gtest/gtest.h>
 
 #include <initializer_list>
@@ -16,7 +16,7 @@ namespace {
 
 using Texts = std::vector<std::string>;
 
-// All texts of `parts`, one from each, after one another.
+// All concatenations of one text from each of `parts`.
 Texts combined(std::initializer_list<Texts> parts) {
   Texts all{""};
   for (const Texts& part : parts) {
@@ -28,7 +28,7 @@ Texts combined(std::initializer_list<Texts> parts) {
   return all;
 }
 
-// ` "TYPE NAME" [VALUE]` for each value; the empty one leaves the parameter out.
+// ` "TYPE NAME" [VALUE]` for each value; the empty value omits the parameter.
 Texts values(const std::string& type_and_name, const Texts& all) {
   Texts result;
   for (const std::string& value : all)
@@ -158,7 +158,7 @@ Texts scenes() {
   return all;
 }
 
-// What reads back from the scene is what fails.
+// The value that reading back the scene gives is the one that fails.
 void render_by(const std::string& integrator, const std::string& text, ColorMode color) {
   SCOPED_TRACE(integrator + ":\n" + text);
   RenderOptions options = test::options_for(integrator, 2);
@@ -174,7 +174,7 @@ Texts methods() {
   return names;
 }
 
-// Every scene by one of the methods, in turns: with many scenes of each kind each method meets all kinds.
+// The scenes are distributed over the methods: with many scenes of each kind, each method meets all kinds.
 TEST(Extremes, LoseNoSamples) {
   const Texts all = methods();
   std::size_t number = 0;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Guided sampling where it should help: a room that a spotlight lights by way of a small place on a wall.
+// Guided sampling where it should help: a room lit by a spot light via a small area of a wall.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -24,7 +24,7 @@ std::vector<Image> renders_of(const std::string& integrator, std::uint64_t runs,
   return test::select_layers(test::independent_renders(scene, options, runs, 0), layer);
 }
 
-// Of pixels: mean over the picture.
+// Variance of pixels, averaged over the picture.
 double variance_of(const std::vector<Image>& images) {
   double variance = 0;
   const std::size_t n = images[0].pixels.size();
@@ -50,7 +50,7 @@ TEST(Guide, LessensNoiseOfFinalGathering) {
   EXPECT_TRUE(test::below(guided / alone, 0.5));
 }
 
-// Of the same photons, so that little but the directions differs: the standard error of the ratio is 0.5 %.
+// With equal photons, so that little but the directions differs: the standard error of the ratio is 0.5 %.
 TEST(Guide, LeavesTheMeanOfFinalGathering) {
   const std::string gather = "photonmap:max-radius=0.1:gather=64";
   const std::vector<Image> alone = renders_of(gather + ":guide=none", 16, 1, "term.D"),

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// "auto" loses no caustic, however weak it is beside the other light of a scene.
+// "auto" finds every caustic, however weak it is compared with the other light of a scene.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -30,7 +30,7 @@ std::string spot(const std::string& from, const std::string& to, float intensity
       intensity, from, to, angle);
 }
 
-// Three spots, each above a glass ball, behind a black wall from 47 others, which no ball sees.
+// Three spot lights, each above a glass ball, behind a black wall from 47 others, which no ball sees.
 std::string fifty_lamps(float strength) {
   std::string text = film + "LookAt 0 -4 5  0 0 0  0 0 1\nCamera \"perspective\" \"float fov\" 40\nWorldBegin\n" +
                      grey + test::quad("-2 -2 0  2 -2 0  2 2 0  -2 2 0") +
@@ -46,7 +46,7 @@ std::string fifty_lamps(float strength) {
   return text;
 }
 
-// The sun falls through a window on the floor; a candle stands beside a glass ball in the shade.
+// Sunlight falls through a window on the floor; a candle stands beside a glass ball in the shade.
 const std::string sunlit_room =
     film + "LookAt 1.8 -1.8 1.4  -.5 .5 .2  0 0 1\nCamera \"perspective\" \"float fov\" 60\nWorldBegin\n" +
     "LightSource \"distant\" \"rgb L\" [30 28 24] \"point3 from\" [3 0 2] \"point3 to\" [0 0 0]\n" + grey +
@@ -58,7 +58,7 @@ const std::string sunlit_room =
     "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [20 15 8]\nTranslate -.5 1.2 .45\n"
     "Shape \"sphere\" \"float radius\" .03\nAttributeEnd\n";
 
-// A spot that shines upwards lights the floor by two mirrors alone, at (1.5, 0, 0). Another spot lights it directly.
+// A spot light that points up lights the floor at (1.5, 0, 0) only via two mirrors. Another one lights it directly.
 const std::string two_mirrors = film +
                                 "LookAt 0 -4 4  .5 0 0  0 0 1\nCamera \"perspective\" \"float fov\" 45\nWorldBegin\n" +
                                 grey + test::quad("-3 -2 0  3 -2 0  3 2 0  -3 2 0") + spot("-1 0 .4", "-1 0 2", 20, 8) +
@@ -66,7 +66,7 @@ const std::string two_mirrors = film +
                                 test::quad("-1.3 -.3 1.7  -.7 -.3 2.3  -.7 .3 2.3  -1.3 .3 1.7") +
                                 test::quad("1.2 -.3 2.3  1.8 -.3 1.7  1.8 .3 1.7  1.2 .3 2.3");
 
-// A glass ball focuses a spot in a block of fog.
+// A glass ball focuses a spot light in a block of fog.
 const std::string fog =
     "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_s\" [.1 .1 .1] \"rgb sigma_a\" [.1 .1 .1]\n" +
     film + "LookAt 0 -4 1  0 0 1  0 0 1\nCamera \"perspective\" \"float fov\" 40\nWorldBegin\n" +
@@ -75,7 +75,7 @@ const std::string fog =
     "Shape \"sphere\" \"float radius\" .9\nAttributeEnd\n" +
     grey + test::quad("-2 -2 0  2 -2 0  2 2 0  -2 2 0");
 
-// A glass of water at the edge of a stadium: one photon in ten million meets it.
+// A glass of water at the edge of a stadium: one photon in ten million hits it.
 const std::string lectures = std::string(LANTHORN_SOURCE_DIR) + "/scenes/lectures";
 const std::string stadium = "Include \"stadium.pbrt\"\n";
 
@@ -96,7 +96,7 @@ const std::vector<Case> long_cases{{"stadium", stadium, 1.935e-2, 32}};
 
 class HiddenCaustic : public testing::TestWithParam<Case> {};
 
-// With one light path a pixel.
+// With one light path per pixel.
 std::vector<Image> caustics(const Scene& scene, const std::string& method, std::uint64_t passes) {
   constexpr std::uint64_t runs = 16;
   RenderOptions options = test::options_for(method, passes);
@@ -105,7 +105,7 @@ std::vector<Image> caustics(const Scene& scene, const std::string& method, std::
   return test::select_layers(test::independent_renders(scene, options, runs, 1), "caustic");
 }
 
-// The mean over pixels of the variance of a run, over the square of the mean.
+// The mean over pixels of the variance of a run, divided by the square of the mean.
 double relative_variance(const std::vector<Image>& images) {
   const double mean = test::mean_of_means(images).mean();
   double sum = 0;
@@ -117,8 +117,8 @@ double relative_variance(const std::vector<Image>& images) {
   return sum / static_cast<double>(images.front().pixels.size()) / sqr(mean);
 }
 
-// The radius of few passes darkens the smallest caustics. "auto" takes a quarter of vcm's light paths where more do not
-// pay for the whole picture.
+// The radius of few passes darkens the smallest caustics. "auto" uses a quarter of vcm's light paths where more are not
+// worth their cost for the whole picture.
 TEST_P(HiddenCaustic, IsFoundAlmostAsWellAsByVcm) {
   const Scene scene = test::scene_from_text(GetParam().scene, lectures);
   const std::vector<Image> found = caustics(scene, "auto", GetParam().passes);
@@ -129,7 +129,7 @@ INSTANTIATE_TEST_SUITE_P(Nightly, HiddenCaustic, testing::ValuesIn(long_cases),
                          [](const auto& c) { return c.param.name; });
 INSTANTIATE_TEST_SUITE_P(Cases, HiddenCaustic, testing::ValuesIn(cases), [](const auto& c) { return c.param.name; });
 
-// Where there is no caustic, "auto" is path tracing: the same samples, and the same light.
+// Without a caustic, "auto" is path tracing: the same samples, and the same light.
 TEST(HiddenCaustic, WhereThereIsNoneAutoIsPathTracing) {
   const Scene scene = test::scene_from_text(
       film + "LookAt 0 -4 2  0 0 .5  0 0 1\nCamera \"perspective\" \"float fov\" 50\nWorldBegin\n" + grey +

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Scenes in which one term of the transport decides about most of the light, so that an integrator without it is far
-// from path tracing: Welch's t-test per tile, and of the whole image's mean.
+// Scenes in which a single term of light transport determines most of the light, so that an integrator without it is
+// far from path tracing: Welch's t-test per tile, and of the whole image's mean.
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -20,10 +20,10 @@ const std::string film =
     "Film \"rgb\" \"integer xresolution\" [16] \"integer yresolution\" [16]\n"
     "PixelFilter \"box\" \"float xradius\" [0.5] \"float yradius\" [0.5]\nWorldBegin\n";
 
-// The camera sees a floor whose only light comes by a panel above it; the spot light's cone misses the floor. The
-// panel's shading normal, n_s, is 50 degrees off its geometric one, n_g, and points at the light: photons that leave it
-// along w need the factor |l.n_s| |w.n_g| / (|l.n_g| |w.n_s|) (Veach 1997, eq. 5.19). Integrated over the panel,
-// leaving it out gives 0.24 (left) to 0.56 (right) of the floor's light.
+// The camera sees a floor lit only by a panel above it; the spot light's cone misses the floor. The panel's shading
+// normal n_s is tilted by 50 degrees from its geometric normal n_g, towards the light: photons that leave it along w
+// need the factor |l.n_s| |w.n_g| / (|l.n_g| |w.n_s|) (Veach 1997, eq. 5.19). Integrated over the panel, omitting it
+// leaves 0.24 (left) to 0.56 (right) of the floor's light.
 const std::string tilted_panel =
     "LookAt 0 1.3 2.2  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [24]\n" + film +
     "LightSource \"spot\" \"rgb I\" [50 50 50] \"point3 from\" [1.685 0.086 0] \"point3 to\" [0 1.5 0] \"float "
@@ -34,9 +34,9 @@ const std::string tilted_panel =
     "  \"point3 P\" [-0.5 1.5 -0.5  0.5 1.5 -0.5  0.5 1.5 0.5  -0.5 1.5 0.5]\n"
     "  \"normal N\" [0.766 -0.643 0  0.766 -0.643 0  0.766 -0.643 0  0.766 -0.643 0]\n";
 
-// The same with a panel that mirrors, and a lamp behind a screen that leaves the floor what the panel reflects. By the
-// shading normal alone, part of what the floor would see by way of the panel is under the panel's surface: that part of
-// the light is reflected by the surface's plane once more.
+// The same with a mirroring panel, and a lamp behind a screen, so that the floor gets only the panel's reflection. By
+// the shading normal alone, part of what the floor would see via the panel lies below the panel's surface: the
+// surface's plane reflects that part once more.
 std::string tilted(const std::string& material) {
   return "LookAt 0 1.3 2.2  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [24]\n" + film +
          "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [20 20 20]\n" +
@@ -56,9 +56,9 @@ const std::string tilted_metal = tilted(
 const std::string tilted_coat =
     tilted("Material \"coateddiffuse\" \"rgb reflectance\" [0.05 0.05 0.05] \"float roughness\" [0]\n");
 
-// A mirror within a white sphere that emits. By the mirror the eye path has scattered once before it gathers; photons
-// that have scattered max_depth times already are one scattering too many. With them, the light of depth 2 (emission
-// once reflected) would be more by 0.8² / (1 + 0.8) = 36 %, that of depth 3 by 21 %.
+// A mirror inside a white emitting sphere. Via the mirror, the eye path has already scattered once before it gathers;
+// photons that have scattered max_depth times exceed the limit by one. With them, the light of depth 2 (emission
+// reflected once) would be 0.8² / (1 + 0.8) = 36 % too bright, that of depth 3 21 %.
 const std::string mirror_in_white_sphere =
     "LookAt 0 0 0.3  0 0 -1  0 1 0\nCamera \"perspective\" \"float fov\" [40]\n" + film +
     "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [0.5 0.5 0.5]\n"
@@ -66,10 +66,10 @@ const std::string mirror_in_white_sphere =
     "Material \"conductor\" \"rgb reflectance\" [0.9 0.9 0.9]\nTranslate 0 0 -0.5\n"
     "Shape \"disk\" \"float radius\" [0.5]\n";
 
-// A metal of the width at which gathering and walking on are equally likely, under a large light. The walk's hits of
-// the light have most of the MIS weight where the lobe (peak density 1 / (4 pi alpha²) = 8 per steradian, half of it
-// in the weight) is denser than next-event estimation (about 2 per steradian), and carry half of the light unless
-// their share is taken out again: the image would be 14 % darker (measured).
+// A metal at whose roughness gathering and walking on are equally likely, under a large light. The walk's hits of the
+// light have most of the MIS weight where the lobe (peak density 1 / (4 pi alpha²) = 8 per steradian, half of it in the
+// weight) is denser than next-event estimation (about 2 per steradian), and carry half of the light unless their share
+// is removed again: the image would be 14 % darker (measured).
 const std::string rough_metal_under_light =
     "LookAt 0 0 2  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [36]\n" + film +
     "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [1 1 1]\n" + test::quad("-1 1 3  1 1 3  1 -1 3  -1 -1 3") +
@@ -77,8 +77,8 @@ const std::string rough_metal_under_light =
     "Material \"conductor\" \"float roughness\" [0.1] \"bool remaproughness\" [false]\n" +
     test::quad("-2 -2 0  2 -2 0  2 2 0  -2 2 0");
 
-// A lamp near the floor of a white box: photons are 20 times as dense below it as at the camera's left, and so differ
-// the radii of pixels. Between half and all of the light has been scattered before.
+// A lamp near the floor of a white box: photons are 20 times as dense below it as at the camera's left, and the radii
+// of pixels differ as much. Between half and all of the light has been scattered before.
 const std::string lamp_near_floor =
     "LookAt 0 0.9 0.9  0 0 -0.2  0 1 0\nCamera \"perspective\" \"float fov\" [70]\n" + film +
     "Material \"diffuse\" \"rgb reflectance\" [0.8 0.8 0.8]\n"
@@ -87,8 +87,8 @@ const std::string lamp_near_floor =
     "AreaLightSource \"diffuse\" \"rgb L\" [20 20 20]\nTranslate 0.4 0.3 -0.3\nShape \"sphere\" \"float radius\" "
     "[0.05]\n";
 
-// A lid hides the lamp from all but itself when the shutter opens, and has left it when it closes: the floor has some
-// of the light that it would have without, and none from light paths that are all of the first moment.
+// When the shutter opens, a lid hides the lamp from everything but itself; when it closes, the lid is gone: the floor
+// gets part of the unobstructed light, but none from light paths that all use the first moment.
 const std::string moving_lid = "LookAt 0 1.5 2.2  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [30]\n" + film +
                                "LightSource \"point\" \"rgb I\" [2 2 2] \"point3 from\" [0 1.2 0]\n"
                                "Material \"diffuse\" \"rgb reflectance\" [0.8 0.8 0.8]\n" +
@@ -96,8 +96,8 @@ const std::string moving_lid = "LookAt 0 1.5 2.2  0 0 0  0 1 0\nCamera \"perspec
                                "ActiveTransform EndTime\nTranslate 2 0 0\nActiveTransform All\n" +
                                test::quad("-1 1 1  1 1 1  1 1 -1  -1 1 -1");
 
-// The white sphere again, seen through more panes of glass without effect than photons are recorded for: light
-// scattered in the sphere, 2 of 2.5, has to come by the walk.
+// The white sphere again, seen through more invisible panes of glass than photons are recorded for: light scattered in
+// the sphere, 2 of 2.5, must be found by the walk.
 std::string sphere_behind_panes() {
   std::string scene =
       "LookAt 0 0 0.3  0 0 -1  0 1 0\nCamera \"perspective\" \"float fov\" [40]\n" + film +

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Image-space photon mapping against the offline methods: in the mean over frames it must find the same light.
+// Image-space photon mapping against the offline methods: averaged over frames, it must find the same light.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -152,7 +152,7 @@ std::vector<Image> renders(const Scene& scene, const std::string& method, std::u
   return test::independent_renders(scene, options_for(method, passes), runs, first_seed);
 }
 
-// A ball of dispersive glass in a white world is white. One wavelength for all paths made it green.
+// A ball of dispersive glass in a white environment is white. A common wavelength for all paths made it green.
 TEST_F(Ispm, DispersiveGlassIsClear) {
   const Scene scene = test::scene_from_text(
       "LookAt 0 0 -8  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [8]\nPixelFilter \"box\"\n"
@@ -168,10 +168,10 @@ TEST_F(Ispm, DispersiveGlassIsClear) {
   }
 }
 
-// Emission is left out: all pixels of a frame have their samples at the same place, so that a small bright lamp makes
-// frames differ. 1 % is for the bias of the radii and for the texels of the maps. The test allows 8 standard deviations
-// of the means: .2 % in the boxes, .9 % in the courtyard, whose maps have few texels for the sun. The mirror's box is
-// compared with vcm, since path finds few of the mirror's caustics. The models' photons mostly miss them.
+// Emission is excluded: all pixels of a frame sample the same position, so that a small bright lamp makes frames
+// differ. 1 % allows for the bias of the radii and for the maps' texels. The test allows 8 standard deviations of the
+// means: .2 % in the boxes, .9 % in the courtyard, whose maps have few texels for the sun. The mirror's box is compared
+// with vcm, since path finds few of the mirror's caustics. The models' photons mostly miss the mirror.
 TEST_P(Ispm, AgreesWithPath) {
   const Scene scene = test::scene_from_text(scenes().at(GetParam()));
   const bool has_mirror = GetParam() == "mirror_box";
@@ -192,7 +192,7 @@ TEST_P(Ispm, AgreesWithPath) {
   }
 }
 
-// Narrow lobes mirror the sky in each frame, not only where they meet one of the few directions from which it lights.
+// Narrow lobes mirror the sky in each frame, not only where they hit one of its few sampled directions.
 TEST_F(Ispm, GlossMirrorsTheSkyInEveryFrame) {
   const Scene scene = test::scene_from_text(R"(
 LookAt 0 0 -4  0 0 0  0 1 0
@@ -211,8 +211,8 @@ Shape "sphere" "float radius" [1]
   EXPECT_GT(static_cast<double>(near), 0.6 * static_cast<double>(direct.pixels.size()));
 }
 
-// The GPU draws the base of a smooth coat, and the CPU what the coat mirrors: neither is lost, neither is added twice.
-// Without one of them, or with one twice, a third of the light is missing or too much. The GPU's coats are not exact.
+// The GPU draws the base of a smooth coat, and the CPU the coat's reflection: neither is lost or added twice. Omitting
+// or doubling one of them changes the light by a third. The GPU's coats are approximate.
 TEST_F(Ispm, LobesOfSmoothCoatsAreDrawnOnce) {
   const Scene scene = test::scene_from_text(scenes().at("coated_box"));
   const auto direct = [&](const char* method, std::uint64_t passes) {
@@ -223,7 +223,7 @@ TEST_F(Ispm, LobesOfSmoothCoatsAreDrawnOnce) {
   EXPECT_TRUE(test::runs_agree(found, expected, 0.1, 0.1));
 }
 
-// The GPU knows one metal for the whole pattern: the CPU draws it, alone. There is no indirect light.
+// The GPU has a single metal for the whole pattern; only the CPU draws it. There is no indirect light.
 TEST_F(Ispm, MetalsKeepTheirPatterns) {
   const Scene scene = test::scene_from_text(scenes().at("patterned_metal"));
   const std::vector<Image> expected = test::select_layers(renders(scene, "path", 4, 16, 700), "direct");
@@ -238,8 +238,8 @@ TEST_F(Ispm, MetalsKeepTheirPatterns) {
 
 class VoxelCones : public Ispm {};
 
-// Indirect light over direct light of the same frames, whose few points on lamps both share, against that of path. The
-// bias is within 12 % (docs/methods/voxelcones.md). Cones that leak as those of Crassin's weights do are at half.
+// Ratio of indirect to direct light in the same frames, which share the few sampled points on lamps, against that of
+// path. The bias is within 12 % (docs/methods/voxelcones.md). Leaking cones, as with Crassin's weights, reach half.
 TEST_P(VoxelCones, AreNearPath) {
   const Scene scene = test::scene_from_text(scenes().at(GetParam()));
   const auto ratio = [&](const std::string& method, std::uint64_t passes) {
@@ -259,7 +259,7 @@ TEST_P(VoxelCones, AreNearPath) {
 
 class FramesOfRender : public Ispm {};
 
-// As EveryMethod of determinism_test.cpp: passes are functions of seed and number. On one driver only.
+// As EveryMethod in determinism_test.cpp: passes are functions of seed and number, but only for one driver.
 TEST_P(FramesOfRender, BytesDoNotDependOnThreadsResumingOrShards) {
   const Scene scene = test::scene_from_text(scenes().at("mirror_box"));
   const auto state = [&](unsigned threads, PassRange passes, RenderState resumed = {}) {

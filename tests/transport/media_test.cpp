@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Light in participating media against integrals that are known, and integrators against each other.
+// Light in participating media against known integrals, and integrators against each other.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -41,7 +41,7 @@ std::vector<Image> runs(const Scene& scene, const RenderOptions& o, std::uint64_
 
 test::Mean mean(const Scene& scene, const RenderOptions& o) { return test::mean_of_means(runs(scene, o, 1)); }
 
-// A ball of fog that only scatters, under light of radiance 1 from everywhere, is invisible.
+// A ball of purely scattering fog under light of radiance 1 from everywhere is invisible.
 TEST(Media, WhiteFurnace) {
   const Scene scene = test::scene_from_text("LookAt 0 0 3  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [30]\n" +
                                             film + "WorldBegin\n" +
@@ -52,9 +52,9 @@ TEST(Media, WhiteFurnace) {
     EXPECT_TRUE(test::runs_agree(mean(scene, options(integrator, 8)), 1, 0, 0.05, test::false_alarm_rate / 2));
 }
 
-// White media in a white world are invisible, however dense: the light in them scatters hundreds of times, for which
-// the default limit of scattering events has to leave room. A limit of 64 darkens this ball to .84. (vcm is right, too,
-// but takes a hundred times as many passes to show it.)
+// White media in a white world are invisible, however dense: light scatters hundreds of times in them, for which the
+// default limit of scattering events must be high enough. A limit of 64 darkens this ball to .84. (vcm is correct, too,
+// but needs a hundred times as many passes to show it.)
 TEST(Media, WhiteFurnaceOfMilk) {
   const Scene scene = test::scene_from_text(
       "LookAt 0 0 -8  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [8]\n" + film + "WorldBegin\n" +
@@ -70,7 +70,7 @@ TEST(Media, WhiteFurnaceOfMilk) {
   expect_white("probppm", 0.1);
 }
 
-// What the limit of scattering events cuts off is counted, the same for any number of threads and shards.
+// The light that the limit of scattering events cuts off is counted, independent of threads and shards.
 TEST(Media, CutPathsAreCounted) {
   const Scene scene =
       test::scene_from_text("LookAt 0 0 3  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [30]\n" + film +
@@ -80,7 +80,7 @@ TEST(Media, CutPathsAreCounted) {
   RenderOptions o = options("path", 64);
   o.max_depth = 8;
   const RenderState state = test::render_state(scene, o);
-  // The limit takes exactly the light of the paths that reach it: all of it comes from a world of radiance 1.
+  // The limit removes exactly the light of the paths that reach it: all of it comes from a world of radiance 1.
   const double mean = test::mean_of(*select_layer(picture_of(state), "color"));
   EXPECT_EQ(state.eye.paths, 64u * 64u);
   EXPECT_GT(mean, 0.3);
@@ -99,8 +99,8 @@ TEST(Media, CutPathsAreCounted) {
   EXPECT_EQ(decode_state(encode_state(all), "a.state").eye.cut, state.eye.cut);
 }
 
-// The light that is seen in thin fog of a narrow beam, by the integral of single scattering over the beam. Next-event
-// estimation where paths scatter finds it in one path of fifty.
+// The light of a narrow beam seen in thin fog, from the integral of single scattering over the beam. Next-event
+// estimation at scattering points finds it with one path in fifty.
 TEST(Media, NarrowBeamInThinFog) {
   const std::string scene_text =
       "Film \"rgb\" \"integer xresolution\" 24 \"integer yresolution\" 2\nPixelFilter \"box\"\n"
@@ -112,7 +112,7 @@ TEST(Media, NarrowBeamInThinFog) {
       "\"float conedeltaangle\" .01 \"float scale\" 1000\nAttributeEnd\n"
       "AttributeBegin\nMediumInterface \"fog\" \"\"\nMaterial \"interface\"\nShape \"sphere\" \"float radius\" 10\n"
       "AttributeEnd\n";
-  // Of a pixel: sigma_s / (4 pi) I / d² exp(-sigma (d + z)) over the chord of the cone, averaged over the pixel.
+  // For a pixel: sigma_s / (4 pi) I / d² exp(-sigma (d + z)) over the chord of the cone, averaged over the pixel.
   constexpr double sigma = 0.05, intensity = 1000, cone = 3 * 3.14159265358979 / 180;
   double expected = 0;
   constexpr int steps = 400;
@@ -158,7 +158,7 @@ TEST(Media, BeersLaw) {
   EXPECT_NEAR(mean(scene, options("path", 1)).mean(), std::exp(-0.7), 1e-4);
 }
 
-// A grid of equal samples is that medium, but for half a cell at each end, where it falls linearly to half.
+// A grid of equal values is the same medium, except for half a cell at each end, where it falls linearly to half.
 TEST(Media, BeersLawOnGrids) {
   const std::string grid =
       "\"point3 p0\" [-0.5 -0.5 -0.5] \"point3 p1\" [0.5 0.5 0.5] \"integer nx\" 1 \"integer ny\" 1 \"integer nz\" 4 ";
@@ -174,8 +174,8 @@ TEST(Media, BeersLawOnGrids) {
   EXPECT_TRUE(test::runs_agree(mean(coloured, options("path", 64)), expected, 0.002, 0.1, rate));
 }
 
-// Single scattering of a point light's light in an infinite medium, along the camera's axis:
-// the integral of sigma_s / (4 pi) I / d² exp(-sigma_t (t + d)) over t.
+// Single scattering of a point light in an infinite medium, along the camera's axis: the integral of sigma_s / (4 pi) I
+// / d² exp(-sigma_t (t + d)) over t.
 TEST(Media, SingleScattering) {
   const double sigma_t = 0.5, sigma_s = 0.3, height = 1, intensity = 2, reach = 2;
   const Scene scene = test::scene_from_text(
@@ -199,8 +199,8 @@ TEST(Media, SingleScattering) {
   }
 }
 
-// Light that has no interfaces on its way takes a shorter one through the code: what an interface behind a wall lets
-// through changes no pixel.
+// Light without interfaces on its way takes a shorter path through the code: an interface hidden behind a wall changes
+// no pixel.
 TEST(Media, InterfacesElsewhereChangeNothing) {
   const std::string room =
       "LookAt 0 0 0.9  0 0 0  0 1 0\nMediumInterface \"\" \"fog\"\nCamera \"perspective\" \"float fov\" [60]\n" + film +
@@ -220,7 +220,7 @@ TEST(Media, InterfacesElsewhereChangeNothing) {
         << integrator;
 }
 
-// Rays stay in the medium in which they reach an opaque surface, whatever the shape says of its sides.
+// Rays stay in the medium from which they reach an opaque surface, whatever the shape specifies for its sides.
 TEST(Media, OpaqueShapesMayBeInsideOut) {
   const auto room = [](const std::string& walls, const std::string& ball) {
     return test::scene_from_text(
@@ -239,9 +239,9 @@ TEST(Media, OpaqueShapesMayBeInsideOut) {
         << integrator;
 }
 
-// Lights and cameras are in the medium that shapes say is around them, whatever they claim.
+// Lights and cameras are in the medium that shapes define around them, whatever they specify.
 TEST(Media, LightsAndCamerasMayClaimTheWrongMedium) {
-  // A ball of fog with a ball of glass in it, on a floor of which nothing is to be believed.
+  // A ball of fog containing a ball of glass, on a floor with wrong specifications.
   const auto ball = [](const std::string& of_camera, const std::string& of_lamp, const std::string& place,
                        const std::string& of_light, const std::string& from) {
     return test::scene_from_text(
@@ -269,7 +269,7 @@ TEST(Media, LightsAndCamerasMayClaimTheWrongMedium) {
                 test::render_image(right, options(integrator, 2)).pixels)
           << integrator << " from " << eye;
   }
-  // After an edit, too: the light moves into the fog.
+  // The same after an edit: the light moves into the fog.
   const Scene before = ball(none, in_fog, outside, none, "0 3 1");
   SceneEdits edits;
   edits.lights[0] = before.description().lights[0];
@@ -279,7 +279,7 @@ TEST(Media, LightsAndCamerasMayClaimTheWrongMedium) {
             test::render_image(after, options("light", 2)).pixels);
 }
 
-// Thick coloured fog around a grey ball in a room, the camera outside the fog: every integrator must find the same.
+// Thick coloured fog around a grey ball in a room, the camera outside the fog: all integrators must agree.
 Scene foggy_room(const std::string& medium) {
   return test::scene_from_text(
       "LookAt 0 1 3  0 1 0  0 1 0\nCamera \"perspective\" \"float fov\" [40]\n" + film + "WorldBegin\n" +
@@ -295,7 +295,7 @@ Scene foggy_room(const std::string& medium) {
       "AttributeEnd\nMediumInterface \"fog\" \"fog\"\nShape \"sphere\" \"float radius\" [0.3]\n");
 }
 
-/// By Welch's t-test per tile; of a test that calls this with eleven integrators at most.
+/// By Welch's t-test per tile; for tests with up to eleven integrators.
 void expect_agreement(const Scene& scene, const std::vector<std::string>& integrators, std::uint64_t effort) {
   const std::vector<Image> path = runs(scene, options("path", 8 * effort), 100);
   for (const std::string& integrator : integrators) {
@@ -338,8 +338,8 @@ TEST(NightlyMedia, VolumeEmissionLightsItsSurroundings) {
   expect_agreement(scene, {"light", "probppm", "bdpt", "vcm", "auto"}, 2);
 }
 
-// On the right a ball of fog before a black wall: all light comes out of the medium, also where a pane of glass is
-// before it. On the left a white wall that the fog lights too: none does.
+// On the right a ball of fog in front of a black wall: all light comes out of the medium, also behind a pane of glass.
+// On the left a white wall that the fog also lights: none does.
 class LayerOfMedia : public testing::TestWithParam<const char*> {};
 
 TEST_P(LayerOfMedia, HasAllLightThatComesOutOfThem) {
@@ -357,7 +357,7 @@ TEST_P(LayerOfMedia, HasAllLightThatComesOutOfThem) {
       test::patch("-2 -1 -2.5  0 -1 -2.5  -2 1 -2.5  0 1 -2.5") + "AttributeEnd\n" +
       test::patch("0 -1 -2.5  2 -1 -2.5  0 1 -2.5  2 1 -2.5"));
   for (const IntegratorInfo& info : integrator_registry()) {
-    if (info.name == "splitsum") continue;  // shades surfaces alone
+    if (info.name == "splitsum") continue;  // shades surfaces only
     RenderOptions o = options(info.name, 2);
     o.photons = info.name == "mlt" ? 2'000 : 5'000;
     o.max_depth = 8;
@@ -376,7 +376,7 @@ TEST_P(LayerOfMedia, HasAllLightThatComesOutOfThem) {
 }
 INSTANTIATE_TEST_SUITE_P(Media, LayerOfMedia, testing::Values("[0 0 0]", "[0.5 0.2 0.1]"));
 
-// A ball that is in part skin, in part paint: of either alone if the mix says so, else with the medium of the skin
+// A ball that is partly skin, partly paint: purely one of them where the mix says so, elsewhere with the skin's medium
 // inside, which every integrator finds.
 TEST(Media, MixesOfSkinAndPaint) {
   const auto ball = [](const std::string& material) {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Metropolis light transport where its chains decide: as few and short as they can be, and their noise.
+// Metropolis light transport where the properties of chains matter: as few and short as possible, and their noise.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -15,8 +15,8 @@
 namespace lanthorn::metropolis_test {
 namespace {
 
-// A point light of intensity pi in the middle of a unit sphere of albedo 1/2: radiance 1/2 after one scattering, and
-// half as much after each further one.
+// A point light of intensity pi at the centre of a unit sphere of albedo 1/2: radiance 1/2 after one scattering event,
+// and half as much after each further one.
 Scene lit_sphere(int side) {
   return test::scene_from_text(fmt::format(R"(
 LookAt 0 0 0.3  0 0 -1  0 1 0
@@ -31,9 +31,8 @@ Shape "sphere"
                                            side));
 }
 
-// One chain of two mutations in each pass, of the paths of a bootstrap of two: were the chain not to start in
-// proportion to the light, or a state of it or of the bootstrap not to count for what it is, one of the layers would
-// tell.
+// In each pass, one chain of two mutations, seeded from a bootstrap of two paths: if the chain did not start in
+// proportion to the light, or if a state of chain or bootstrap had a wrong weight, one of the layers would show it.
 void expect_unbiased_layers(const std::string& integrator) {
   const Scene scene = lit_sphere(2);
   RenderOptions options = test::options_for(integrator + ":chain-length=2:bootstrap=1", 2000);
@@ -52,7 +51,7 @@ TEST(NightlyMetropolis, ShortChainsAreUnbiased) {
   expect_unbiased_layers("mlt:over=path");
 }
 
-// Variance of a pixel over renders of so many passes of so many mutations.
+// Variance of a pixel over renders with this many passes and mutations.
 double variance(const std::string& integrator, std::uint64_t passes, std::uint64_t mutations) {
   const Scene scene = lit_sphere(4);
   RenderOptions options = test::options_for(integrator, passes);
@@ -64,7 +63,7 @@ double variance(const std::string& integrator, std::uint64_t passes, std::uint64
                   2);
 }
 
-// Over 32 runs the exponents had standard deviations of 0.2, so that 96 have 0.12.
+// Over 32 runs, the exponents had a standard deviation of 0.2, so over 96 it is 0.12.
 TEST(Metropolis, NoiseFallsWithPassesAndChains) {
   const std::string chains = "mlt:chain-length=32:bootstrap=0.5";
   const double one = variance(chains, 1, 64);
@@ -72,8 +71,8 @@ TEST(Metropolis, NoiseFallsWithPassesAndChains) {
   EXPECT_TRUE(test::within(std::log2(variance(chains, 1, 64 * 32) / one), -5, 0.75));
 }
 
-// Chains that only make large steps draw independent paths; those that hardly make any stay where they are: the ratio
-// is 0.016 to 0.02.
+// Chains with only large steps draw independent paths; chains with hardly any stay where they are: the ratio is 0.016
+// to 0.02.
 TEST(Metropolis, LargeStepsForget) {
   const auto with_large_steps = [](const char* share) {
     return variance(fmt::format("mlt:chain-length=256:sigma=1e-6:large-steps={}", share), 8, 256);

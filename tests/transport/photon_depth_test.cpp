@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The limit of a path's scatterings, where photons are recorded with few bits for it.
+// The limit of scattering events per path, which photons record with few bits.
 #include <gtest/gtest.h>
 
 #include "index/hash_grid.h"
@@ -14,8 +14,8 @@ namespace {
 
 constexpr float radius = 0.3f;
 
-// What an eye path that has scattered `eye_scatterings` times gathers in a white sphere from photons of paths of at
-// most `max_depth` scatterings.
+// What an eye path that has scattered `eye_scatterings` times gathers in a white sphere from photons whose paths have
+// at most `max_depth` scatterings.
 float gathered(const Scene& scene, int max_depth, int eye_scatterings, ColorMode color) {
   Sampler pass_sampler = Sampler::for_pass(0, 0);
   const PathDraw draw = draw_time_and_wavelengths(make_view(scene.description().view).camera, color, pass_sampler);
@@ -33,7 +33,7 @@ float gathered(const Scene& scene, int max_depth, int eye_scatterings, ColorMode
   return light.indirect[0] + light.caustic[0];
 }
 
-// Photons of the same paths that end earlier by what the eye has scattered: the same photons, one by one.
+// Ending the same paths earlier by the eye path's number of scatterings yields exactly the same photons.
 TEST(PhotonDepth, EyeAndPhotonTogetherObeyTheLimit) {
   const Scene scene = test::scene_from_text(
       "WorldBegin\nLightSource \"point\"\nMaterial \"diffuse\" \"rgb reflectance\" [0.99 0.99 0.99]\nShape "

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Two-pass photon mapping: its terms, what it shows of its maps, and what its shortcuts may not change.
+// Two-pass photon mapping: its terms, the display of its maps, and the effects of its shortcuts.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -56,7 +56,7 @@ TEST(PhotonMap, TermsAndEmissionAreThePicture) {
   }
 }
 
-// Of diffuse surfaces alone: what is scattered once is A, what is scattered more often D.
+// With only diffuse surfaces: light scattered once is A, light scattered more often D.
 TEST(PhotonMap, TermsOfDiffuseSurfacesAreLayers) {
   const Scene scene = test::scene_from_text(camera + box);
   RenderOptions options = test::options_for("photonmap", 2, 1);
@@ -76,14 +76,14 @@ TEST(PhotonMap, LightOfTheSkyIsDirect) {
   EXPECT_EQ(mean_of(render_with(scene, "photonmap", 1, "term.B")), 0);
 }
 
-// Of the same photons, up to what a record at the nearest of them differs from an estimate in place.
+// With equal photons, up to the difference between the record at the nearest photon and an estimate in place.
 TEST(PhotonMap, PrecomputedIrradianceLeavesTheMean) {
   const Scene scene = test::scene_from_text(camera + box);
   const std::vector<Image> estimated = runs(scene, "photonmap:irradiance=estimated", 1, "term.D");
   EXPECT_TRUE(test::runs_agree(test::paired_ratio(runs(scene, "photonmap", 1, "term.D"), estimated), 1, 0.015, 0.02));
 }
 
-// A wall without thickness between a lit room and a dark one; the floor ends at the wall.
+// An infinitely thin wall between a lit room and a dark one. The floor ends at the wall.
 TEST(PhotonMap, WallsDoNotLeak) {
   const std::string text =
       "LookAt 0 1 -3  0 1 0  0 1 0\nCamera \"perspective\" \"float fov\" [30]\n"
@@ -101,7 +101,7 @@ TEST(PhotonMap, WallsDoNotLeak) {
   EXPECT_GT(mean_of(render_with(test::scene_from_text(from_the_other_side), "photonmap:show=global", 1)), 0.1);
 }
 
-// The whole map's density at the floor, in place: flux over area.
+// The whole map's density on the floor, in place: flux over area.
 TEST(PhotonMap, ShowsItsMaps) {
   const Scene scene = test::scene_from_text(camera + box);
   const Image density = render_with(scene, "photonmap:show=density:nearest=50", 1);
@@ -133,7 +133,7 @@ TEST(PhotonMap, KeptMapsNeedOneSetOfWavelengthsAndOneTime) {
   EXPECT_NO_THROW(test::render_state(test::scene_from_text(camera + box), options));
 }
 
-// Half of the floor's light is the eye path's and half the maps', caustics of a lamp without size among it.
+// Half of the floor's light comes from the eye path and half from the maps, including caustics of a point light.
 TEST(NightlyPhotonMap, SharesOfNarrowLobesAddUp) {
   const Scene scene = test::scene_from_text(
       "LookAt 0 1 1.4  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [36]\n"
@@ -158,7 +158,7 @@ TEST(NightlyPhotonMap, SharesOfNarrowLobesAddUp) {
         << layer;
 }
 
-// So many of them that the map is hardly read. Under a sky, which the rays that go on would meet too.
+// So many rays that the map is hardly used. Under a sky, which continued rays would hit, too.
 TEST(PhotonMap, ShortRaysFindWhatTheMapWouldTell) {
   const Scene scene = test::scene_from_text(camera + "LightSource \"infinite\" \"rgb L\" [1 1 1]\n" + box);
   const std::vector<Image> expected = runs(scene, "path", 4, "indirect", 100, 32);
@@ -166,14 +166,14 @@ TEST(PhotonMap, ShortRaysFindWhatTheMapWouldTell) {
                                test::mean_of_means(expected), 0.005, 0.15));
 }
 
-// Paths of their own are another estimate of the same caustics.
+// Separate caustic paths are another estimate of the same caustics.
 TEST(PhotonMap, CausticPhotonsLeaveTheMean) {
   const Scene scene = test::scene_from_text(
       "LookAt 0 1 1.4  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [36]\n"
       "Film \"rgb\" \"integer xresolution\" [32] \"integer yresolution\" [32]\nWorldBegin\n" +
       box +
       "Material \"dielectric\" \"float eta\" [1.5]\nTranslate 0 0.4 0\nShape \"sphere\" \"float radius\" [0.3]\n");
-  // Of a fixed radius: the nearest photons' reach, and so the blur, depends on how many there are.
+  // With a fixed radius: the reach of the nearest photons, and so the blur, depends on their number.
   const std::string fixed = "photonmap:gather=1:caustic-nearest=0:max-radius=0.05";
   const std::vector<Image> shared = runs(scene, fixed, 1, "term.C", 100, 32),
                            own = runs(scene, fixed + ":caustic-photons=40000", 1, "term.C", 100, 32);
@@ -194,10 +194,10 @@ std::vector<double> tile_means(const Image& image) {
   return means;
 }
 
-// Fine enough for pictures of so few pixels.
+// Fine enough for such small pictures.
 const std::string cached = "photonmap:final-gather=cached:cache-error=0.15:cache-min-spacing=0.5:cache-rays=256";
 
-// In corners and at the block's edges too. Interpolation may shift tiles by 1.5 %, the whole by 0.4 %.
+// Also in corners and at the block's edges. Interpolation may change tiles by 1.5 %, the whole by 0.4 %.
 TEST(PhotonMap, CachedGathersLeaveTheMean) {
   const Scene scene = test::scene_from_text(
       camera + box + "Translate -0.2 0.3 0\nRotate 20 0 1 0\nMaterial \"diffuse\" \"rgb reflectance\" [0.2 0.5 0.7]\n" +
@@ -226,7 +226,7 @@ TEST(PhotonMap, CachedGathersLeaveTheMean) {
             render_with(scene, cached + ":gather=64", 1, "term.A").pixels);
 }
 
-// In mirrors and in motion, in both colour modes and at a depth that ends where gather rays do.
+// In mirrors and in motion, in both colour modes and at a depth at which gather rays end.
 TEST(PhotonMap, CachedGathersBehindMirrors) {
   const Scene scene = test::scene_from_text(
       camera + box +
@@ -253,7 +253,7 @@ TEST(PhotonMap, CachedGathersBehindMirrors) {
   }
 }
 
-// Behind a ball of glass, a fifth of `indirect`, and out of focus, where the points that a pixel sees lie far apart.
+// Behind a glass ball, a fifth of `indirect`, and out of focus, where the points seen by a pixel are far apart.
 TEST(PhotonMap, CachedGathersBehindGlassAndOutOfFocus) {
   const Scene scene = test::scene_from_text(
       "LookAt 0 1 4.4  0 1 0  0 1 0\n"
@@ -277,7 +277,7 @@ TEST(PhotonMap, CachedGathersBehindGlassAndOutOfFocus) {
   }
 }
 
-// With room for few records, what is seen later and lies between is gathered in full.
+// With room for few records, points seen later between them are gathered in full.
 TEST(PhotonMap, KeptCachesLeaveTheMean) {
   const Scene scene = test::scene_from_text(camera + box);
   const std::vector<Image> expected = runs(scene, "photonmap:maps=kept:gather=64", 2, "term.D", 100, 8),
@@ -302,7 +302,7 @@ TEST(PhotonMap, RefusesCachesThatCannotBe) {
     EXPECT_THROW(render_with(scene, "photonmap:final-gather=cached:" + std::string(parameter), 1), Error) << parameter;
 }
 
-// A ball over the floor, and on the right what lights it.
+// A ball above the floor, and its illumination on the right.
 std::string shaded_box(const std::string& light) {
   return camera + light + "Material \"diffuse\" \"rgb reflectance\" [0.7 0.7 0.7]\n" +
          test::patch("-1 0 -1  1 0 -1  -1 0 1  1 0 1") + test::patch("-1 0 -1  1 0 -1  -1 2 -1  1 2 -1") +
@@ -320,7 +320,7 @@ TEST(PhotonMap, ShadowPhotonsSpareShadowRays) {
     const std::string shadows = "photonmap:gather=1:shadows=photons:max-radius=0.25";
     const std::vector<Image> by_rays = runs(scene, "photonmap:gather=1", 1, "term.A", 100, 8),
                              by_photons = runs(scene, shadows, 1, "term.A", 100, 8);
-    // Of the same samples: what differs is what the width of the search takes off thin shadows.
+    // With equal samples: the difference is what the search radius removes from thin shadows.
     EXPECT_TRUE(test::runs_agree(test::paired_ratio(by_photons, by_rays), 1, 0.004, 0.03)) << light;
 
     RenderPlan plan = test::plan_render(scene, options_of(shadows, 1));

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Progressive photon mapping: photons gathered at hit points and hit points found by photons give the same sums, and
-// drawing hit points anew in each pass beats keeping them.
+// Progressive photon mapping: photons gathered at hit points and hit points found by photons give equal sums, and new
+// hit points in each pass are better than fixed ones.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -60,7 +60,7 @@ struct HitPoint {
   SurfaceVertex vertex() const { return {state, at, wi, wi_local, true}; }
 };
 
-// Keeps the first vertex of an eye path that can gather.
+// Keeps the first vertex of an eye path at which gathering is possible.
 struct KeepHitPoint {
   std::vector<HitPoint>& hits;
 
@@ -129,7 +129,7 @@ TEST(ReversePhotonMapping, SumsAreThoseOfGathering) {
   }
 }
 
-// What is seen beyond the kernel's support is for statistics alone.
+// Photons beyond the kernel's support are only used for statistics.
 TEST(Gather, DoesNotDependOnItsReach) {
   const Scene scene = test::scene_from_text(box);
   const View view = make_view(scene.description().view);
@@ -154,8 +154,8 @@ TEST(Gather, DoesNotDependOnItsReach) {
   EXPECT_GT(seen_far, 3 * seen_near);
 }
 
-// A metal plate, all of one roughness: what eye paths do beyond their hit points must average out over the passes.
-// (Direct light: by shadow rays, and by walks that go on from where they do not gather.)
+// A metal plate of uniform roughness: what eye paths do beyond their hit points must average out over the passes.
+// (Direct light: by shadow rays, and by walks that continue where they do not gather.)
 TEST(ProgressivePhotonMapping, FixesHitPointsAlone) {
   const Scene scene = test::scene_from_text(R"(
 LookAt 0 0 2  0 0 0  0 1 0
@@ -194,7 +194,7 @@ Shape "disk" "float radius" [3]
   EXPECT_TRUE(test::below(spread(128) / spread(4), 0.15));  // over seeds 0.07 with a standard deviation of 0.003
 }
 
-// Estimates of one pass at each hit point, by photons of which one in a hundred carries half of the light.
+// One-pass estimates at each hit point, with photons of which one in a hundred carries half of the light.
 std::vector<float> estimates(const RenderJob& job, const LightGuide& guide, const FirstRadius& first,
                              std::uint32_t pass) {
   const PassDraw draw = draw_for_pass(job, pass);
@@ -251,8 +251,8 @@ TEST(FirstRadius, IsWiderForPhotonsOfMoreFlux) {
   EXPECT_NEAR(means[1] / means[0], 1, 0.1);                      // standard deviation over seeds 0.015
 }
 
-// Without a guide photons have equal flux, unless shading normals differ much from geometric ones: here those of a pane
-// of glass under the lamp.
+// Without a guide photons have equal flux, unless shading normals differ much from geometric ones, as here those of a
+// pane of glass under the lamp.
 TEST(FirstRadius, IsOneForPhotonsOfEqualFlux) {
   const std::string pane =
       "Material \"dielectric\"\nShape \"trianglemesh\" \"integer indices\" [0 1 2 1 3 2]\n"
@@ -266,7 +266,7 @@ TEST(FirstRadius, IsOneForPhotonsOfEqualFlux) {
   }
 }
 
-// Where photons are so few that a radius with enough of them would darken the room.
+// Photons are so few that a radius containing enough of them would darken the room.
 TEST(FirstRadius, IsSmallAgainstTheScene) {
   const Scene scene = test::scene_from_text(box);
   const float most = scene.bounding_sphere().radius / 20;
@@ -284,7 +284,7 @@ TEST(FirstRadius, IsSmallAgainstTheScene) {
   }
 }
 
-// In a large world, too, where a share of the scene is as wide as the picture: low walls stand 20 cm apart.
+// Also in a large world, where a fixed fraction of the scene is as wide as the picture: low walls stand 20 cm apart.
 TEST(FirstRadius, FitsBetweenWhatStandsAround) {
   std::string text =
       "LookAt 0 2.5 0.5  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [40]\n"
@@ -302,8 +302,8 @@ TEST(FirstRadius, FitsBetweenWhatStandsAround) {
   }
 }
 
-// A bar of light a pixel wide that crosses 64 while the shutter is open. With one time for each pass it would be seen
-// at 16 places, with nothing between them: a spread of 1.
+// A bar of light, one pixel wide, crosses 64 pixels while the shutter is open. With one time per pass it would be seen
+// at 16 positions, with nothing between them: a spread of 1.
 TEST(MovingThings, AreSmoothAfterSixteenPasses) {
   const Scene scene = test::scene_from_text(
       "Film \"rgb\" \"integer xresolution\" [64] \"integer yresolution\" [64]\nPixelFilter \"box\"\n"
@@ -320,13 +320,13 @@ TEST(MovingThings, AreSmoothAfterSixteenPasses) {
       columns.add(sum);
     }
     ASSERT_GT(columns.mean(), 0) << integrator;
-    // Each of 64 rows sees the bar in a quarter of its times: 0.2 is expected.
+    // Each of 64 rows sees the bar in a quarter of its time samples: 0.2 is expected.
     EXPECT_TRUE(test::below(std::sqrt(columns.squared_error() * columns.count()) / columns.mean(), 0.5)) << integrator;
   }
 }
 
 double relative_error(const Scene& scene, const RenderOptions& options, const Image& reference) {
-  // Clamped: a few bright values would make up most of it, and as much noise.
+  // Clamped, since a few bright values would dominate the error and its noise.
   return image_errors(*select_layer(test::render_image(scene, options), "color"), reference, {.rel_clamp = 1.0})
       .rel_mse;
 }
@@ -347,7 +347,7 @@ TEST(StochasticProgressivePhotonMapping, BeatsFixedHitPointsAtEqualPasses) {
   EXPECT_TRUE(test::below(stochastic / relative_error(scene, options, reference), 0.8));  // over seeds 0.22, sd 0.02
 }
 
-// The error of a method's 16 passes over that of path's, on a plane of this material under an even sky.
+// The error of 16 passes of a method divided by that of path, on a plane of this material under a uniform sky.
 double error_over_path_under_sky(const std::string& method, const std::string& material) {
   const Scene scene = test::scene_from_text(
       "LookAt 0 1 0  0 0 0.2  0 1 0\nCamera \"perspective\" \"float fov\" [20]\n"
@@ -364,9 +364,9 @@ double error_over_path_under_sky(const std::string& method, const std::string& m
   return relative_error(scene, options, reference) / by_path;
 }
 
-// By the walk where lobes are narrow, and elsewhere by branches that the closure samples beside next-event estimation.
-// Over five seeds the ratios are 1.4 to 1.7 on varnish and .9 to 1.1 on plaster. By next-event estimation alone they
-// were 2.5 and 6, and 12 on varnish when photons had one share of its wide and narrow lobes.
+// Found by the walk for narrow lobes, and elsewhere by branches that the closure samples beside next-event estimation.
+// Over five seeds the ratios are 1.4 to 1.7 on varnish and .9 to 1.1 on plaster. With next-event estimation alone they
+// were 2.5 and 6, and 12 on varnish when photons had the same share of its wide and narrow lobes.
 TEST(ProbabilisticProgressivePhotonMapping, SeesTheSkyAlmostAsPathTracingDoes) {
   for (const std::string material : {"\"coateddiffuse\" \"float roughness\" [0]", "\"diffuse\""})
     EXPECT_TRUE(test::below(error_over_path_under_sky("probppm", material), 2)) << material;
@@ -380,9 +380,9 @@ struct Exponents {
   double variance = 0, bias = 0;
 };
 
-// Knaus & Zwicker 2011, eq. 15: r² of pass i is (i - 1 + alpha) / i of the one before. The variance of the mean of N
-// passes is as the sum of 1/r² over N², its bias as the mean of r²: least squares over 8, 16, 32 and 64 passes in
-// log-log.
+// Knaus & Zwicker 2011, eq. 15: r² of pass i is (i - 1 + alpha) / i times that of the pass before. The variance of the
+// mean of N passes is proportional to the sum of 1/r² divided by N², its bias to the mean of r²: least squares over 8,
+// 16, 32 and 64 passes in log-log.
 Exponents exponents_of(double alpha) {
   double r2 = 1, sum_r2 = 0, sum_inverse = 0;
   Exponents e;
@@ -398,8 +398,8 @@ Exponents exponents_of(double alpha) {
   return e;
 }
 
-// Figs. 2 and 4: at fixed points variance falls like N^-alpha and bias like N^-(1 - alpha), in the end.
-// Direct light is that of a spot light, without noise, and pixels are points: all noise is the photons'.
+// Figs. 2 and 4: at fixed points, variance falls as N^-alpha and bias as N^-(1 - alpha), asymptotically. Direct light
+// is that of a spot light, without noise, and pixels are points: all noise comes from photons.
 TEST(NightlyProbabilisticProgressivePhotonMapping, ConvergesAtThePublishedRates) {
   const Scene scene = test::scene_from_text(R"(
 LookAt 0 1 2.2  0 0.6 0  0 1 0
@@ -412,7 +412,7 @@ Material "diffuse" "rgb reflectance" [0.8 0.8 0.8]
 Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-1 0 1 1 0 1 1 0 -1 -1 0 -1]
 Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-1 0 -1 1 0 -1 1 2 -1 -1 2 -1]
 )");
-  // A 25th of the area at first, and 10 million photons: a small part of the bias and noise to be measured.
+  // Initially a 25th of the area, and 10 million photons: little bias and noise compared with those to be measured.
   RenderOptions options = test::options_for("probppm", 20, 1000);
   options.max_depth = 2;
   options.photons = 500'000;
@@ -430,16 +430,16 @@ Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-1 0 -1 1 0 -1 
     const Exponents expected = exponents_of(alpha);
     EXPECT_NEAR(expected.variance, -alpha, 0.06);
     EXPECT_TRUE(test::within(*measured.variance_slope, expected.variance, 0.2));
-    // Over 50 runs the exponents differed by 0.06 and 0.05 in the mean over seeds, with standard deviations of 0.04 and
-    // 0.02; of 200 runs these are half as large. Wide radii of the first passes blur more than their squares say; with
-    // 0.3 the mean of r² feels them too long.
+    // Over 50 runs the exponents differed by 0.06 and 0.05 on average over seeds, with standard deviations of 0.04 and
+    // 0.02; for 200 runs these are half as large. Wide radii of the first passes blur more than their squares suggest;
+    // with 0.3 they affect the mean of r² for too long.
     if (alpha > 0.5) {
       EXPECT_TRUE(test::within(*measured.bias_slope, expected.bias, 0.2));
     }
   }
 }
 
-// Seen from above: fins stand on the left half of a floor that few photons reach.
+// Seen from above: fins on the left half of a floor that few photons reach.
 TEST(AutoRadii, ShrinkBesideObstaclesWherePhotonsAreFew) {
   std::string text =
       "LookAt 0 4 0  0 0 0  0 0 -1\nCamera \"perspective\" \"float fov\" [28]\n"

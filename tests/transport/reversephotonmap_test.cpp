@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Reverse photon mapping: with the same photons, rays and radii it is photon mapping, turned around.
+// Reverse photon mapping equals photon mapping for equal photons, rays and radii.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -18,7 +18,7 @@ namespace lanthorn::reversephotonmap_test {
 namespace {
 
 const std::string box = test::camera + test::box;
-// Shading normals far from the facets', a sheet that lets light through, and a hair.
+// Shading normals far from the facets', a translucent sheet, and a hair.
 const std::string shapes =
     "Shape \"trianglemesh\" \"point3 P\" [0 0 0  1 0 0  0 1 0.5] \"normal N\" [0 0 1  0.7 0 0.7  0 0.7 0.7]\n"
     "Shape \"curve\" \"float width\" [0.2] \"point3 P\" [-0.5 0.1 0.4  -0.4 0.5 0.4  0 0.6 0.4  0.4 0.5 0.4]\n"
@@ -51,7 +51,7 @@ void expect_equal_pictures(const std::string& text, const std::string& parameter
         << parameters << ", value " << i;
 }
 
-// All layers and terms of every pixel.
+// All layers and terms, for every pixel.
 TEST(ReversePhotonMap, IsPhotonMapWithTheSameRadii) {
   for (const ColorMode color : {ColorMode::rgb, ColorMode::spectral}) {
     expect_equal_pictures(test::varied_room, "max-radius=0.2", color);
@@ -64,7 +64,7 @@ TEST(ReversePhotonMap, KnowsAllKernels) {
     expect_equal_pictures(box, std::string("max-radius=0.07:kernel=") + kernel, ColorMode::rgb);
 }
 
-// The least --memory that is not refused: it leaves nothing for blocks of pixels.
+// The smallest --memory that is accepted: it leaves nothing for blocks of pixels.
 std::uint64_t least_memory(const Scene& scene, RenderOptions options) {
   std::uint64_t refused = 0, accepted = std::uint64_t{1} << 30;
   while (accepted - refused > 1) {
@@ -84,7 +84,7 @@ TEST(ReversePhotonMap, MemoryIsNotInThePicture) {
   for (const char* integrator : {"reversephotonmap", "reversephotonmap:radii=leaf"}) {
     RenderOptions options = options_of(integrator, ColorMode::spectral, 2);
     const std::vector<std::byte> whole = encode_state(test::render_state(scene, options));
-    // Blocks of a pixel, and of a few that leave a rest at the picture's sides.
+    // Blocks of one pixel, and of a few pixels that leave a remainder at the picture's sides.
     const std::uint64_t least = least_memory(scene, options);
     for (const std::uint64_t memory : {least, least + 700'000}) {
       options.memory = memory;
@@ -93,8 +93,8 @@ TEST(ReversePhotonMap, MemoryIsNotInThePicture) {
   }
 }
 
-// A photon's light is spread over its own disc, so that no rule for the disc's size makes more or less of it. The floor
-// has no edges for light to be lost at: what is spread beyond the lit part is on it still.
+// A photon's light is spread over its own disc, so that the rule for the disc's size does not change the total. The
+// floor has no edges at which light could be lost: light spread beyond the lit part is still on it.
 TEST(ReversePhotonMap, RadiiSpreadAllLight) {
   const Scene scene = test::scene_from_text(
       "LookAt 0 4 0.1  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [90]\n"
@@ -112,7 +112,7 @@ TEST(ReversePhotonMap, RadiiSpreadAllLight) {
   }
 }
 
-// The expected mean is that of paths, as the radii are small and the photons of many passes many.
+// The expected mean is that of path, since the radii are small and there are many photons.
 TEST(ReversePhotonMap, AgreesWithPath) {
   const Scene scene = test::scene_from_text(box);
   const test::Mean expected = test::mean_of_means(runs(scene, "path", 16, "indirect"));

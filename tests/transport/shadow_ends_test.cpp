@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// What lies a fifth of a millimetre before a lamp, and lamps far from the origin: the light of a floor, by every kind
-// of method. Methods agree where all are wrong in the same way, so the values come from elsewhere.
+// Occluders a fifth of a millimetre in front of a lamp, and lamps far from the origin: the light on a floor, by every
+// kind of method. Methods could agree on a wrong value, so the expected values are independent.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@ struct Case {
 };
 
 // The first two: with the stencil or pane at 1 mm, where all methods of other renderers agree. A fifth of a millimetre
-// is 7e-5 of the way. The third: the same lamp at the origin, whose middle is .0500 analytically.
+// is 7e-5 of the distance. The third: the same lamp at the origin, whose centre is .0500 analytically.
 const Case stencil{"stencil-at-lamp", .0850}, pane{"pane-at-lamp", .1695}, far_away{"lamp-10km-away", .04135};
 
 class ShadowEnds : public testing::TestWithParam<const char*> {};
@@ -31,7 +31,7 @@ void expect_light(const Case& expected, const std::string& integrator) {
       test::mean_of_means(test::select_layers(test::independent_renders(scene, options, 4, 1), "color"));
   const double noise = 4 * found.error() / expected.floor;
   EXPECT_NEAR(found.mean() / expected.floor, 1, std::max(.03, noise)) << expected.scene << " by " << integrator;
-  EXPECT_LT(noise, .2);  // the error that this test is about is a factor of two
+  EXPECT_LT(noise, .2);  // the error tested for is a factor of two
 }
 
 TEST_P(ShadowEnds, StencilBeforeALampCastsItsShadow) { expect_light(stencil, GetParam()); }

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Spectral films see the spectra that lights and surfaces have.
+// Spectral films measure the spectra of lights and surfaces.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -60,14 +60,14 @@ std::size_t first_bucket(const Image& image) {
   return static_cast<std::size_t>(found - image.channels.begin());
 }
 
-// Where passes share wavelengths, buckets have standard errors of up to 1.4 %: the largest of 66 deviations was 3.4 %.
+// If passes share wavelengths, buckets have standard errors of up to 1.4 %: the largest of 66 deviations was 3.4 %.
 TEST(SpectralFilm, EveryIntegratorFindsTheSpectrum) {
   const SpectralBuckets buckets{6, 400, 700};
   const Scene scene = disk_under_sky(buckets);
   for (const IntegratorInfo& info : integrator_registry()) {
     if (info.name == "splitsum") continue;  // its maps are RGB: the sky's spectrum is upsampled
     RenderOptions options = test::options_for(info.name, 64, 3);
-    if (info.name == "bpm") options.set["radius"] = "0.5";  // photons alone, and few of them: the disk is small
+    if (info.name == "bpm") options.set["radius"] = "0.5";  // only photons, and few of them: the disk is small
     options.max_depth = 1;
     options.photons = 20000;
     const Image image = test::render_image(scene, options);
@@ -79,7 +79,7 @@ TEST(SpectralFilm, EveryIntegratorFindsTheSpectrum) {
   }
 }
 
-// What a spectrum varies within a bucket is 0.6 %, the standard error 0.05 %.
+// The variation of a spectrum within a bucket is 0.6 %, the standard error 0.05 %.
 TEST(SpectralFilm, BucketsAddUpToTheColour) {
   const SpectralBuckets buckets{94, 360, 830};
   const Image image = test::render_image(disk_under_sky(buckets), test::options_for("path", 64, 3));

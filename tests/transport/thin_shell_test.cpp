@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Shells thinner than the radius: what is lit inside must not shine through.
+// Shells thinner than the radius: light inside must not leak through.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,8 +14,8 @@
 namespace lanthorn::thin_shell_test {
 namespace {
 
-// A black lamp between two discs, such as one close below a ceiling that has no thickness; the camera sees the middle
-// of the front disc from outside. The discs face alike, unless `turns_front` turns the front one away from the other.
+// A black lamp between two discs, such as one close below a ceiling without thickness; the camera sees the middle of
+// the front disc from outside. The discs face the same way, unless `turns_front` turns the front one away.
 std::string two_sheets(const std::string& turns_front) {
   return "LookAt 0 0 -3  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [12]\n"
          "Film \"rgb\" \"integer xresolution\" [16] \"integer yresolution\" [16]\nWorldBegin\n"
@@ -49,7 +49,7 @@ TEST(ThinShell, IsDarkOutside) {
   }
 }
 
-// Two halves of a floor that face opposite ways, with normals: no seam, as if both faced up.
+// Two halves of a floor with normals that face opposite ways: no seam, as if both faced up.
 TEST(ThinShell, HalvesOfAFloorMayFaceEitherWay) {
   const auto floor = [](const char* of_right) {
     const auto half = [](const char* from, const char* to, const std::string& normal) {

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Photons in media: each estimator against integrals that are known, against path tracing, and, where path tracing is
-// blind, against light tracing.
+// Photons in media: each estimator against known integrals, against path tracing, and, where path tracing finds
+// nothing, against light tracing.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -43,7 +43,7 @@ class Volume : public testing::TestWithParam<std::string> {
   static void expect_point_light();
 };
 
-// Adds up what is gathered until the eye's first scattering.
+// Sums up what is gathered until the eye path's first scattering.
 struct FirstFlight {
   const PathContext& path;
   const VolumeGather& gather;
@@ -62,7 +62,7 @@ struct FirstFlight {
   void add(const GatheredLight& light) const { sum += static_cast<double>((light.caustic + light.indirect)[1]); }
 };
 
-// Green light that photons of depth 1 bring to rays, by runs. `ray_of` makes a ray of random numbers, in `medium`.
+// Green light that photons of depth 1 bring to rays, per run. `ray_of` makes a ray from random numbers, in `medium`.
 template <class RayOf>
 test::Mean single_scattering(const Scene& scene, VolumeEstimator estimator, MediumId medium, float radius,
                              RayOf&& ray_of) {
@@ -123,7 +123,7 @@ void Volume::expect_point_light() {
   const double share = static_cast<double>(gather_probability(HenyeyGreenstein{0.3f}));
   const double expected = integral(to_edge, [&](double t) {
     const double along = t - half, d2 = 1 + along * along, d = std::sqrt(d2);
-    // Light travels by (aside + along d) / d and on towards the eye, -d.
+    // Light travels along (aside + along d) / d, and on towards the eye along -d.
     const double cosine = -along / d, base = 1 + g * g - 2 * g * cosine;
     const double phase = (1 - g * g) / (4 * std::numbers::pi * base * std::sqrt(base));
     return sigma_s * phase * intensity / d2 * std::exp(-sigma_t * (t + d));
@@ -134,14 +134,14 @@ void Volume::expect_point_light() {
 
 TEST_P(Volume, PointLight) { expect_point_light(); }
 
-// Coefficients differ by colour: flux that passes a point is weighted.
+// Coefficients differ by colour, so the flux that passes a point is weighted.
 class ShortBeams : public Volume {};
 TEST_P(ShortBeams, PointLight) { expect_point_light(); }
 INSTANTIATE_TEST_SUITE_P(Estimators, ShortBeams, testing::Values("short-photon-beam", "short-beams"),
                          [](const auto& c) { return test::identifier(c.param); });
 
-// Collimated light that falls into a box of fog on a grid, whose density is 2 in its lower half, and rays through its
-// upper half, where the density is 1: sigma_s / (4 pi) E exp(-sigma_t (depth + t)).
+// Collimated light enters a box of fog on a grid with density 2 in the lower half; rays cross the upper half, with
+// density 1: sigma_s / (4 pi) E exp(-sigma_t (depth + t)).
 TEST_P(Volume, CollimatedLightOnAGrid) {
   const double sigma_s = 0.6, sigma_t = 0.8, irradiance = 3;
   const Scene scene = test::scene_from_text(
@@ -162,8 +162,9 @@ TEST_P(Volume, CollimatedLightOnAGrid) {
   EXPECT_TRUE(test::runs_agree(found, expected, 0.03, 0.25)) << GetParam();
 }
 
-// The same light falls into a layer of thin fog 1 m deep on a floor, which rays pass at 60° to the normal: kernels are
-// wide enough to be partly outside at both ends of the rays. At ends across the rays, an eighth would be missing.
+// The same light enters a layer of thin fog, 1 m deep, on a floor; rays pass it at 60° to the normal: kernels are wide
+// enough to be partly outside at both ends of the rays. With ends perpendicular to the rays, an eighth would be
+// missing.
 TEST(VolumeMethods, BeamsEndAtThePlanesOfSurfaces) {
   const double sigma_s = 0.27, sigma_t = 0.3, irradiance = 3, cosine = 0.5;
   const Scene scene = test::scene_from_text(
@@ -182,8 +183,8 @@ TEST(VolumeMethods, BeamsEndAtThePlanesOfSurfaces) {
   EXPECT_TRUE(test::runs_agree(found, expected, 0.02, 0.15));
 }
 
-// A thin beam of light along the z axis of fog without end, seen from `aside` metres off the axis: at points, or along
-// rays that pass there after `start` metres.
+// A thin beam of light along the z axis of unbounded fog, seen `aside` metres off the axis: at points, or along rays
+// that pass there after `start` metres.
 struct ThinBeam {
   static constexpr float aside = 0.6f, start = 2;
 
@@ -196,7 +197,7 @@ struct ThinBeam {
   }
 };
 
-// Estimates of a pass, in medium 1, of places `i`.
+// Estimates of one pass, in medium 1, at positions `i`.
 class PassEstimates {
  public:
   PassEstimates(const Scene& scene, const RenderPlan& plan, PassPhotonSource& source, std::uint32_t pass)
@@ -206,7 +207,7 @@ class PassEstimates {
         pass_(pass),
         photons_(source.trace(plan.job(scene), pass, FluxClasses{}, 1, [](Phase) {})) {}
 
-  // At the place, or on the way by which an eye path comes there after `start` metres and goes on.
+  // At the position, or along the way by which an eye path arrives there after `start` metres and continues.
   double at(std::uint32_t i, const Point& place, const Direction& along, float start) const {
     constexpr float reach = 10;
     Sampler sampler = Sampler::for_pixel(seed_, Stream::camera, i, pass_);
@@ -233,7 +234,7 @@ class PassEstimates {
   PassPhotons photons_;
 };
 
-// Renders by an estimator, `r_i^D` of whose passes shrinks by `alpha`.
+// Renders with an estimator whose `r_i^D` shrinks with `alpha` from pass to pass.
 RenderOptions shrinking(const std::string& estimator, double alpha, float radius, std::uint64_t photons) {
   RenderOptions o = test::options_for(
       fmt::format("probppm:emission=power:volume-radius={}:alpha={}:volume={}", radius, alpha, estimator), 1);
@@ -243,7 +244,7 @@ RenderOptions shrinking(const std::string& estimator, double alpha, float radius
   return o;
 }
 
-// The exponent of a quantity, by least squares over 4, 8, 16 and 32 passes in log-log: the squares of the octaves add
+// The exponent of a quantity, by least squares in log-log over 4, 8, 16 and 32 passes: the squares of the octaves add
 // up to 5.
 struct Slope {
   double exponent = 0;
@@ -251,9 +252,9 @@ struct Slope {
   void add(std::uint32_t passes, double quantity) { exponent += (std::log2(passes) - 3.5) * std::log2(quantity) / 5; }
 };
 
-// r^D of pass i is (i - 1 + alpha) / i of that of the pass before, in each number D of dimensions. The quantity is the
-// sum over N passes of (r^D)^`power`, over N^`norm`: -1 and 2 for the variance of the mean of N passes, 2 / D and 1 for
-// its bias, which is as r² in each of them.
+// r^D of pass i is (i - 1 + alpha) / i times that of the pass before, for each number D of dimensions. The quantity is
+// the sum over N passes of (r^D)^`power`, divided by N^`norm`: -1 and 2 for the variance of the mean of N passes, 2 / D
+// and 1 for its bias, which is proportional to r² for every D.
 double slope_of_theory(double alpha, double power, double norm) {
   Slope slope;
   double size = 1, sum = 0;
@@ -265,9 +266,9 @@ double slope_of_theory(double alpha, double power, double norm) {
   return slope.exponent;
 }
 
-// Knaus & Zwicker 2011, section 5. The light is scattered twice, and the variance is that of each place, because the
-// theory is of independent photons at one point. Straight from the lamp, stratified photons have less variance, the
-// more so the larger the kernel is; and estimates of places whose kernels overlap are correlated.
+// Knaus & Zwicker 2011, section 5. The light is scattered twice, and the variance is that of each position, because the
+// theory assumes independent photons at one point. Directly from the lamp, stratified photons have less variance, the
+// more so for larger kernels; and estimates at positions with overlapping kernels are correlated.
 TEST_P(Volume, VarianceFallsAtTheRateOfItsDimensions) {
   constexpr double alpha = 0.5;
   constexpr std::uint32_t passes = 32, runs = 100, places = 12;
@@ -295,13 +296,13 @@ TEST_P(Volume, VarianceFallsAtTheRateOfItsDimensions) {
     for (const test::Mean& mean : means[n]) variance += mean.squared_error();
     found.add(n, variance);
   }
-  // Over five seeds and four estimators at most 0.054 off, root mean square 0.025.
+  // At most 0.054 off over five seeds and four estimators, root mean square 0.025.
   EXPECT_TRUE(test::within(found.exponent, slope_of_theory(alpha, -1, 2), 0.15));
 }
 
-// A point light in fog without end, which scatters evenly, seen at places 1 m away or along ways that pass there: an
-// integral that is known. The light comes through a pane that does not bend it, as a caustic: what comes straight is no
-// photon's.
+// A point light in unbounded isotropic fog, seen at positions 1 m away or along ways that pass there: a known integral.
+// The light passes through a pane that does not bend it, as a caustic, because photons do not store light that comes
+// straight.
 struct LightInFog {
   static constexpr double sigma_s = 1.8, sigma_t = 2;
   static constexpr float start = 1;
@@ -313,7 +314,7 @@ struct LightInFog {
         "LightSource \"point\" \"rgb I\" [1 1 1]\nMediumInterface \"fog\" \"fog\"\n"
         "Material \"dielectric\" \"float eta\" 1 Shape \"sphere\" \"float radius\" 0.01\n");
   }
-  // Place `i` of so many all around; all have the same bias.
+  // Position `i` of `count` in all directions; all have the same bias.
   static Direction place(std::uint32_t i, std::uint32_t count) {
     const float turn = static_cast<float>(i) * std::numbers::phi_v<float>;
     return sample_uniform_sphere({(static_cast<float>(i) + 0.5f) / static_cast<float>(count), turn - std::floor(turn)});
@@ -328,14 +329,14 @@ struct LightInFog {
   }
 };
 
-// The same section: the bias of a pass is as r², whatever the dimensions are, and so falls the faster the fewer they
-// are: theory has -0.45 in three, -0.62 in two, -0.91 in one.
+// The same section: the bias of a pass is proportional to r² for any dimension, and so falls faster for fewer
+// dimensions: in theory as -0.45 in three, -0.62 in two, -0.91 in one.
 TEST_P(Volume, BiasFallsAtTheRateOfItsDimensions) {
   constexpr double alpha = 0.1;
   constexpr std::uint32_t passes = 32, places = 64;
   const int dimensions = kernel_dimensions(estimator());
   const std::uint64_t runs = dimensions == 1 ? 16 : 8;
-  // A thousand flights are all kept, and not drawn by chance.
+  // A thousand flights are all kept, without random selection.
   const std::uint64_t photons = records_for(estimator()) == MediumRecords::points ? 4000 : 1000;
   const Scene scene = LightInFog::scene();
   RenderPlan plan = test::plan_render(scene, shrinking(GetParam(), alpha, 0.7f, photons));
@@ -359,7 +360,7 @@ TEST_P(Volume, BiasFallsAtTheRateOfItsDimensions) {
   Slope found;
   for (std::uint32_t n = 4; n <= passes; n *= 2)
     found.add(n, std::fabs(means[n].mean() - LightInFog::radiance(estimator())));
-  // Terms as r⁴ make it steeper by up to 0.05. Standard deviation over seeds: 0.015, in one dimension 0.04.
+  // Terms in r⁴ make it steeper by up to 0.05. Standard deviation over seeds: 0.015, in one dimension 0.04.
   const double limit = dimensions == 1 ? 0.3 : 0.13;
   EXPECT_TRUE(test::within(found.exponent, slope_of_theory(alpha, 2.0 / dimensions, 1), limit));
 }
@@ -382,7 +383,7 @@ std::vector<Image> runs(const Scene& scene, const RenderOptions& o, std::uint64_
   return test::independent_renders(scene, o, count, first_seed);
 }
 
-// Walls that shine as much as they absorb around fog that only scatters: radiance is 1 everywhere.
+// Walls that emit as much as they absorb around purely scattering fog: radiance is 1 everywhere.
 TEST_P(Volume, WhiteFurnace) {
   const Scene scene = test::scene_from_text(
       "LookAt 0 0 0.9  0 0 0  0 1 0\nMediumInterface \"\" \"fog\"\nCamera \"perspective\" \"float fov\" [60]\n" + film +
@@ -394,11 +395,11 @@ TEST_P(Volume, WhiteFurnace) {
   o.set["volume-radius"] = kernel_dimensions(estimator()) == 3 ? "0.2" : "0.1";
   o.max_depth = 100;
   const test::Mean mean = test::mean_of_means(test::select_layers(runs(scene, o, 16, 1), "color"));
-  // Within a radius of the wall, a part of the kernel sees no photons.
+  // Within a radius of the wall, part of the kernel receives no photons.
   EXPECT_TRUE(test::runs_agree(mean, 1, 0.04, 0.2));
 }
 
-// Fog in a room with a lamp: even and coloured, on a grid, with a narrow phase function, and inside glass.
+// Fog in a room with a lamp: uniform and coloured, on a grid, with a narrow phase function, and inside glass.
 std::string room_with(const std::string& medium, const std::string& material) {
   return "LookAt 0 1 3  0 0.8 0  0 1 0\nCamera \"perspective\" \"float fov\" [22]\n" + film + "WorldBegin\n" +
          "AttributeBegin\nTranslate 0 0.8 0\nMakeNamedMedium \"fog\" \"string type\" " + medium +
@@ -427,7 +428,7 @@ const std::vector<Fog> fogs{
      48},
     {"in glass", "\"homogeneous\" \"rgb sigma_a\" [0.1 0.2 0.4] \"rgb sigma_s\" [1 2 1]", "dielectric"}};
 
-/// By t-tests of the whole picture, of `checks` in a test. Radii of 5 cm blur.
+/// By t-tests of the whole picture; `checks` is their number in a test. Radii of 5 cm blur.
 ::testing::AssertionResult agree(const std::vector<Image>& found, const std::vector<Image>& expected, int checks) {
   const auto mean = [](const std::vector<Image>& images) {
     return test::mean_of_means(test::select_layers(images, "color"));
@@ -435,7 +436,7 @@ const std::vector<Fog> fogs{
   return test::runs_agree(mean(found), mean(expected), 0.02, 0.3, test::sidak(test::false_alarm_rate, checks));
 }
 
-// All of the fogs, and one of a NanoVDB file in the folder, densest at a corner and empty at the opposite one.
+// All of the fogs, and one from a NanoVDB file in the folder, densest at a corner and empty at the opposite one.
 std::vector<Fog> fogs_and_vdb(const test::TemporaryDir& folder) {
   const auto file = folder.path() / "fog.nvdb";
   constexpr int last = 14;
@@ -456,13 +457,13 @@ TEST_P(Volume, AgreesWithPathTracing) {
     RenderOptions path = options("path", 16, 0), photons = options("probppm:volume=" + GetParam(), fog.passes, 3'000);
     path.max_depth = photons.max_depth = 8;
     if (kernel_dimensions(estimator()) == 3) photons.set["volume-radius"] = "0.1";
-    if (records_for(estimator()) == MediumRecords::beams) photons.passes = 3 * fog.passes;  // of fewer light paths each
+    if (records_for(estimator()) == MediumRecords::beams)
+      photons.passes = 3 * fog.passes;  // with fewer light paths each
     EXPECT_TRUE(agree(runs(scene, photons, 16, 200), runs(scene, path, 16, 100), 5)) << fog.name;
   }
 }
 
-// A ball of glass under a point light throws a shaft of light into fog, which no eye path finds, but light tracing
-// does.
+// A glass ball under a point light casts a shaft of light into fog, which only light tracing finds, not eye paths.
 Scene shaft() {
   return test::scene_from_text(
       "LookAt 0 0 4  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [26]\n" + film +
@@ -493,7 +494,7 @@ TEST_P(Volume, CausticOfAPointLight) {
   expect_shaft(shaft(), photons);
 }
 
-// Merging in media, by each estimator and by all under one weight, alone and with connections.
+// Merging in media, by each estimator and by all with combined weights, alone and with connections.
 class MergingInMedia : public testing::TestWithParam<std::string> {
  protected:
   static RenderOptions merging(std::uint64_t passes, std::uint64_t photons) {
@@ -520,9 +521,9 @@ TEST_P(MergingInMedia, CausticOfAPointLight) {
   expect_shaft(shaft(), merging(passes, 5'000));
 }
 
-// Thin fog in a ball, with kernels of .3 of its radius: a spot light shines at it, for photons through clear glass,
-// so that nothing else finds its light. Of cylinders with ends across the eye's rays .12 would be outside, and of those
-// that end at tangent planes .05 are.
+// Thin fog in a ball, with kernels of .3 of its radius: a spot light illuminates it, via clear glass for photons, so
+// that nothing else finds its light. Of cylinders with ends perpendicular to the eye's rays .12 would be outside; of
+// those that end at tangent planes .05 are.
 TEST(VolumeMethods, LightReachesTheBoundaryOfAMedium) {
   const auto scene_with = [](const std::string& around_light) {
     return test::scene_from_text(
@@ -547,7 +548,7 @@ TEST(VolumeMethods, LightReachesTheBoundaryOfAMedium) {
   }
 }
 
-// Far from the origin, where the first tenths of a millimetre of rays are rounded away.
+// Far from the origin, where the first tenths of a millimetre of rays are lost to rounding.
 TEST(VolumeMethods, WeightsAreFiniteAtTheLens) {
   const Scene scene = test::scene_from_text(
       "Translate -10000 -10000 -10000\nMediumInterface \"\" \"fog\"\nCamera \"perspective\"\n" + film +
@@ -562,7 +563,7 @@ TEST(VolumeMethods, WeightsAreFiniteAtTheLens) {
   }
 }
 
-// Fog that scatters forwards: all along eye paths and light paths there is merging that counts in part.
+// Forward-scattering fog: merging counts in part all along eye paths and light paths.
 TEST(VolumeMethods, WeightsInForwardFogSumToOne) {
   const Scene scene = test::scene_from_text(
       "LookAt 0 0 4  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [24]\n" + film +
@@ -578,9 +579,9 @@ TEST(VolumeMethods, WeightsInForwardFogSumToOne) {
   EXPECT_TRUE(test::runs_agree(mean_of("vcm", 24, 200), mean_of("path", 256, 100), 0.002, 0.05));
 }
 
-// A ball of fog in a spot light lights a wall, which a glossy plate shows; a screen hides the ball from the plate. Eye
+// A ball of fog in a spot light lights a wall, visible in a glossy plate; a screen hides the ball from the plate. Eye
 // paths are coherent up to the wall and not beyond, so merging in the ball has no weight there, however large kernels
-// are: the picture is that of connections alone, and what connects plate and wall must know how the wall scatters.
+// are: the picture comes from connections alone, and the connections of plate and wall must know how the wall scatters.
 TEST(VolumeMethods, MergingBehindAWallDoesNotCount) {
   const Scene scene = test::scene_from_text(
       "LookAt 3 0 -4  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [3]\n" + film +
@@ -609,7 +610,7 @@ TEST(VolumeMethods, MergingBehindAWallDoesNotCount) {
   EXPECT_NEAR(mean_of("vcm:volume=point+beam+photon-beam+beams"), expected, 1e-5 * expected);
 }
 
-// Mean over all values of the variance of runs.
+// Mean over all values of the variance between runs.
 double variance_of(const std::vector<Image>& images) {
   const std::size_t count = images[0].pixels.size();
   double sum = 0;
@@ -621,8 +622,8 @@ double variance_of(const std::vector<Image>& images) {
   return sum;
 }
 
-// Beyond walls and fog, eye paths have spread, and many photons that one of them meets are as good as one. Merging with
-// a weight that does not know this had 1.7 times the variance of connections here.
+// Beyond walls and fog, eye paths have spread, and many photons merged with one of them are no better than one. Merging
+// with weights that ignore this had 1.7 times the variance of connections here.
 TEST(VolumeMethods, MergingDoesNotAddNoise) {
   const Scene scene = test::scene_from_text(
       "LookAt 0 1 5.5  0 1 0  0 1 0\nMediumInterface \"\" \"fog\"\nCamera \"perspective\" \"float fov\" [22]\n" + film +
@@ -641,7 +642,7 @@ TEST(VolumeMethods, MergingDoesNotAddNoise) {
   EXPECT_LT(variance("vcm:volume=beam"), 0.6 * variance("vcm:volume=path"));
 }
 
-// The radii that five pilots find, in ascending order, in a ball of fog around the eye that this light shines in.
+// The radii of five pilots, in ascending order, in a ball of fog around the eye, lit by this light.
 std::array<float, 5> radii_in_fog(VolumeEstimator estimator, const std::string& light, int first_depth) {
   const Scene scene = test::scene_from_text(
       "LookAt 0 0 -3.5  0 0 0  0 1 0\nMediumInterface \"\" \"fog\"\nCamera \"perspective\" \"float fov\" [50]\n"
@@ -659,7 +660,7 @@ std::array<float, 5> radii_in_fog(VolumeEstimator estimator, const std::string& 
   std::sort(radii.begin(), radii.end());
   return radii;
 }
-// The median in a beam of this half angle (degrees), 3.5 m from its source where the eye looks at it.
+// The median in a beam of this half angle (degrees), where the eye sees it, 3.5 m from its source.
 double radius_in_beam(VolumeEstimator estimator, double angle) {
   const std::string light = fmt::format(
       R"("spot" "point3 from" [-3.5 0 0] "point3 to" [0 0 0] "float coneangle" [{}] "float conedeltaangle" [{}])",
@@ -667,7 +668,7 @@ double radius_in_beam(VolumeEstimator estimator, double angle) {
   return static_cast<double>(radii_in_fog(estimator, light, 1)[2]);
 }
 
-// At most as wide as the beam, so that it is not lost, and not so narrow that there is noise for nothing.
+// At most as wide as the beam, so that it is not lost, but not so narrow that it adds unnecessary noise.
 TEST(NightlyVolumeMethods, RadiusKnowsTheScaleOfDetail) {
   for (const double angle : {0.5, 1.0, 2.0, 4.0}) {
     const double width = 2 * 3.5 * std::tan(angle * std::numbers::pi / 180);
@@ -681,13 +682,13 @@ TEST(NightlyVolumeMethods, RadiusKnowsTheScaleOfDetail) {
   EXPECT_GT(radius_in_beam(VolumeEstimator::beam, 40), 0.08);
 }
 
-// Photons near the eye, which are seen all over the picture, do not decide.
+// Photons near the eye, which are visible all over the picture, do not determine the radius.
 TEST(VolumeMethods, RadiusIsThatOfAnySeed) {
   const std::array<float, 5> radii = radii_in_fog(VolumeEstimator::beam, R"("point" "point3 from" [0 3 0])", 2);
   EXPECT_LT(radii.back(), 1.5f * radii.front());
 }
 
-// The schedule of its own that merging has: sizes of kernels shrink alike in all dimensions.
+// Merging's own schedule: kernel sizes shrink equally in all dimensions.
 TEST(VolumeMethods, KernelsOfMergesShrinkAlike) {
   const Scene scene = test::scene_from_text(room_with(fogs[0].medium, fogs[0].material));
   const RenderPlan plan =
@@ -708,7 +709,7 @@ INSTANTIATE_TEST_SUITE_P(Methods, MergingInMedia,
                                          "bpm:volume=photon-beam", "bpm:volume=beams"),
                          [](const auto& c) { return test::identifier(c.param); });
 
-// The other methods that gather in media, by the terms and shortcuts of their own.
+// The other methods that gather in media, with their own terms and shortcuts.
 TEST(VolumeMethods, AgreeWithPathTracing) {
   const Scene scene = test::scene_from_text(room_with(fogs[0].medium, fogs[0].material));
   RenderOptions path = options("path", 16, 0);
@@ -723,7 +724,7 @@ TEST(VolumeMethods, AgreeWithPathTracing) {
   }
 }
 
-// White fog, in which a light path leaves many photons.
+// White fog, in which each light path leaves many photons.
 Scene milk() {
   return test::scene_from_text(
       film +
@@ -743,7 +744,7 @@ TEST(VolumeMethods, MemoryForPhotonsInMediaIsBounded) {
   }
 }
 
-// As many as are stored for the estimators at points, without a normal; straight from the light, if asked for, too.
+// As many as are stored for the point estimators, without a normal; on request also those straight from the light.
 TEST(VolumeMethods, PhotonsAreWrittenFromMedia) {
   const Scene scene = milk();
   const RenderOptions o = options("probppm", 1, 500);

@@ -29,7 +29,7 @@ constexpr std::uint64_t protocol_version = 1;
 constexpr double most_patience = 10;  // seconds
 constexpr std::chrono::milliseconds longest_wait{100};
 
-// The members that a request may have beside "request"; those that it does not have stay as they are.
+// Reads the members that a request may have beside "request"; variables of absent members are unchanged.
 template <class... T>
 void read_members(const Dict& request, const std::pair<const char*, T*>&... members) {
   plain::Reader reader;
@@ -42,7 +42,7 @@ void read_members(const Dict& request, const std::pair<const char*, T*>&... memb
   plain::refuse_other_keys(reader, request, known);
 }
 
-// The request without these members, which others read.
+// The request without the members that other functions read.
 Dict without_keys(const Dict& request, const plain::Keys& keys) {
   Dict rest;
   for (const auto& [key, value] : request.entries())
@@ -50,7 +50,7 @@ Dict without_keys(const Dict& request, const plain::Keys& keys) {
   return rest;
 }
 
-// Without passes, time and bound of the error, a render goes on until it is stopped.
+// Without passes, time limit and error bound, a render continues until it is stopped.
 RenderOptions options_in(const Dict& request) {
   const Value* data = request.find("options");
   RenderOptions options = data != nullptr ? options_of_data(*data) : RenderOptions();
@@ -82,7 +82,7 @@ nlohmann::json texts_of(const std::vector<description::Warning>& warnings) {
   return texts;
 }
 
-// The layers that are wanted and there, one after the other; all but the noise of others if none is named.
+// The requested layers that exist, one after the other; without a request, all but the noise layers.
 Image layers_of(const Image& image, const std::optional<std::vector<std::string>>& wanted) {
   Image names;
   std::copy_if(image.channels.begin(), image.channels.end(), std::back_inserter(names.channels),
@@ -177,7 +177,7 @@ LinkAnswer Conversation::wait(const Dict& request) {
   read_members(request, std::pair("after", &after), std::pair("patience", &patience), std::pair("layers", &layers));
   if (!(patience >= 0 && patience <= most_patience))
     throw Error("patience: expected 0 to 10 seconds, got " + plain::shown(patience));
-  if (!render_) throw Error("nothing is rendered: send \"start\" first");
+  if (!render_) throw Error("nothing is being rendered: send \"start\" first");
   const InteractiveSnapshot now = wait_for_news(after, patience);
   LinkAnswer answer{nlohmann::json::object()};
   const std::optional<InteractiveDenoised> denoised = now.denoised ? std::optional(*now.denoised) : std::nullopt;

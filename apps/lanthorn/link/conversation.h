@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// What the program answers to a client (docs/protocol.md).
+// The program's answers to a client (docs/protocol.md).
 #pragma once
 
 #include <functional>
@@ -22,10 +22,10 @@ struct LinkAnswer {
 
 class Conversation {
  public:
-  /// `is_over` returns true once the client has gone.
+  /// `is_over` must return true once the client has disconnected.
   explicit Conversation(std::function<bool()> is_over) : is_over_(std::move(is_over)) {}
 
-  /// Answers an invalid request with "error" and the reason. Such a request changes nothing.
+  /// Answers an invalid request with "error" and the reason; such a request changes nothing.
   LinkAnswer answer(const plain::Dict& request);
 
  private:

@@ -22,7 +22,7 @@ using plain::Value;
 const std::vector<std::string> table_names{"float_textures", "spectrum_textures", "materials", "media", "area_lights",
                                            "shapes",         "objects",           "instances", "lights"};
 const std::vector<std::string> single_names{"camera", "film", "filter", "hints", "environment", "color_space"};
-// Tables whose entries `edit_scene` replaces.
+// Tables whose entries `edit_scene` can replace.
 constexpr std::array<std::string_view, 4> editable{"materials", "area_lights", "lights", "instances"};
 
 bool is_table(const std::string& name) {
@@ -103,8 +103,8 @@ Dict LinkedScene::data_of(const Parts& parts) {
   return data;
 }
 
-// All parts but materials, which follow those that they mix, are in the order of their names. So an entry that is
-// replaced keeps its index.
+// All parts are sorted by name, except that materials follow those that they mix. A replaced entry therefore keeps its
+// index.
 void LinkedScene::note_edits(const SceneDescription& description, const Changes& changes) {
   const auto note = [&](const char* table, auto&& copy) {
     const auto found = changes.entries.find(table);
@@ -123,7 +123,7 @@ void LinkedScene::note_edits(const SceneDescription& description, const Changes&
 }
 
 bool LinkedScene::can_edit(const SceneDescription& description, const Changes& changes) const {
-  const bool has_environment = parts_.singles.contains("environment");  // adds to the lights
+  const bool has_environment = parts_.singles.contains("environment");  // it adds lights
   return !changes.is_other_scene && !has_environment && names_of(description.materials) == built_->material_names &&
          std::all_of(changes.entries.begin(), changes.entries.end(),
                      [](const auto& table) {
@@ -159,7 +159,7 @@ RenderEdit LinkedScene::change_of(SceneDescription description, const Changes& c
     edit.scene = [built = built_, edits = edits_, whole = std::make_shared<SceneDescription>(std::move(description))] {
       try {
         return edit_scene(*scene_of(*built), edits);
-      } catch (const Error&) {  // needs the scene to be built again
+      } catch (const Error&) {  // the edit requires the scene to be rebuilt
         return build_scene(*whole, built->scene);
       }
     };

@@ -19,12 +19,12 @@ namespace lanthorn::program {
 
 class LinkedScene {
  public:
-  /// What an update asks for: parts to add or to replace, by table and name, and names of parts to take away; `camera`,
-  /// `film`, `filter`, `hints`, `environment` and `color_space` are parts of their own. Returns the change, for a
-  /// render of the scene as it was before. Throws Error, and leaves the scene as it was, if the result is no scene.
+  /// Applies an update: parts to add or to replace, by table and name, and names of parts to remove; `camera`, `film`,
+  /// `filter`, `hints`, `environment` and `color_space` are single parts. Returns the edit to apply to a render of the
+  /// previous scene. Throws Error, and leaves the scene unchanged, if the result is not a valid scene.
   RenderEdit update(const plain::Value* set, const plain::Value* remove);
 
-  /// Builds the scene, if that was not done yet. Throws Error as `build_scene`.
+  /// Builds the scene if necessary. Throws Error as `build_scene` does.
   SharedScene build();
   const ViewDescription& view() const { return view_; }
 
@@ -34,7 +34,7 @@ class LinkedScene {
     std::map<std::string, Table> tables;
     Table singles;
   };
-  /// What is built once, by whoever needs it first, and the replacements upon it.
+  /// Built once, by whoever needs it first; edits then apply to it.
   struct Built {
     std::optional<SceneDescription> description;
     SharedScene scene{};
@@ -44,7 +44,7 @@ class LinkedScene {
   struct Changes {
     std::set<std::string> singles;
     std::map<std::string, std::set<std::string>> entries;  ///< replaced, by table
-    bool is_other_scene = false;                           ///< parts have come or gone
+    bool is_other_scene = false;                           ///< parts were added or removed
   };
 
   static SharedScene scene_of(Built& built);
@@ -59,7 +59,7 @@ class LinkedScene {
   Parts parts_;
   ViewDescription view_;
   std::shared_ptr<Built> built_ = std::make_shared<Built>();
-  SceneEdits edits_;  ///< upon built_
+  SceneEdits edits_;  ///< relative to `built_`
 };
 
 }  // namespace lanthorn::program

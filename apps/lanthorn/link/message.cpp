@@ -27,7 +27,7 @@ static_assert(std::endian::native == std::endian::little, "the protocol's number
 constexpr std::array<char, 4> magic{'L', 'N', 'T', 'H'};
 constexpr std::uint32_t most_json_bytes = 1U << 28;
 constexpr std::uint64_t most_data_bytes = std::uint64_t{1} << 36;
-constexpr std::size_t chunk_bytes = std::size_t{1} << 24;  // a header that lies takes no more memory than this
+constexpr std::size_t chunk_bytes = std::size_t{1} << 24;  // limits what a header with a false size can allocate
 
 struct Header {
   std::array<char, 4> magic{};
@@ -36,7 +36,7 @@ struct Header {
 };
 static_assert(sizeof(Header) == 16);
 
-// Fewer bytes than asked for at the end of the stream.
+// Returns fewer bytes than requested only at the end of the stream.
 std::size_t read_some(int file, std::byte* out, std::size_t count) {
   std::size_t done = 0;
   while (done < count) {
@@ -55,7 +55,7 @@ std::vector<std::byte> read_bytes(int file, std::uint64_t count) {
     const std::size_t begin = bytes.size();
     const std::size_t part = static_cast<std::size_t>(std::min<std::uint64_t>(chunk_bytes, count - begin));
     bytes.resize(begin + part);
-    if (read_some(file, bytes.data() + begin, part) < part) throw Error("the client's last message ends too early");
+    if (read_some(file, bytes.data() + begin, part) < part) throw Error("the client's last message is truncated");
   }
   return bytes;
 }
@@ -64,7 +64,7 @@ void check(const Header& header) {
   if (header.magic != magic)
     throw Error("expected a message of lanthorn's protocol, which begins with the bytes LNTH (see docs/protocol.md)");
   if (header.json_bytes > most_json_bytes || header.data_bytes > most_data_bytes)
-    throw Error("a message has at most " + std::to_string(most_json_bytes) + " bytes of JSON and " +
+    throw Error("expected a message of at most " + std::to_string(most_json_bytes) + " bytes of JSON and " +
                 std::to_string(most_data_bytes) + " bytes of arrays");
 }
 
@@ -73,7 +73,7 @@ void write_all(int file, const void* bytes, std::size_t count) {
   while (count > 0) {
     const ssize_t written = ::write(file, next, count);
     if (written < 0 && errno == EINTR) continue;
-    if (written < 0) throw Error("the client does not read: " + std::generic_category().message(errno));
+    if (written < 0) throw Error("cannot write to the client: " + std::generic_category().message(errno));
     next += written;
     count -= static_cast<std::size_t>(written);
   }
@@ -85,7 +85,7 @@ std::optional<LinkRequest> read_request(int file) {
   Header header;
   const std::size_t got = read_some(file, reinterpret_cast<std::byte*>(&header), sizeof(header));
   if (got == 0) return std::nullopt;
-  if (got < sizeof(header)) throw Error("the client's last message ends too early");
+  if (got < sizeof(header)) throw Error("the client's last message is truncated");
   check(header);
   const std::vector<std::byte> json = read_bytes(file, header.json_bytes);
   const auto data = std::make_shared<const std::vector<std::byte>>(read_bytes(file, header.data_bytes));

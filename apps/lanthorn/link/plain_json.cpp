@@ -85,16 +85,16 @@ class JsonReader {
     const nlohmann::json shape = data.value("shape", nlohmann::json());
     if (!offset || !shape.is_array()) throw Error("an array has a type, a \"shape\" and an \"offset\" in bytes");
     plain::Array array{*type, {}, data_, nullptr};
-    // No product of extents that the data hold overflows.
+    // Compares by division, because the product of forged extents may overflow.
     const std::uint64_t room = *offset <= data_->size() ? (data_->size() - *offset) / bytes_of(*type) : 0;
     std::uint64_t count = 1;
     for (const nlohmann::json& extent : shape) {
       const std::optional<std::uint64_t> size = whole_of(extent);
-      if (!size || (*size > 0 && count > room / *size)) throw Error("an array goes beyond the end of its message");
+      if (!size || (*size > 0 && count > room / *size)) throw Error("an array extends beyond the end of its message");
       count *= *size;
       array.shape.push_back(static_cast<std::size_t>(*size));
     }
-    if (*offset > data_->size() || count > room) throw Error("an array goes beyond the end of its message");
+    if (*offset > data_->size() || count > room) throw Error("an array extends beyond the end of its message");
     array.data = data_->data() + *offset;
     return array;
   }
@@ -112,7 +112,7 @@ class JsonReader {
   std::shared_ptr<const std::vector<std::byte>> data_;
 };
 
-// The parser of the library does not limit depth, and copies of what is too deep recurse.
+// nlohmann's parser does not limit depth, and copying deeply nested values recurses.
 void check_depth(std::string_view text) {
   int depth = 0;
   bool is_text = false;

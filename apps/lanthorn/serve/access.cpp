@@ -17,14 +17,14 @@ namespace lanthorn::program {
 std::string random_token() {
   std::array<unsigned char, 16> bytes{};
   if (::getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size()))
-    throw Error("the system gives no random numbers for the server's address");
+    throw Error("the system provides no random numbers for the server's address");
   std::string token;
   for (const unsigned char byte : bytes) token += fmt::format("{:02x}", byte);
   return token;
 }
 
 bool equal_in_constant_time(std::string_view a, std::string_view b) {
-  // Reads of `a` and `b` go on beyond a difference; volatile keeps the compiler from ending the loop there.
+  // The loop reads on after a difference; `volatile` keeps the compiler from ending it early.
   volatile unsigned difference = a.size() == b.size() ? 0 : 1;
   for (std::size_t i = 0; i < a.size(); ++i) {
     const auto other = static_cast<unsigned char>(b.empty() ? 0 : b[i % b.size()]);

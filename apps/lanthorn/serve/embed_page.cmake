@@ -8,7 +8,7 @@ foreach(part document:index.html style:style.css program:viewer.js)
   list(GET part 1 file)
   file(READ ${FOLDER}/${file} bytes HEX)
   string(REGEX REPLACE "(..)" "\\\\x\\1" text "${bytes}")
-  # Short strings, which the compiler joins: a long one has no limit in GCC, but in others.
+  # Short strings, which the compiler concatenates: some compilers limit the length of a literal.
   string(REGEX REPLACE "(................................................................................................................................)" "\\1\"\n  \"" text "${text}")
   string(APPEND source "extern const std::string_view page_${name};\nconst std::string_view page_${name} =\n  \"${text}\";\n")
 endforeach()

@@ -17,7 +17,7 @@ namespace lanthorn::program {
 
 namespace {
 
-// Those that a page may show.
+// Names of the layers that a page may show.
 std::vector<std::string> shown_layers(const Image& image) {
   Image names;
   std::copy_if(image.channels.begin(), image.channels.end(), std::back_inserter(names.channels),

@@ -29,7 +29,7 @@ bool is_token(std::string_view text) {
 }
 bool is_visible(char c) { return c > ' ' && c < '\x7f'; }
 
-// A field's value has no control characters but tabs (RFC 9110, §5.5).
+// A field's value contains no control characters except tabs (RFC 9110, §5.5).
 bool is_field_value(std::string_view text) {
   return std::all_of(text.begin(), text.end(),
                      [](char c) { return c == '\t' || (static_cast<unsigned char>(c) >= ' ' && c != '\x7f'); });
@@ -41,7 +41,7 @@ std::string_view trimmed(std::string_view text) {
   return text;
 }
 
-// Takes the text before `separator` away from `text`, and the separator; nothing if there is none.
+// Removes the text before `separator`, and the separator, from `text` and returns it; nullopt without a separator.
 std::optional<std::string_view> take_until(std::string_view& text, std::string_view separator) {
   const std::size_t at = text.find(separator);
   if (at == std::string_view::npos) return {};
@@ -50,7 +50,7 @@ std::optional<std::string_view> take_until(std::string_view& text, std::string_v
   return part;
 }
 
-// As above, or all of the text.
+// As `take_until`, but takes all of the text if there is no separator.
 std::string_view take_part(std::string_view& text, std::string_view separator) {
   if (const auto part = take_until(text, separator)) return *part;
   return std::exchange(text, {});
@@ -64,7 +64,7 @@ std::optional<Number> whole_number(std::string_view text, int base = 10) {
   return value;
 }
 
-// Percent-encoding (RFC 3986, §2.1), and '+' for a space, as forms have it.
+// Percent-encoding (RFC 3986, §2.1), with '+' for a space, as in forms.
 std::optional<std::string> decoded(std::string_view text) {
   std::string result;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -107,7 +107,7 @@ std::optional<HttpStatus> parse_request_line(std::string_view line, HttpRequest&
   return {};
 }
 
-// A field that comes twice is refused: two readers might choose different ones.
+// Duplicate fields are rejected: two readers might choose different ones.
 std::optional<HttpStatus> parse_field(std::string_view line, HttpRequest& request) {
   const auto name = take_until(line, ":");
   const std::string_view value = trimmed(line);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// HTTP/1.1 messages (RFC 9110 and 9112), as far as a page and its pictures need them: GET and POST, short bodies of a
-// stated length. All else is refused, so that there is little to get wrong.
+// The subset of HTTP/1.1 (RFC 9110 and 9112) that a page and its pictures need: GET and POST, short bodies of stated
+// length. Everything else is rejected, to keep the parser simple.
 #pragma once
 
 #include <cstddef>
@@ -16,19 +16,19 @@
 
 namespace lanthorn::program {
 
-/// Bounds of a request, bytes and numbers.
+/// Limits of a request: bytes and number of fields.
 inline constexpr std::size_t most_head_bytes = 8192, most_fields = 64, most_body_bytes = 16384;
 
 struct HttpRequest {
   std::string method;                         ///< GET or POST
-  std::string path;                           ///< begins with '/'; as it was sent
+  std::string path;                           ///< begins with '/'; not decoded
   std::map<std::string, std::string> query;   ///< names and values, decoded
   std::map<std::string, std::string> fields;  ///< header fields by their names in lower case
   std::string body;
 
-  /// The value of a header field; empty if there is none.
+  /// The value of a header field; empty if it is absent.
   const std::string& field(const std::string& name) const;
-  /// The value of a name in the query; empty if there is none.
+  /// The value of a query parameter; empty if it is absent.
   const std::string& parameter(const std::string& name) const;
   bool wants_close() const;
 };
@@ -52,9 +52,9 @@ enum class HttpStatus : int {
   version_not_supported = 505,
 };
 
-/// The request line and the header fields, up to and with the empty line; the body is left empty. A status if the head
-/// is malformed, or asks for what is not there: other methods, transfer codings, bodies without length or longer than
-/// `most_body_bytes`, more than `most_fields`.
+/// Parses the request line and the header fields, up to and including the empty line; leaves the body empty. Returns a
+/// status if the head is malformed or requests something unsupported: other methods, transfer codings, bodies without
+/// length or longer than `most_body_bytes`, more than `most_fields`.
 std::variant<HttpRequest, HttpStatus> parse_request_head(std::string_view head);
 
 /// Length of the body of a request that `parse_request_head` has accepted.
@@ -71,10 +71,10 @@ struct HttpResponse {
   std::vector<std::pair<std::string, std::string>> fields{};  ///< further header fields
 };
 
-/// A response whose body says what its status means.
+/// A response whose body states the meaning of its status.
 HttpResponse plain_response(HttpStatus status);
 
-/// The head of a response, with the fields that all responses have: no caching, no sniffing, no referrer, no framing.
+/// The head of a response, including the fields of all responses: no caching, no sniffing, no referrer, no framing.
 std::string encode_head(const HttpResponse& response, bool close);
 
 }  // namespace lanthorn::program

@@ -19,7 +19,7 @@ constexpr auto response_patience = 10s;
 constexpr std::size_t least_bytes_per_second = std::size_t{128} << 10;
 constexpr std::size_t most_bytes_in_flight = std::size_t{256} << 20;
 
-// Adds to a number while it lives.
+// Adds to a number during its lifetime.
 template <class Number>
 class Counted {
  public:
@@ -53,7 +53,7 @@ void HttpServer::work() {
   }
 }
 
-// Returns whether the connection goes on.
+// Returns whether the connection stays open.
 bool HttpServer::answer(const Reception::Visit& visit) try {
   const Connection& connection = visit.client.connection;
   const auto* const request = std::get_if<HttpRequest>(&visit.request);
@@ -63,7 +63,7 @@ bool HttpServer::answer(const Reception::Visit& visit) try {
       request != nullptr ? handle(connection, *request) : plain_response(std::get<HttpStatus>(visit.request)), close);
   if (!is_sent || close) connection.finish();
   return is_sent && !close;
-} catch (const std::bad_alloc&) {  // this client's connection is all that is lost
+} catch (const std::bad_alloc&) {  // only this client's connection is lost
   return false;
 }
 
@@ -71,7 +71,7 @@ HttpResponse HttpServer::handle(const Connection& connection, const HttpRequest&
   return handler_(request, [&] { return reception_.is_stopped() || connection.is_gone(); });
 } catch (const std::bad_alloc&) {
   return plain_response(HttpStatus::unavailable);
-} catch (const std::exception&) {  // its text is none of the client's business
+} catch (const std::exception&) {  // the client must not see its text
   return plain_response(HttpStatus::internal_error);
 }
 

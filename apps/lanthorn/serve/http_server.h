@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// A server of HTTP/1.1 whose memory, threads and patience are bounded whatever its clients do.
+// An HTTP/1.1 server whose memory, threads and waiting times are bounded whatever its clients do.
 #pragma once
 
 #include <atomic>
@@ -17,22 +17,22 @@
 
 namespace lanthorn::program {
 
-/// True if whoever asked has gone, or the server stops: a handler that waits should end.
+/// True if the client has disconnected or the server stops: a handler that waits should return.
 using IsGone = std::function<bool()>;
-/// Answers a request; called by many threads at a time. What it throws becomes an answer with status 500, or 503 if
+/// Answers a request; many threads may call it at a time. An exception becomes an answer with status 500, or 503 if
 /// memory ran out.
 using HttpHandler = std::function<HttpResponse(const HttpRequest&, const IsGone&)>;
 
-/// Clients wait in a `Reception`; a number of threads answer requests, each one at a time. Answers must be taken at
-/// 128 KiB a second after the first 10 seconds. All answers that are being sent together have 256 MiB at most: beyond,
-/// clients are told to come again (503), unless there is but one.
+/// Clients wait in a `Reception`; a fixed number of threads answer requests, each one at a time. A client must receive
+/// an answer at 128 KiB per second or faster after the first 10 seconds. All answers in transit together are limited to
+/// 256 MiB: beyond that, clients are told to retry (503), unless there is only one answer.
 class HttpServer {
  public:
   static constexpr unsigned threads = 64;
 
-  /// Listens and answers from now on. Throws Error if the address is not to be had.
+  /// Starts to listen and answer. Throws Error if the address is not available.
   HttpServer(const std::string& address, std::uint16_t port, HttpHandler handler);
-  /// Ends all connections.
+  /// Closes all connections.
   ~HttpServer();
   HttpServer(const HttpServer&) = delete;
   HttpServer& operator=(const HttpServer&) = delete;

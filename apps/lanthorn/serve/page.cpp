@@ -6,7 +6,7 @@
 
 namespace lanthorn::program {
 
-// The files of serve/page; the build makes them.
+// The files of serve/page; the build generates these definitions.
 extern const std::string_view page_document, page_style, page_program;
 
 namespace {

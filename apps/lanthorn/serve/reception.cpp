@@ -22,7 +22,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr int backlog = 1024;
 constexpr auto request_patience = 5s, idle_patience = 15s;
-constexpr auto shortage_patience = 50ms;  // of memory or file descriptors
+constexpr auto shortage_patience = 50ms;  // waiting time after a shortage of memory or file descriptors
 constexpr std::size_t block = 4096;
 
 }  // namespace
@@ -67,18 +67,18 @@ void Reception::finish(Visit visit, bool goes_on) try {
   --visits_;
   answered_event_.set();
   if (goes_on) answered_.push_back(std::move(visit.client));
-} catch (const std::bad_alloc&) {  // this client's connection is all that is lost
+} catch (const std::bad_alloc&) {  // only this client's connection is lost
 }
 
 void Reception::run() {
-  ::fcntl(listener_.get(), F_SETFL, O_NONBLOCK);  // a client may go before it is accepted
+  ::fcntl(listener_.get(), F_SETFL, O_NONBLOCK);  // a client may disconnect before it is accepted
   Clients waiting;
   while (!is_stopped_) try {
       const Events events = wait(waiting);
       waiting = read_from(std::move(waiting), events);
       take_back_answered(waiting);
       if (events.is_called) accept_clients(waiting);
-    } catch (const std::bad_alloc&) {  // some clients' connections are all that is lost
+    } catch (const std::bad_alloc&) {  // only some clients' connections are lost
       std::this_thread::sleep_for(shortage_patience);
     }
 }
@@ -99,7 +99,7 @@ Reception::Events Reception::wait(const Clients& waiting) const {
   return events;
 }
 
-// Returns the clients that go on waiting.
+// Returns the clients that keep waiting.
 Reception::Clients Reception::read_from(Clients waiting, const Events& events) {
   Clients staying;
   staying.reserve(waiting.size());
@@ -110,14 +110,14 @@ Reception::Clients Reception::read_from(Clients waiting, const Events& events) {
   return staying;
 }
 
-// Reads the bytes that a client has sent. Returns false if the client has gone, or if its request was handed over.
+// Reads the bytes that a client has sent. Returns false if the client has disconnected, or its request was handed over.
 bool Reception::read(Client& client) {
   const Deadline now = Clock::now();
   if (client.bytes.empty()) client.deadline = now + request_patience;
   return client.connection.read_some(client.bytes, block, now) && !hand_over(client);
 }
 
-// If a whole request is there, the client is moved from.
+// Hands over a complete request; the client is then moved from.
 bool Reception::hand_over(Client& client) {
   std::optional<RequestOrStatus> request = take_request(client.bytes);
   if (!request) return false;
@@ -142,7 +142,7 @@ void Reception::take_back_answered(Clients& waiting) {
   }
 }
 
-// A few at a time, so that the requests of those who are there are not kept waiting.
+// Accepts only a few clients at a time, so that the requests of connected clients are not delayed.
 void Reception::accept_clients(Clients& waiting) {
   constexpr int a_few = 64;
   const auto send_longest_waiting_away = [&] {

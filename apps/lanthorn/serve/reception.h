@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Where clients wait. One thread accepts connections and reads requests, however many clients there are; only those
-// that have sent a whole request cost more than their buffer.
+// Where clients wait. A single thread accepts connections and reads requests, however many clients there are; only
+// clients that have sent a complete request cost more than their buffer.
 #pragma once
 
 #include <atomic>
@@ -21,23 +21,23 @@
 
 namespace lanthorn::program {
 
-/// A connection, and the bytes that it has sent beyond its last request.
+/// A connection, and the bytes received beyond its last request.
 struct Client {
   Connection connection;
   std::string bytes{};
-  Deadline waits_since{};  ///< its connection, or the end of its last answer
+  Deadline waits_since{};  ///< time of connection, or of the end of its last answer
   Deadline deadline{};     ///< for its next request
 };
 
-/// A whole request, or the status with which to refuse it.
+/// A complete request, or the status with which to reject it.
 using RequestOrStatus = std::variant<HttpRequest, HttpStatus>;
 
-/// Takes the first request out of the bytes of a client. Nothing if it is not whole yet.
+/// Removes the first request from a client's bytes. nullopt if it is incomplete.
 std::optional<RequestOrStatus> take_request(std::string& bytes);
 
-/// `most_connections` are open at a time. When another client comes, the one that has waited for longest is sent away:
-/// silent clients cannot keep others out. A request must be there within 5 seconds of its connection or of its first
-/// byte; a client that has got an answer may be silent for 15 seconds.
+/// Keeps up to `most_connections` open. When another client arrives, the one that has waited longest is disconnected:
+/// silent clients cannot keep others out. A request must be complete within 5 seconds of the connection or of its first
+/// byte; after an answer, a client may be silent for 15 seconds.
 class Reception {
  public:
   static constexpr std::size_t most_connections = 256;
@@ -47,26 +47,26 @@ class Reception {
     RequestOrStatus request;
   };
 
-  /// Listens from now on. Throws Error if the address is not to be had.
+  /// Starts to listen. Throws Error if the address is not available.
   Reception(const std::string& address, std::uint16_t port);
   ~Reception();
   Reception(const Reception&) = delete;
   Reception& operator=(const Reception&) = delete;
 
   std::uint16_t port() const { return port_of(listener_); }
-  /// Waits for the next request, in the order of their arrival. Nothing once `stop` was called.
+  /// Waits for the next request, in order of arrival. nullopt once `stop` was called.
   std::optional<Visit> next();
-  /// Call after each visit: the client waits for its next request, or its connection ends.
+  /// Call after each visit: the client waits for its next request, or its connection is closed.
   void finish(Visit visit, bool goes_on);
-  /// Ends all waiting: of this class, and for clients that are being answered.
+  /// Ends all waiting, both in this class and for clients that are being answered.
   void stop();
   bool is_stopped() const { return is_stopped_; }
 
  private:
   using Clients = std::vector<Client>;
   struct Events {
-    std::vector<short> of_clients;  // as of poll(2)
-    bool is_called = false;         // somebody wants to be accepted
+    std::vector<short> of_clients;  // poll(2) events
+    bool is_called = false;         // a client wants to be accepted
   };
 
   void run();
@@ -81,11 +81,11 @@ class Reception {
   FileDescriptor listener_;
   Event stop_, answered_event_;
   std::atomic<bool> is_stopped_{false};
-  std::atomic<std::size_t> visits_{0};  // those that are asked for and those being answered
+  std::atomic<std::size_t> visits_{0};  // requested ones and those being answered
   std::mutex mutex_;
   std::condition_variable asked_;
   std::deque<Visit> visits_asked_for_;
-  Clients answered_;  // on their way back
+  Clients answered_;  // clients to be returned to the waiting ones
   std::jthread thread_;
 };
 

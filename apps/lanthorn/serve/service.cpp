@@ -31,7 +31,7 @@ namespace {
 
 constexpr const char* json_type = "application/json; charset=utf-8";
 
-// "/TOKEN/resource" to "resource"; nothing if the token is another one.
+// "/TOKEN/resource" to "resource"; nullopt if the token is wrong.
 std::optional<std::string> resource_of(const std::string& path, const std::string& token) {
   const std::size_t slash = path.find('/', 1);
   const std::string given = path.substr(1, slash == std::string::npos ? slash : slash - 1);
@@ -81,7 +81,7 @@ EnvironmentChoice environment_of(const nlohmann::json& json) {
           value_of(json.value("scale", nlohmann::json(1)), "brightness", environment_scale_type())};
 }
 
-// Throws Error, or what the JSON library throws for other types.
+// Throws Error, or what the JSON library throws for wrong types.
 ViewerEdit edit_of(const nlohmann::json& json) {
   ViewerEdit edit;
   edit.home = json.value("home", false);
@@ -103,13 +103,13 @@ ViewerEdit edit_of(const nlohmann::json& json) {
   return edit;
 }
 
-// Values of a layer of one channel that are shown black and white.
+// Values of a one-channel layer that are shown as black and white.
 struct GreyRange {
   double black = 0, white = 1;
 };
 
-// A layer as the colours of a picture: those of one channel are grey, black where nothing was seen (0), and normals
-// from -1 to 1 become 0 to 1.
+// A layer as colours: one-channel layers become grey, with black where no surface is visible (0); normals are mapped
+// from [-1, 1] to [0, 1].
 std::optional<Image> as_colors(const PageFrame& frame, const std::string& layer, const GreyRange& range) {
   const std::optional<Image> pixels = frame.layer(layer);
   if (!pixels) return {};
@@ -220,7 +220,7 @@ HttpResponse ViewService::exr() const {
   return attachment("image/x-exr", exr_of(*frame), title_ + ".exr");
 }
 
-// Whatever is shown by now, files are denoised in full quality.
+// Files are always denoised at full quality, even if the page shows a preview.
 std::vector<unsigned char> ViewService::exr_of(const PageFrame& frame) const {
   const Image& image = *frame.image();
   const nlohmann::json& about = frame.about();

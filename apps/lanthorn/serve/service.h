@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// What the server answers: the page, frames, edits and downloads, to those who know the token.
+// Answers requests for the page, frames, edits and downloads from clients that know the token.
 #pragma once
 
 #include <mutex>
@@ -16,17 +16,18 @@ namespace lanthorn::program {
 
 class ViewService {
  public:
-  /// `display`: how the page shows pictures at first. `title`: of the page, and the name of files without extension:
-  /// letters, digits, '.', '-' and '_'. `host_name`: by which clients may call this machine, besides localhost and
-  /// addresses in numbers; or empty.
+  /// `display`: initial display settings of the page. `title`: of the page, and the base name of its files: letters,
+  /// digits, '.', '-' and '_'. `host_name`: name that clients may use for this machine, besides localhost and numeric
+  /// addresses; or empty.
   ViewService(Viewer& viewer, const OutputSettings& display, std::string title, std::string token,
               std::string host_name);
 
-  /// GET /TOKEN/ the page; /TOKEN/scene its lights and warnings, as JSON; /TOKEN/frame?after=NUMBER&layer=NAME the next
-  /// frame (see `PageFrame::encoded`), or 204 if there is none for ten seconds; /TOKEN/picture.png?exposure=STOPS&
-  /// curve=none|filmic|agx&layer=NAME and /TOKEN/picture.exr the last picture. POST /TOKEN/edit an edit as JSON: any of
-  /// camera (eye, target, up), lens (fov, aperture, focus: as the options; focus_at: a pixel), environment (source,
-  /// rotation, scale), lights (factors by name), method, size, paused, denoise, moving, home. All else is not found.
+  /// GET /TOKEN/ returns the page; /TOKEN/scene its lights and warnings as JSON; /TOKEN/frame?after=NUMBER&layer=NAME
+  /// the next frame (see `PageFrame::encoded`), or 204 if none appears within ten seconds;
+  /// /TOKEN/picture.png?exposure=STOPS&curve=none|filmic|agx&layer=NAME and /TOKEN/picture.exr the last picture. POST
+  /// /TOKEN/edit takes an edit as JSON, with any of: camera (eye, target, up), lens (fov, aperture, focus: as the
+  /// options; focus_at: a pixel), environment (source, rotation, scale), lights (factors by name), method, size,
+  /// paused, denoise, moving, home. All other paths return 404.
   HttpResponse answer(const HttpRequest& request, const IsGone& is_gone) const;
 
  private:
@@ -42,7 +43,7 @@ class ViewService {
   Viewer& viewer_;
   OutputSettings display_;
   std::string title_, token_, host_name_;
-  mutable std::mutex encoding_;  // of files, one at a time: they may be large
+  mutable std::mutex encoding_;  // serialises file encoding, because files may be large
 };
 
 }  // namespace lanthorn::program

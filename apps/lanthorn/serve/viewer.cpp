@@ -23,8 +23,9 @@ using namespace std::chrono_literals;
 
 constexpr std::chrono::milliseconds watched_time = 30s, frame_patience = 10s;
 
-// Distance to the point that a camera orbits: the middle of what it frames; or else the surface in the middle of the
-// picture, or the scene's centre. Through the hole of a ring, the middle of its picture shows what is far behind it.
+// Distance to the point that a camera orbits: the centre of what it frames; or else the surface at the centre of the
+// picture, or the scene's centre. The picture's centre is unreliable for framed models: through the hole of a ring it
+// shows a point far behind it.
 double distance_to_subject(const description::Camera& camera, const DVec3& eye) {
   return glm::length(DVec3(camera.camera_to_world.start.point(camera.subject->centre())) - eye);
 }
@@ -43,7 +44,7 @@ nlohmann::json to_json(const LookAt& look, bool is_mirrored) {
       {"eye", vector(look.eye)}, {"target", vector(look.target)}, {"up", vector(look.up)}, {"mirrored", is_mirrored}};
 }
 
-// As it is by now; the f-number as it was given.
+// Current values of the lens; the f-number as it was given.
 nlohmann::json to_json(const LensChanges& changes, const ViewDescription& view) {
   LensNumbers lens = lens_of(view);
   if (changes.aperture) lens.aperture = *changes.aperture;
@@ -61,7 +62,7 @@ nlohmann::json to_json(const std::shared_ptr<const InteractiveDenoised>& denoise
   return {{"passes", denoised->passes}, {"preview", denoised->is_preview}};
 }
 
-// Without passes and time, a view refines until it changes.
+// Without a limit on passes, time or error, a view refines until it changes.
 RenderOptions endless(RenderOptions options) {
   if (!options.passes && !options.seconds && !options.noise) options.passes = most_passes;
   return options;
@@ -149,11 +150,12 @@ SharedScene Viewer::in_environment(const EnvironmentChoice& choice) {
   return description_of(*first).environment == choice ? first : edit(*first);
 }
 
-// Factors stay with lights that are the same in both environments.
+// Lights that are the same in both environments keep their factors.
 void Viewer::edit_environment(ViewerScene& next, const EnvironmentChoice& choice) {
   const std::vector<std::string> known = environments();
   if (std::find(known.begin(), known.end(), choice.source) == known.end())
-    throw Error(fmt::format("environment {}: expected one of those that the page offers", printable(choice.source)));
+    throw Error(
+        fmt::format("environment {}: expected one of the environments that the page offers", printable(choice.source)));
   next.environment = choice.source.empty() ? EnvironmentChoice() : choice;
   next.environment.up = settings_.start.environment.up;
   const std::vector<NamedLight> now = lights_of(*in_environment(next.environment));
@@ -204,7 +206,7 @@ std::uint64_t Viewer::submit(ViewerScene next, bool is_moving) {
   const RenderOptions &before = wanted_.scene.options, &now = next.options;
   const SceneChanges &old = wanted_.scene.changes, &changes = next.changes;
   const bool is_relit = next.environment != wanted_.scene.environment;
-  // What the middle of a picture sees depends on its shape.
+  // The surface at the picture's centre depends on its aspect ratio.
   if (changes.look != old.look || changes.lens != old.lens || now.resolution != before.resolution)
     edit.view = view_of(*scene_, changes, now);
   if (changes.lights != old.lights || is_relit) {
@@ -239,7 +241,7 @@ std::shared_ptr<const PageFrame> Viewer::wait_for_frame(std::uint64_t after, con
   return nullptr;
 }
 
-// Each snapshot becomes one frame, however many pages ask for it.
+// Each snapshot becomes one frame, however many pages request it.
 std::shared_ptr<const PageFrame> Viewer::frame_of(const InteractiveSnapshot& snapshot) {
   const std::lock_guard lock(mutex_);
   if (!snapshot.picture || (frame_ && frame_->number() >= snapshot.number)) return frame_;

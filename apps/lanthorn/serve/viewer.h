@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The interactive render that pages see and steer.
+// The interactive render that pages show and control.
 #pragma once
 
 #include <array>
@@ -23,75 +23,75 @@
 
 namespace lanthorn::program {
 
-/// What decides the picture.
+/// Everything that determines the picture.
 struct ViewerScene {
   SceneChanges changes{};
   RenderOptions options{};
   EnvironmentChoice environment{};
 };
 
-/// What a page asks for; what is missing stays as it is.
+/// A page's edit; missing members stay unchanged.
 struct ViewerEdit {
-  bool home = false;  ///< camera, lens and lights as at the start, before the edits below
+  bool home = false;  ///< resets camera, lens and lights to the start, before the edits below
   std::optional<std::string> method{};
   std::optional<std::array<int, 2>> size{};  ///< width, height in pixels
   std::optional<LookAt> look{};
   LensChanges lens{};
-  std::optional<Vec2> focus_at{};  ///< makes sharp what this pixel of the picture at full size sees
+  std::optional<Vec2> focus_at{};  ///< focuses on the surface in this pixel of the picture at full size
   std::optional<EnvironmentChoice> environment{};
   std::optional<LightFactors> lights{};
   std::optional<bool> paused{}, denoise{};
-  bool moving = false;  ///< more edits will follow at once: coarse pictures will do
+  bool moving = false;  ///< more edits will follow immediately: coarse pictures suffice
 };
 
 struct ViewerSettings {
-  /// The command line that renders this picture after so many passes, and denoises it or not.
+  /// The command line that renders this picture with the given number of passes, denoised or not.
   std::function<std::string(const ViewerScene&, std::uint64_t, bool)> command;
   ViewerScene start{};
-  bool denoises = false;    ///< at the start
-  bool keeps_sums = false;  ///< a pass that is given up leaves no trace, so that the sums can be saved
+  bool denoises = false;    ///< initially
+  bool keeps_sums = false;  ///< an abandoned pass leaves no trace, so that the sums can be saved
 };
 
-/// Renders as long as somebody has looked within the last half minute, or the sums are kept. Any thread may call.
+/// Renders as long as a page was active within the last half minute, or the sums are kept. Any thread may call.
 class Viewer {
  public:
-  /// `scene` was read with the environment of the start. Throws Error as `InteractiveRender` does, and for lights that
-  /// the scene does not have.
+  /// `scene` was read with the initial environment. Throws Error as `InteractiveRender` does, and for lights that the
+  /// scene does not have.
   Viewer(const SharedScene& scene, ViewerSettings settings);
 
-  /// Rests if nobody has looked for long, and takes back what cannot be rendered. To be called now and then.
+  /// Pauses if no page was active for a while, and reverts edits that cannot be rendered. Call it periodically.
   void tend();
-  /// Ends the running pass and the render.
+  /// Ends the current pass and the render.
   void end();
-  /// After `end`: the sums of what was seen last; null if there is no whole pass of it.
+  /// After `end`: the film's sums of the last view; null if it has no complete pass.
   const RenderState* state() const { return render_.state(); }
-  /// Pictures at rest are denoised.
+  /// Whether finished pictures are denoised.
   bool denoises() const;
 
-  /// Returns the revision of the pictures that will show the edit. Throws Error for cameras, lenses, environments,
-  /// lights, methods and sizes that cannot be.
+  /// Applies an edit and returns the revision of the pictures that will show it. Throws Error for invalid cameras,
+  /// lenses, environments, lights, methods and sizes.
   std::uint64_t apply(const ViewerEdit& edit);
-  /// The first frame with another number than `after`; null if none comes for ten seconds, or `is_gone`.
+  /// The first frame whose number differs from `after`; null if none appears within ten seconds, or `is_gone`.
   std::shared_ptr<const PageFrame> wait_for_frame(std::uint64_t after, const IsGone& is_gone);
-  /// Null before the first.
+  /// Null before the first frame.
   std::shared_ptr<const PageFrame> last_frame();
 
-  /// Those at the start.
+  /// Warnings of the initial scene and view.
   const std::vector<description::Warning>& warnings() const { return render_.warnings(); }
-  /// Those of the last environment that was asked for.
+  /// Lights under the last environment requested.
   std::vector<NamedLight> lights() const;
-  /// The sources of environments that may be asked for: the scene's own (empty), those without a file, and the one that
-  /// the server was started with.
+  /// The environment sources that may be requested: the scene's own (empty), the built-in ones, and the one that the
+  /// server was started with.
   std::vector<std::string> environments() const;
   const Scene& scene() const { return *scene_; }
-  /// What is seen at the start.
+  /// The initial view.
   ViewDescription first_view() const { return view_of(*scene_, settings_.start.changes, settings_.start.options); }
 
  private:
   using Clock = std::chrono::steady_clock;
   struct Shown {
     ViewerScene scene;
-    ViewDescription view;  ///< that follows from it
+    ViewDescription view;  ///< follows from the scene
   };
 
   void look();
@@ -110,12 +110,12 @@ class Viewer {
   bool is_mirrored_;
   InteractiveRender render_;
 
-  mutable std::mutex mutex_;                         // of all below
-  std::map<std::string, SharedScene> surroundings_;  // by source: the first scene in each, whose picture others share
+  mutable std::mutex mutex_;                         // guards all members below
+  std::map<std::string, SharedScene> surroundings_;  // by source: the first scene with it; later ones share its image
   std::vector<NamedLight> lights_;
   Shown wanted_;
-  std::map<std::uint64_t, Shown> scenes_;  // by revision, from that of the last frame on
-  std::string problem_;                    // with what was taken back
+  std::map<std::uint64_t, Shown> scenes_;  // by revision, starting with that of the last frame
+  std::string problem_;                    // names the reverted edit
   std::string first_method_;
   std::optional<LookAt> home_;
   bool is_paused_ = false, denoises_, has_ended_ = false;

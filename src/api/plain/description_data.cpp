@@ -34,7 +34,7 @@ void read_listed(Reader& reader, const Dict& data, T& out, const Members& member
   std::apply([&](const auto&... member) { (read_member(reader, data, out, member, known), ...); }, members);
 }
 
-// An entry of a table, and what it is called in messages and, unless it is of a list, in references.
+// An entry of a table, with its path in messages and, unless the table is a list, its name in references.
 struct TableEntry {
   std::string step, name;
   const Value* value = nullptr;
@@ -117,7 +117,7 @@ Reader reader_for(const SceneDescription& scene) {
   return reader;
 }
 
-// States belong to the files that the scene names, too.
+// The identity of states includes the files that the scene names.
 void mix_files(Reader& reader, const SceneDescription& scene) {
   const auto mix = [&](const std::string& name) {
     if (!name.empty() && !scene.access.is_missing(name)) reader.mix(scene.access.read(name));
@@ -136,7 +136,7 @@ bool is_whole_number(const std::string& text) {
   return !text.empty() && text.size() < 10 && text.find_first_not_of("0123456789") == std::string::npos;
 }
 
-// The entry of a table that an edit means: by the name that it has, or else by its index.
+// The entry of a table that an edit refers to: by name if one matches, or else by index.
 Index edited_entry(Reader& reader, const std::string& key, const char* table) {
   Index index = 0;
   const bool is_index = is_whole_number(key) && !reader.names[table].contains(key);
@@ -144,7 +144,7 @@ Index edited_entry(Reader& reader, const std::string& key, const char* table) {
   return index;
 }
 
-// Each edit starts from what is there: keys that are missing stay as they are.
+// Each edit starts from the existing entry: missing keys keep their values.
 template <class T>
 void read_edits(Reader& reader, const Dict& edits, const char* table, const std::vector<T>& old,
                 std::map<Index, T>& out) {
@@ -234,7 +234,7 @@ DescriptionEdits edits_of_data(const Value& value, const SceneDescription& scene
   refuse_other_keys(reader, data, known);
 
   SceneEdits changes;
-  // What the view has read is part of the view's own identity.
+  // Excludes what the view has read, which is part of the view's own identity.
   reader.hash = scene.hash;
   read_edits(reader, data, "materials", scene.materials, changes.materials);
   read_edits(reader, data, "lights", scene.lights, changes.lights);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The members of a scene description as plain data have them: the names of include/lanthorn/scene_description.h.
-// Left out: places in files (plain data have none) and measured BRDFs, which only files bring.
+// The members of a scene description in plain data, under their names in include/lanthorn/scene_description.h.
+// Excluded: locations in files (plain data have none) and measured BRDFs, which only files provide.
 #pragma once
 
 #include "lanthorn/plain_data.h"
@@ -213,7 +213,7 @@ struct Fields<description::DotsTexture<P>> {
 template <class P, class Q>
 struct Fields<description::ScaleTexture<P, Q>> {
   using T = description::ScaleTexture<P, Q>;
-  /// Of spectrum textures: a factor that is a spectrum has a name of its own.
+  /// For spectrum textures, a factor that is a spectrum is a type of its own.
   static constexpr const char* type = std::is_same_v<Q, description::SpectrumParameter> ? "scalebyspectrum" : "scale";
   static constexpr auto list = std::tuple(field("tex", &T::tex), field("scale", &T::scale));
 };
@@ -629,7 +629,7 @@ struct Fields<description::RenderHints> {
                  field("seed", &T::seed), field("regularize", &T::regularize));
 };
 
-/// A mapping of surfaces, or that of solid textures.
+/// A surface mapping, or a solid texture's mapping.
 template <>
 struct Convert<std::variant<description::TextureMapping, description::SolidMapping>> {
   using Mapping = std::variant<description::TextureMapping, description::SolidMapping>;

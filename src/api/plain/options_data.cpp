@@ -33,7 +33,7 @@ constexpr auto option_members =
                field("photons", &RenderOptions::photons), field("max_depth", &RenderOptions::max_depth),
                field("memory", &RenderOptions::memory));
 
-// As the command line has it.
+// The value in the command line's notation.
 std::string parameter_text(const Value& value) {
   if (const auto* flag = value.as<bool>()) return *flag ? "true" : "false";
   if (const auto* text = value.as<std::string>()) return *text;
@@ -58,7 +58,7 @@ RenderOptions options_of_data(const Value& data) {
   }
   for (const auto& [name, value] : dict.entries()) {
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
-    // Parameters have hyphens where Python has underscores.
+    // Parameter names use hyphens where Python uses underscores.
     std::string parameter = name;
     std::replace(parameter.begin(), parameter.end(), '_', '-');
     options.set[parameter] = parameter_text(value);

@@ -8,7 +8,7 @@ namespace lanthorn::plain {
 
 namespace {
 
-// Depth first, along the references.
+// Depth-first traversal along references.
 class ReferenceOrder {
  public:
   ReferenceOrder(Reader& reader, const Dict& table) : reader_(reader) {
@@ -24,7 +24,7 @@ class ReferenceOrder {
     Mark mark;
   };
 
-  // Names that are not there are left to the reader, which says so.
+  // Unknown names are left to the reader, which reports them.
   void visit(const std::string& name) {
     const auto found = places_.find(name);
     if (found == places_.end() || found->second.mark == Mark::done) return;

@@ -6,7 +6,7 @@
 
 namespace lanthorn::plain {
 
-/// The entries of a dict of textures or of materials in an order in which each comes after those that it refers to, by
+/// The entries of a dict of textures or materials in an order in which each one follows those that it refers to by
 /// {"texture": name} or, in a mix, {"materials": [names]}. Fails for entries that refer to themselves.
 std::vector<const Dict::Entry*> in_reference_order(Reader& reader, const Dict& table);
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Sends and receives messages by MPI-3. A message is sent as its length and then in pieces, because MPI counts bytes
+// Sends and receives messages with MPI-3. A message is sent as its length followed by pieces, because MPI counts bytes
 // with an int.
 #include <mpi.h>
 
@@ -23,7 +23,7 @@ void require(int code, const char* what) {
   if (code != MPI_SUCCESS) throw std::runtime_error(what);
 }
 
-// A message that is being sent. MPI reads these bytes until its requests are complete, so they must not move.
+// A message that is being sent. MPI reads these bytes until its requests complete, so they must not move.
 struct Sending {
   std::uint64_t length;
   std::vector<std::byte> bytes;
@@ -90,7 +90,7 @@ bool all_sent() {
 TeamLink join() {
   int provided = 0;
   require(MPI_Init_thread(nullptr, nullptr, MPI_THREAD_SERIALIZED, &provided), "MPI_Init_thread");
-  if (provided < MPI_THREAD_SERIALIZED) throw std::runtime_error("this MPI cannot be called by different threads");
+  if (provided < MPI_THREAD_SERIALIZED) throw std::runtime_error("this MPI cannot be called from different threads");
   TeamLink link{.send = send, .receive = receive, .all_sent = all_sent};
   MPI_Comm_rank(MPI_COMM_WORLD, &link.rank);
   MPI_Comm_size(MPI_COMM_WORLD, &link.size);

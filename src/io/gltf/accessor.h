@@ -12,16 +12,16 @@
 
 namespace lanthorn::gltf {
 
-/// The elements of an accessor, read one by one (glTF 2.0 §3.6.2). Valid as long as the document.
+/// Reads the elements of an accessor one by one (glTF 2.0 §3.6.2). Must not outlive the document.
 class Accessor {
  public:
-  /// The accessor with the index `reference`, checked to lie inside its buffers. `components` is the number of
-  /// components that its elements must have (3 for VEC3). Throws Error.
+  /// The accessor with the index `reference`; checks that it lies inside its buffers. `components`: the required number
+  /// of components per element (3 for VEC3). Throws Error.
   Accessor(Document& document, const Value& reference, std::size_t components);
 
   std::size_t count() const { return count_; }
-  /// A component as a float: integers as they are or, if normalised, mapped to [0, 1] or [-1, 1] (§3.6.2.2). Numbers
-  /// that are not finite become 0.
+  /// A component as a float: integers unchanged or, if normalised, mapped to [0, 1] or [-1, 1] (§3.6.2.2). Non-finite
+  /// numbers become 0.
   float number(std::size_t element, std::size_t component) const;
   /// A component as an integer, for accessors of unsigned integers.
   std::uint32_t integer(std::size_t element, std::size_t component) const;
@@ -48,7 +48,7 @@ class Accessor {
   Type type_ = Type::f32;
   bool normalized_ = false;
   std::size_t count_ = 0;
-  std::optional<Array> base_;  ///< empty: all components are 0
+  std::optional<Array> base_;  ///< nullopt: all components are 0
   std::optional<Sparse> sparse_;
 };
 

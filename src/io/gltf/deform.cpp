@@ -49,7 +49,7 @@ Skinning::Skinning(std::span<const glm::dmat4> joints, std::size_t vertices) : j
 void Skinning::add(std::size_t vertex, std::uint32_t joint, float weight, const Value& place) {
   if (!(weight > 0)) return;
   if (joint >= joints_.size())
-    throw place.error("vertex " + std::to_string(vertex) + " hangs on joint " + std::to_string(joint) +
+    throw place.error("vertex " + std::to_string(vertex) + " is bound to joint " + std::to_string(joint) +
                       ", but the skin has " + std::to_string(joints_.size()));
   blends_[vertex].sum += static_cast<double>(weight) * joints_[joint];
   blends_[vertex].weight += static_cast<double>(weight);
@@ -63,7 +63,7 @@ void Skinning::apply(description::TriangleMesh& mesh) const {
     mesh.positions[i] = Point(m * glm::dvec4(mesh.positions[i], 1));
     if (!mesh.tangents.empty()) mesh.tangents[i] = Vec3(linear * glm::dvec3(mesh.tangents[i]));
     if (mesh.normals.empty()) continue;
-    // The cofactors: the inverse transpose times the determinant, defined for singular matrices, too.
+    // The cofactor matrix: the inverse transpose times the determinant; unlike the inverse, singular matrices have it.
     const glm::dmat3 cofactors(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]),
                                glm::cross(linear[0], linear[1]));
     mesh.normals[i] = Normal(cofactors * glm::dvec3(mesh.normals[i]));

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// What moves the vertices of a mesh: morph targets and skins (glTF 2.0 §3.7.2.2, §3.7.3).
+// Deformation of a mesh's vertices: morph targets and skins (glTF 2.0 §3.7.2.2, §3.7.3).
 #pragma once
 
 #include <cstdint>
@@ -13,24 +13,24 @@ namespace lanthorn::gltf {
 
 struct Deformation {
   std::vector<float> weights;          ///< of the morph targets
-  std::span<const glm::dmat4> joints;  ///< from the bind pose to the world; none: the mesh has no skin
+  std::span<const glm::dmat4> joints;  ///< from the bind pose to the world; empty: the mesh has no skin
 
-  /// True if vertices stay where they are.
+  /// True if no vertex moves.
   bool is_none() const;
 };
 
-/// Adds the weighted targets of a primitive to positions, normals and tangents. `vertices`: which of the primitive's
-/// vertices the mesh has. Throws Error.
+/// Adds the weighted targets of a primitive to positions, normals and tangents. `vertices`: indices of the primitive's
+/// vertices that the mesh uses. Throws Error.
 void morph(Document& document, const Value& primitive, const std::vector<float>& weights,
            const std::vector<std::uint32_t>& vertices, description::TriangleMesh& mesh);
 
-/// Weighted sums of the matrices of joints, one for each vertex.
+/// For each vertex, the weighted sum of its joints' matrices.
 class Skinning {
  public:
   Skinning(std::span<const glm::dmat4> joints, std::size_t vertices);
-  /// Adds an influence. Throws Error at `place` if there is no such joint.
+  /// Adds an influence. Throws Error at `place` if the joint does not exist.
   void add(std::size_t vertex, std::uint32_t joint, float weight, const Value& place);
-  /// Moves positions, normals and tangents from the bind pose to the world.
+  /// Transforms positions, normals and tangents from the bind pose to the world.
   void apply(description::TriangleMesh& mesh) const;
 
  private:

@@ -35,12 +35,12 @@ std::uint32_t little_endian_32(std::string_view bytes, std::size_t at) {
   return value;
 }
 
-// Chapter 4.4.
+// glTF 2.0 §4.4.
 Chunks split_container(std::string_view bytes, const std::string& name) {
   const auto fail = [&](const std::string& message) { return Error(SourceLocation{name}, message); };
-  if (bytes.size() < 12) throw fail("the file ends inside of its header");
+  if (bytes.size() < 12) throw fail("the file ends inside its header");
   if (const std::uint32_t version = little_endian_32(bytes, 4); version != 2)
-    throw fail("is version " + std::to_string(version) + " of glTF's binary container: only 2 is read");
+    throw fail("is version " + std::to_string(version) + " of glTF's binary container: only version 2 is supported");
   if (const std::uint32_t length = little_endian_32(bytes, 8); length > bytes.size())
     throw fail("the file has " + std::to_string(bytes.size()) + " bytes, but its header says " +
                std::to_string(length));
@@ -49,10 +49,10 @@ Chunks split_container(std::string_view bytes, const std::string& name) {
   Chunks chunks;
   bool has_text = false;
   for (std::size_t at = 12; at < bytes.size();) {
-    if (bytes.size() - at < 8) throw fail("the file ends inside of a chunk's header");
+    if (bytes.size() - at < 8) throw fail("the file ends inside a chunk's header");
     const std::uint32_t length = little_endian_32(bytes, at), type = little_endian_32(bytes, at + 4);
     at += 8;
-    if (length > bytes.size() - at) throw fail("the file ends inside of a chunk");
+    if (length > bytes.size() - at) throw fail("the file ends inside a chunk");
     constexpr std::uint32_t json_type = 0x4E4F534A, binary_type = 0x004E4942;
     if (type == json_type && !std::exchange(has_text, true)) chunks.text = bytes.substr(at, length);
     if (type == binary_type && !chunks.binary) chunks.binary = bytes.substr(at, length);
@@ -70,8 +70,8 @@ SourceLocation place_of_byte(std::string_view text, std::size_t byte, const std:
 }
 
 // Shortens nlohmann's "[json.exception.parse_error.101] parse error at line 1, column 3: syntax error while ... -
-// invalid literal; last read: 'what'; expected ...": returns the text from "syntax error" on, with at most a token of
-// the input.
+// invalid literal; last read: 'what'; expected ...": returns the text from "syntax error" on, quoting at most one token
+// of the input.
 std::string plain_message(const std::string& message) {
   const std::size_t at = message.find("column ");
   const std::size_t colon = at == message.npos ? at : message.find(": ", at);
@@ -86,8 +86,8 @@ std::string plain_message(const std::string& message) {
   return text;
 }
 
-// Counts the nesting before parsing. nlohmann's parser callback could do it, but with a callback the parser visits all
-// elements of an array again at its end.
+// Checks the nesting before parsing. nlohmann's parser callback could do it, but with a callback the parser visits all
+// elements of an array again at the array's end.
 void check_nesting(std::string_view text, const std::string& name) {
   int depth = 0;
   bool in_string = false;
@@ -151,7 +151,7 @@ int base64_digit(char c) {
   return -1;
 }
 
-// RFC 4648, §4 and §5; the padding may be missing.
+// RFC 4648, §4 and §5; padding is optional.
 std::optional<std::string> base64_decoded(std::string_view text) {
   while (!text.empty() && text.back() == '=') text.remove_suffix(1);
   std::string result;
@@ -172,12 +172,12 @@ std::optional<std::string> base64_decoded(std::string_view text) {
   return result;
 }
 
-// The part [offset, offset + length) of `bytes`. Error messages call their owner `what`.
+// The range [offset, offset + length) of `bytes`. Error messages call their owner `what`.
 std::string_view part(std::string_view bytes, std::uint64_t offset, std::uint64_t length, const Value& place,
                       const char* what) {
   if (offset > bytes.size() || length > bytes.size() - offset)
     throw place.error("bytes " + std::to_string(offset) + " to " + std::to_string(offset + length) +
-                      " lie outside of the " + what + ", which has " + std::to_string(bytes.size()));
+                      " lie outside the " + what + ", which has " + std::to_string(bytes.size()));
   return bytes.substr(static_cast<std::size_t>(offset), static_cast<std::size_t>(length));
 }
 
@@ -192,7 +192,8 @@ void apply_filter(const std::string& filter, std::string& bytes, std::size_t cou
   else if (filter == "EXPONENTIAL" && stride % 4 == 0)
     meshopt_decodeFilterExp(bytes.data(), count, stride);
   else
-    throw place.error("filter " + in_quotes(filter) + " is not read for a byteStride of " + std::to_string(stride));
+    throw place.error("filter " + in_quotes(filter) + " is not supported for a byteStride of " +
+                      std::to_string(stride));
 }
 
 }  // namespace
@@ -256,13 +257,13 @@ std::optional<std::string> Document::data_uri(const Value& uri) {
 
 namespace {
 
-// Of a name with slashes of any kind.
+// The last component of a name with slashes of either kind.
 std::string last_part(const std::string& name) {
   const std::size_t slash = name.find_last_of("/\\");
   return slash == name.npos ? name : name.substr(slash + 1);
 }
 
-// With backslashes, too: files are looked for as if these were slashes.
+// Treats backslashes as slashes, as the search for files does.
 bool leaves_folder(const std::filesystem::path& name) {
   std::string text = name.string();
   std::replace(text.begin(), text.end(), '\\', '/');
@@ -279,12 +280,12 @@ std::filesystem::path Document::add_file(const Value& uri) {
   if (leaves_folder(decoded) || (colon != text.npos && text.find('/') > colon)) {
     decoded = last_part(decoded.string());
     if (access_ == nullptr || access_->is_missing(access_->find(folder_, decoded)))
-      throw uri.error("only data URIs and relative URIs that stay in the file's folder are read, not " +
+      throw uri.error("only data URIs and relative URIs that stay in the file's folder are supported, not " +
                       in_quotes(text));
   }
   const auto warn_of = [&](const std::string& message) { warn("elsewhere", uri, message); };
   std::filesystem::path path = find_file(folder_, decoded.string(), access_, warn_of);
-  // Sites that host models may escape the names of the files themselves.
+  // Some model hosting sites escape the names of the files themselves.
   if (const std::filesystem::path literal = folder_ / text;
       access_ != nullptr && access_->is_missing(path) && !access_->is_missing(literal))
     path = literal;
@@ -306,7 +307,7 @@ description::Index Document::embedded_image(const Value& image) {
   return embedded_.emplace(image.pointer(), index).first->second;
 }
 
-// The other files of the document, which a missing one is reported with.
+// Adds the document's other files, so that a missing file is reported together with them.
 void Document::add_all_files() {
   for (const std::string_view array : {"buffers", "images"})
     for (std::size_t i = 0; i < count(array); ++i)
@@ -358,7 +359,7 @@ std::string Document::decompressed(const Value& view, const Value& compression) 
   const auto stride = static_cast<std::size_t>(compression.at("byteStride").integer(256));
   const std::uint64_t count = compression.at("count").integer(most);
   const std::string mode = compression.at("mode").text();
-  // One byte of either encoding decodes to fewer than 256 bytes, which bounds the count.
+  // In either encoding, one byte decodes to fewer than 256 bytes, which bounds the count.
   if (stride == 0 || count * stride > 256 * (source.size() + 256))
     throw compression.error("the compressed data is too short for " + std::to_string(count) + " elements of " +
                             std::to_string(stride) + " bytes");

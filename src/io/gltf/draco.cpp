@@ -23,7 +23,7 @@ std::vector<V> values(const draco::Mesh& mesh, const Value& attributes, const st
   if (attribute->num_components() < components)
     throw id->error("the attribute has " + std::to_string(attribute->num_components()) + " numbers, needs " +
                     std::to_string(V::length()));
-  // glTF has no booleans; Draco would read them from the file's bytes unchecked.
+  // glTF has no boolean attributes; Draco would read them from the file's bytes unchecked.
   if (attribute->data_type() == draco::DT_BOOL) throw id->error("the attribute consists of booleans");
   std::vector<V> result(mesh.num_points());
   for (std::uint32_t i = 0; i < mesh.num_points(); ++i) {
@@ -39,7 +39,7 @@ std::vector<V> values(const draco::Mesh& mesh, const Value& attributes, const st
   return result;
 }
 
-// Colours have an alpha or none.
+// Colours with or without alpha.
 std::vector<glm::vec4> colors(const draco::Mesh& mesh, const Value& attributes) {
   const auto id = attributes.find("COLOR_0");
   if (!id) return {};

@@ -9,8 +9,8 @@
 
 namespace lanthorn::gltf {
 
-/// The mesh of a KHR_draco_mesh_compression extension, with the texture coordinates TEXCOORD_`uv_set` as they are in
-/// the file, moved by the joints of a skin if there are any. Throws Error at the extension.
+/// Decodes the mesh of a KHR_draco_mesh_compression extension. Texture coordinates are TEXCOORD_`uv_set`, unchanged;
+/// vertices are moved by the joints of a skin if there are any. Throws Error at the extension.
 description::TriangleMesh decode_draco(Document& document, const Value& extension, std::size_t uv_set,
                                        std::span<const glm::dmat4> joints);
 

@@ -74,13 +74,13 @@ class MaterialReader {
     }
     use->channel = alpha_channel;
     use->scale = factor;
-    use->encoding = Encoding::srgb;  // as the colours of the same image: it is decoded once; alpha is linear anyway
+    use->encoding = Encoding::srgb;  // as for colours of the image: decoded once; alpha is linear
     use->threshold = cutoff;
     const FloatParameter alpha = add(*use);
     return has_colors_ && !cutoff ? times_vertex_alpha(alpha) : alpha;
   }
 
-  // KHR_materials_volume: white light becomes `attenuationColor` over `attenuationDistance` (metres).
+  // KHR_materials_volume: `attenuationColor` is the transmittance over `attenuationDistance` (metres).
   std::optional<Medium> read_medium() {
     const auto volume = material_.extension("KHR_materials_volume");
     if (!volume || result_.thin) return {};
@@ -117,7 +117,7 @@ class MaterialReader {
   }
 
  private:
-  // KHR_materials_unlit: the base colour as radiance, from both sides, since nothing is culled.
+  // KHR_materials_unlit: the base colour becomes radiance, on both sides, since nothing is culled.
   AreaLight read_unlit() {
     const auto pbr = material_.find("pbrMetallicRoughness");
     AreaLight light;
@@ -126,16 +126,16 @@ class MaterialReader {
     light.location = material_.location();
     document_.scene.view.film.display_emission = true;
     document_.warn("KHR_materials_unlit", material_,
-                   "KHR_materials_unlit: surfaces that are not lit emit their colour, which lights others a little");
+                   "KHR_materials_unlit: unlit surfaces emit their colour, which slightly illuminates other surfaces");
     return light;
   }
 
   static float min_component(const Vec3& v) { return std::min({v.x, v.y, v.z}); }
 
-  /// What there is of a texture.
+  /// Result of looking up a texture.
   struct Found {
     std::optional<ImageTexture> image;
-    bool is_lost = false;  ///< there is one, which is missing or cannot be read
+    bool is_lost = false;  ///< the texture exists but is missing on disk or unreadable
   };
   Found texture(const Value& owner, std::string_view key) {
     const auto use = find_texture(document_, owner, key);
@@ -143,7 +143,7 @@ class MaterialReader {
     if (!use->image) return {{}, true};
     if (uv_set_.value_or(use->uv_set) != use->uv_set)
       document_.warn("texCoord", owner,
-                     "textures of one material use different texture coordinates: all get those of the first");
+                     "textures of one material use different texture coordinates: all use those of the first");
     uv_set_ = uv_set_.value_or(use->uv_set);
     return {use->image};
   }
@@ -167,9 +167,9 @@ class MaterialReader {
     return add_spectrum(ScaleTexture<SpectrumParameter, SpectrumParameter>{colour, vertices});
   }
 
-  // What stands in for a texture that is missing or cannot be read is the neutral value of its role. Properties that
-  // every surface has are as their factors say, and colours of surfaces grey. Effects that only some surfaces have, or
-  // only in some places, are absent: emission, transmission, coats, sheen and films.
+  // A texture that is missing or unreadable is replaced by the neutral value of its role: properties of every surface
+  // keep their factors, and colours become grey. Effects that only some surfaces or places have are switched off:
+  // emission, transmission, coats, sheen and films.
   static constexpr float neutral_property = 1, neutral_grey = 0.5f, neutral_effect = 0;
 
   // The number `key` times a channel of a texture.
@@ -184,7 +184,7 @@ class MaterialReader {
     return add(*image);
   }
 
-  // A colour times a texture in sRGB.
+  // A colour times an sRGB texture.
   SpectrumParameter colour(const Value& owner, const Vec3& value, std::string_view texture_key, float neutral) {
     auto [image, is_lost] = texture(owner, texture_key);
     if (!image) return {RgbSpectrum{rgb_of(is_lost ? neutral * value : value)}, {}};
@@ -198,7 +198,7 @@ class MaterialReader {
     return value ? value->numbers(4) : std::vector<float>{1, 1, 1, 1};
   }
 
-  // Factor, texture and vertex colours.
+  // Factor times texture times vertex colours.
   SpectrumParameter base_color(const Value& pbr) {
     const std::vector<float> base = base_factor(pbr);
     return times_vertex_color(colour(pbr, {base[0], base[1], base[2]}, "baseColorTexture", neutral_grey));
@@ -216,7 +216,7 @@ class MaterialReader {
     result_.roughness = factor(*pbr, "roughnessFactor", 1, "metallicRoughnessTexture", green);
   }
 
-  // KHR_materials_pbrSpecularGlossiness: a diffuse base under a reflection of any colour.
+  // KHR_materials_pbrSpecularGlossiness: a diffuse base under a coloured reflection.
   void read_specular_glossiness(const Value& old) {
     const auto diffuse = old.find("diffuseFactor");
     const std::vector<float> base = diffuse ? diffuse->numbers(4) : std::vector<float>{1, 1, 1, 1};
@@ -234,7 +234,7 @@ class MaterialReader {
       result_.roughness = add(*image);
     }
     document_.warn("KHR_materials_pbrSpecularGlossiness", old,
-                   "KHR_materials_pbrSpecularGlossiness is approximated; its alpha is not read");
+                   "KHR_materials_pbrSpecularGlossiness is approximated; its alpha is ignored");
   }
 
   void read_specular() {
@@ -276,7 +276,7 @@ class MaterialReader {
                                                 "diffuseTransmissionColorTexture", neutral_grey);
     if (result_.diffuse_transmission.texture || result_.diffuse_transmission.value != 0)
       document_.warn("KHR_materials_diffuse_transmission", *diffuse,
-                     "KHR_materials_diffuse_transmission is approximated: what transmits does not reflect");
+                     "KHR_materials_diffuse_transmission is approximated: parts that transmit do not reflect");
   }
 
   void read_anisotropy() {
@@ -286,10 +286,10 @@ class MaterialReader {
     tangent_turn_ = anisotropy->number("anisotropyRotation", 0);
     if (anisotropy->find("anisotropyTexture"))
       document_.warn("anisotropyTexture", *anisotropy,
-                     "KHR_materials_anisotropy: directions of textures are ignored, their strength is not");
+                     "KHR_materials_anisotropy: the textures' directions are ignored, their strengths are used");
     if (result_.metallic.texture || result_.metallic.value < 1)
       document_.warn("KHR_materials_anisotropy", *anisotropy,
-                     "KHR_materials_anisotropy is approximated: metal and glass have it, opaque dielectrics do not");
+                     "KHR_materials_anisotropy is approximated: it affects metal and glass, not opaque dielectrics");
   }
 
   // Cauchy's formula n(lambda) = a + b / lambda^2 with the given index at the d line (587.6 nm) and the Abbe number
@@ -332,7 +332,7 @@ class MaterialReader {
     }
   }
 
-  // Nanometres.
+  // Converts to nanometres.
   static float thickness(const Value& iridescence, std::string_view key, float otherwise) {
     const float value = iridescence.number(key, otherwise);
     if (!(value >= 0)) throw iridescence.at(key).error("must not be negative");

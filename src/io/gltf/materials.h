@@ -20,28 +20,28 @@ struct Surface {
   std::optional<description::Index> area_light;
   description::FloatParameter alpha{1, {}};
   std::optional<description::Index> inside_medium;  ///< into SceneDescription::media
-  std::size_t uv_set = 0;                           ///< the TEXCOORD_n that its textures use
-  float tangent_turn = 0;                           ///< radians from the mesh's tangents to those it scatters by
+  std::size_t uv_set = 0;                           ///< its textures use TEXCOORD_n
+  float tangent_turn = 0;                           ///< radians from the mesh's tangents to the direction of anisotropy
 };
 
-/// Builds each material of the file once, when it is first used.
+/// Builds each material of the file once, on its first use.
 class Materials {
  public:
   explicit Materials(Document& document) : document_(document) {}
 
   /// The material of a primitive, by its member "material", or the default material.
   const Surface& of(const Value& primitive);
-  /// The area lights that may light the scene: of materials whose emission is not textured, since textures may be black
-  /// all but a few spots, and which are not unlit.
+  /// The area lights that may illuminate the scene: those of materials that are not unlit and whose emission is not
+  /// textured (a texture may be black except for a few spots).
   const std::vector<description::Index>& lamps() const { return lamps_; }
-  /// The scene's materials of surfaces that are not double-sided.
+  /// Those materials of the scene that are not double-sided.
   const std::set<description::Index>& one_sided() const { return one_sided_; }
 
  private:
   Surface make(const Value& material, bool has_colors);
 
   Document& document_;
-  // By the material's index, -1 for the default, and whether the primitive has vertex colours.
+  // Key: the material's index, -1 for the default, and whether the primitive has vertex colours.
   std::map<std::pair<std::int64_t, bool>, Surface> made_;
   std::vector<description::Index> lamps_;
   std::set<description::Index> one_sided_;

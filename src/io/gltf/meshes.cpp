@@ -36,7 +36,7 @@ Strokes strokes_of(std::uint64_t mode, const std::vector<std::uint32_t>& order) 
   return result;
 }
 
-// The corners of all triangles, three for each, from the vertex order of the modes triangles, strip and fan.
+// The triangles' corners, from the vertex order of the modes triangles, strip and fan.
 std::vector<std::array<std::uint32_t, 3>> triangles_of(std::uint64_t mode, const std::vector<std::uint32_t>& order) {
   std::vector<std::array<std::uint32_t, 3>> result;
   const std::size_t n = order.size();
@@ -72,8 +72,8 @@ std::vector<std::uint32_t> read_order(Document& document, const Value& primitive
   return order;
 }
 
-// The vertices to keep; renumbers `order` accordingly. Keeps all unless only a few are used: primitives may share long
-// accessors of which each uses a small part.
+// Selects the vertices to keep and renumbers `order` accordingly. Keeps all unless only a few are used: primitives may
+// share long accessors and each use only a small part of them.
 std::vector<std::uint32_t> kept_vertices(std::vector<std::uint32_t>& order, std::size_t vertices) {
   std::vector<std::uint32_t> kept;
   if (vertices / 2 <= order.size()) {
@@ -97,7 +97,7 @@ std::vector<V> gather(const Accessor& accessor, const std::vector<std::uint32_t>
   return result;
 }
 
-// An attribute with `components` numbers for each of `count` vertices, if the primitive has it.
+// An attribute with `components` numbers for each of `count` vertices; nullopt if the primitive lacks it.
 std::optional<Accessor> find_attribute(Document& document, const Value& attributes, const std::string& name,
                                        std::size_t components, std::size_t count) {
   const auto reference = attributes.find(name);
@@ -109,7 +109,7 @@ std::optional<Accessor> find_attribute(Document& document, const Value& attribut
   return accessor;
 }
 
-// Colours have an alpha or none (§3.7.2.1).
+// Colours with or without alpha (§3.7.2.1).
 std::vector<glm::vec4> read_colors(Document& document, const Value& attributes, std::size_t count,
                                    const std::vector<std::uint32_t>& vertices) {
   const auto reference = attributes.find("COLOR_0");
@@ -139,7 +139,7 @@ void apply_skin(Document& document, const Value& attributes, std::span<const glm
   skinning.apply(mesh);
 }
 
-// Tangents along u, w the side of the bitangent; averages over the triangles of a vertex.
+// Tangents along u, with w the side of the bitangent; averages over the triangles at each vertex.
 std::vector<glm::vec4> tangents_along_u(const TriangleMesh& mesh) {
   std::vector<Vec3> along_u(mesh.positions.size(), Vec3(0)), along_t = along_u;
   for (const auto& [a, b, c] : mesh.triangles) {
@@ -158,8 +158,8 @@ std::vector<glm::vec4> tangents_along_u(const TriangleMesh& mesh) {
   return result;
 }
 
-// Turns the tangents about the normals, counter-clockwise as seen from outside if w is 1. Tangents that the file does
-// not give are those along u.
+// Rotates the tangents about the normals, counter-clockwise as seen from outside if w is 1. If the file has no
+// tangents, uses those along u.
 void turn_tangents(TriangleMesh& mesh, std::vector<glm::vec4> tangents, float angle) {
   if (angle == 0 || mesh.normals.empty()) return;
   if (tangents.empty() && !mesh.uvs.empty()) tangents = tangents_along_u(mesh);

@@ -11,14 +11,14 @@
 
 namespace lanthorn::gltf {
 
-/// The triangles of a primitive and the vertices that they use; or, without triangles, its points and lines.
+/// The triangles of a primitive with the vertices that they use; or, without triangles, its points and lines.
 struct Primitive {
   description::TriangleMesh mesh;
   Strokes strokes;
 };
 
-/// A deformed primitive with what its surface needs: texture coordinates as (u, 1 - v), tangents. Empty if it shows
-/// nothing (warning). Throws Error.
+/// A deformed primitive with what its surface needs: texture coordinates as (u, 1 - v), tangents. nullopt, with a
+/// warning, if it has nothing to render. Throws Error.
 std::optional<Primitive> read_primitive(Document& document, const Value& primitive, const Surface& surface,
                                         const Deformation& deformation);
 

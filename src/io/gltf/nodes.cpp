@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t most_instances = std::size_t{1} << 24;
 
-// The root nodes of the scene: the one that the member "scene" names, else the first. In a file without scenes, the
+// The root nodes of the scene that the member "scene" names, else of the first scene. In a file without scenes, the
 // nodes without a parent.
 std::vector<std::size_t> root_nodes(Document& document) {
   std::vector<std::size_t> roots;
@@ -22,7 +22,7 @@ std::vector<std::size_t> root_nodes(Document& document) {
   if (chosen || document.count("scenes") > 0) {
     const Value scene = chosen ? document.follow("scenes", *chosen) : document.element("scenes", 0);
     if (document.count("scenes") > 1)
-      document.warn("scenes", scene, "the file has several scenes: only this one is shown");
+      document.warn("scenes", scene, "the file has several scenes: only this one is rendered");
     if (const auto nodes = scene.find_array("nodes"))
       for (std::size_t i = 0; i < nodes->size(); ++i) roots.push_back(document.index("nodes", nodes->element(i)));
     return roots;

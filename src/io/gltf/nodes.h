@@ -9,17 +9,17 @@
 
 namespace lanthorn::gltf {
 
-/// A node of the scene with its transformation.
+/// A node of the scene with its transform to world space.
 struct PlacedNode {
   std::size_t node = 0;  ///< index into "nodes"
   glm::dmat4 to_world{1.0};
 };
 
-/// All nodes of the scene, parents before children. Throws Error for a node that is reached twice.
+/// All nodes of the scene, parents before children. Throws Error if a node is reached twice.
 std::vector<PlacedNode> placed_nodes(Document& document, const Pose& pose);
 
-/// The transformations of a node's mesh: one, or those of EXT_mesh_gpu_instancing. Singular ones (scale 0) are left
-/// out.
+/// The transforms of a node's mesh: one, or those of EXT_mesh_gpu_instancing. Singular transforms (scale 0) are
+/// omitted.
 std::vector<Transform> mesh_places(Document& document, const PlacedNode& placed);
 
 }  // namespace lanthorn::gltf

@@ -58,15 +58,15 @@ Interpolation interpolation_of(const Value& sampler) {
   throw sampler.at("interpolation").error("must be STEP, LINEAR or CUBICSPLINE, not " + in_quotes(name));
 }
 
-// The keys around a time. Before the first and after the last key, both are the same.
+// The keys around a time. Before the first and after the last key, `first` equals `second`.
 struct Keys {
   std::size_t first = 0, second = 0;
-  double fraction = 0;  // of the way from one to the other
+  double fraction = 0;  // of the way from the first to the second
   double span = 0;      // seconds between them
 
   Keys(const Accessor& times, double seconds) {
     const auto time = [&](std::size_t i) { return static_cast<double>(times.number(i, 0)); };
-    std::size_t low = 0, high = times.count();  // times below `low` are not after `seconds`, those from `high` on are
+    std::size_t low = 0, high = times.count();  // times before `low` are <= `seconds`, from `high` on later
     while (low < high) {
       const std::size_t middle = low + (high - low) / 2;
       (time(middle) <= seconds ? low : high) = time(middle) <= seconds ? middle + 1 : middle;
@@ -79,7 +79,7 @@ struct Keys {
   }
 };
 
-// A channel's values: at each key `width` numbers, and as many for the tangents before and after it if it is a spline.
+// A channel's values: `width` numbers per key, and in a spline as many for the tangents before and after it.
 class Track {
  public:
   Track(Document& document, const Value& sampler, std::size_t components, std::size_t elements)
@@ -88,7 +88,7 @@ class Track {
         interpolation_(interpolation_of(sampler)),
         components_(components),
         elements_(elements) {
-    if (times_.count() == 0) throw sampler.at("input").error("an animation needs a key at least");
+    if (times_.count() == 0) throw sampler.at("input").error("an animation needs at least one key");
     const std::size_t needed = elements * (interpolation_ == Interpolation::cubic_spline ? 3 : 1);
     if (needed == 0 || values_.count() % needed != 0 || values_.count() / needed != times_.count())
       throw sampler.at("output").error("has " + std::to_string(values_.count()) + " elements, but " +
@@ -120,7 +120,7 @@ class Track {
         result.push_back(static_cast<double>(values_.number((key * parts + part) * elements_ + e, c)));
     return result;
   }
-  // Appendix C.5.
+  // Cubic spline interpolation (appendix C.5).
   Numbers spline(const Keys& keys) const {
     const Numbers a = value(keys.first, 1, 3), leaving = value(keys.first, 2, 3);
     const Numbers b = value(keys.second, 1, 3), arriving = value(keys.second, 0, 3);
@@ -152,11 +152,11 @@ Pose::Pose(Document& document, std::optional<double> seconds) : document_(docume
   if (!seconds && count > 0)
     document.warn(
         "animations", document.root().at("animations"),
-        "animations are not played: objects are at rest; --at shows another time, such as --at 1.5 (seconds)");
+        "animations are not played: objects are in the rest pose; --at selects a time, such as --at 1.5 (seconds)");
   if (!seconds) return;
   if (count > 1)
     document.warn("animations", document.root().at("animations"),
-                  "the file has several animations: the first one is shown");
+                  "the file has several animations: the first one is used");
   animate(document.element("animations", 0), *seconds);
 }
 

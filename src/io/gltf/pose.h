@@ -10,18 +10,18 @@
 
 namespace lanthorn::gltf {
 
-/// The local transformations and morph weights of a file's nodes: at rest, or at a time of its first animation.
+/// The local transforms and morph weights of a file's nodes: at rest, or at a time of the first animation.
 class Pose {
  public:
-  /// At rest without `seconds`. Outside of a channel's keys, its first or last value holds. Throws Error.
+  /// The rest pose without `seconds`. Before and after a channel's keys, its first or last value applies. Throws Error.
   Pose(Document& document, std::optional<double> seconds);
 
   glm::dmat4 local_transform(std::size_t node) const;
-  /// Weights of the targets of the node's mesh, one for each target; those that the file does not give are 0.
+  /// Weights of the targets of the node's mesh, one per target; weights that the file omits are 0.
   std::vector<float> morph_weights(std::size_t node) const;
 
  private:
-  /// Values that replace those of the node.
+  /// Animated values, which replace those of the node.
   struct Animated {
     std::optional<std::vector<double>> translation, rotation, scale, weights;
   };
@@ -32,7 +32,7 @@ class Pose {
   std::map<std::size_t, Animated> animated_;
 };
 
-/// The matrix of a rotation quaternion (x, y, z, w) of any length, between scale and translation.
+/// Composes scale, rotation (a quaternion x, y, z, w of any length) and translation, applied in this order.
 glm::dmat4 from_parts(const glm::dvec3& translation, const std::vector<double>& rotation, const glm::dvec3& scale);
 
 }  // namespace lanthorn::gltf

@@ -33,8 +33,8 @@ using namespace description;
 
 constexpr std::size_t most_shapes = std::size_t{1} << 22, most_triangles = std::size_t{1} << 29,
                       instance_limit = std::size_t{1} << 24;
-constexpr double bytes_of_instance = 2048;  // in the scene that is built, with its acceleration structures
-// Of meshes that are stored anew for every node, and of points and lines: small files could ask for a lot of them.
+constexpr double bytes_of_instance = 2048;  // in the built scene, including its acceleration structures
+// Limit for geometry that small files could multiply: meshes copied for every node, and points and lines.
 constexpr std::size_t most_made_triangles = std::size_t{1} << 25;
 
 constexpr std::array<std::string_view, 23> extensions_read = {
@@ -44,17 +44,18 @@ constexpr std::array<std::string_view, 23> extensions_read = {
     "KHR_materials_volume", "KHR_mesh_quantization", "KHR_texture_transform", "KHR_materials_anisotropy",
     "KHR_materials_diffuse_transmission", "KHR_materials_sheen", "KHR_materials_unlit", "KHR_materials_iridescence",
     "KHR_meshopt_compression",
-    // Meshes have the materials that are shown without a choice of a variant.
+    // Meshes use the materials that apply without a selected variant.
     "KHR_materials_variants",
-    // A warning is given where it is used.
+    // A warning follows where it is used.
     "KHR_texture_basisu"};
 
 void check_version(const Document& document) {
   const Value asset = document.root().at("asset");
   const std::string version = asset.at("version").text();
-  if (!version.starts_with("2.")) throw asset.at("version").error("only glTF 2 is read, not " + in_quotes(version));
+  if (!version.starts_with("2."))
+    throw asset.at("version").error("only glTF 2 is supported, not " + in_quotes(version));
   if (const auto least = asset.find("minVersion"); least && least->text() != "2.0")
-    throw least->error("only glTF 2.0 is read, not " + in_quotes(least->text()));
+    throw least->error("only glTF 2.0 is supported, not " + in_quotes(least->text()));
 }
 
 void check_extensions(Document& document) {
@@ -79,7 +80,7 @@ class SceneReader {
  public:
   explicit SceneReader(Document& document) : document_(document), materials_(document) {}
 
-  /// What the scene in the document lacks.
+  /// Reads the scene and returns what it lacks.
   StandIns read(const Choice& choice) {
     SceneDescription& scene = document_.scene;
     const Pose pose(document_, choice.seconds);
@@ -101,15 +102,15 @@ class SceneReader {
   }
 
  private:
-  // True if all of the scene is behind the camera, or nearer than viewers show it, as where an exporter has left the
-  // camera at the origin, inside the model; or if all of it is beyond one side of the view.
+  // True if the whole scene is behind the camera or in front of its near plane, as when an exporter has left the camera
+  // at the origin, inside the model; or if it is entirely outside one side of the view.
   bool is_blind(const Camera& camera) const {
     const SceneDescription& scene = document_.scene;
     const Transform to_camera = camera.camera_to_world.start.inverted();
     const auto* lens = std::get_if<PerspectiveCamera>(&camera.node);
     const Vec2 size(scene.view.film.width, scene.view.film.height);
     const Vec2 half = (lens != nullptr ? std::tan(to_radians(lens->fov / 2)) : 1.0f) / std::min(size.x, size.y) * size;
-    // To side * x + half * z and side * y + half * z, or + half of an orthographic camera: negative beyond the side.
+    // Maps to side * x + half * z and side * y + half * z (orthographic: + half), which is negative beyond that side.
     std::vector<Transform> to_sides;
     for (const float side : {-1.0f, 1.0f}) {
       Mat4 to_side(1);
@@ -130,14 +131,14 @@ class SceneReader {
     glm::dmat4 to_world;
   };
 
-  /// Points and lines, until the size of the scene is known.
+  /// Points and lines, kept until the size of the scene is known.
   struct PendingStrokes {
     Shape shape;
     Primitive primitive;
     std::vector<Transform> places;
   };
 
-  // Meshes that are not deformed are stored once, whatever the number of nodes.
+  // Undeformed meshes are stored once, however many nodes use them.
   void use_mesh(const Value& node, const PlacedNode& placed, const Pose& pose) {
     const std::size_t mesh = document_.index("meshes", node.at("mesh"));
     Deformation deformation{pose.morph_weights(placed.node), {}};
@@ -160,7 +161,7 @@ class SceneReader {
       add_mesh(document_.element("meshes", mesh), places, deformation);
   }
 
-  // Of the node's skin: from the mesh's bind pose to the world.
+  // Joint matrices of the node's skin: from the mesh's bind pose to the world.
   std::span<const glm::dmat4> joints_of(const Value& node) {
     const auto reference = node.find("skin");
     if (!reference) return {};
@@ -229,7 +230,7 @@ class SceneReader {
       document_.scene.instances.push_back({index, AnimatedTransform(place), mesh.location()});
   }
 
-  // Viewers draw points and lines about a pixel wide: here they are as thick in a picture of the whole scene.
+  // Viewers draw points and lines about a pixel wide; here their radius is a fixed fraction of the scene's size.
   void add_strokes() {
     constexpr float thickness = 1e-3f;  // radius, as a fraction of the scene's diagonal
     Bounds bounds = bounds_of(document_.scene);
@@ -246,7 +247,7 @@ class SceneReader {
       }
     if (!strokes_.empty())
       document_.warn("strokes", document_.root(),
-                     "points and lines have no size in the file: they are a thousandth of the scene thick");
+                     "points and lines have no size in the file: their radius is a thousandth of the scene's size");
   }
 
   void add_shape(Shape shape, const Transform& place) {
@@ -269,7 +270,7 @@ class SceneReader {
                             " triangles");
   }
 
-  // What users call the cameras: by the names of their nodes, or else of their own, or else by their numbers.
+  // Names of the cameras for users: those of their nodes, or else their own, or else their numbers.
   std::vector<std::string> camera_names() const {
     std::vector<std::string> names;
     for (std::size_t i = 0; i < cameras_.size(); ++i)
@@ -350,7 +351,7 @@ class SceneReader {
     return {.fov = shorter * 180 / pi};
   }
 
-  // Of the film: its longer side keeps its number of pixels.
+  // Sets the film's aspect ratio; its longer side keeps its number of pixels.
   void set_aspect(const Value& place, float aspect) {
     if (!(aspect >= 1e-3f && aspect <= 1e3f)) throw place.error("the aspect ratio must lie between 1/1000 and 1000");
     Film& film = document_.scene.view.film;
@@ -372,7 +373,7 @@ class SceneReader {
     const float intensity = source.number("intensity", 1);
     if (!(intensity >= 0) || std::min({colour.x, colour.y, colour.z}) < 0)
       throw source.error("intensity and color must not be negative");
-    if (!(intensity * max_component(colour) > 0)) return;                             // it is off
+    if (!(intensity * max_component(colour) > 0)) return;                             // the light is off
     const Emission emission{RgbSpectrum{{colour.x, colour.y, colour.z}}, intensity};  // lm/sr or lx
     Light light;
     light.location = source.location();
@@ -391,7 +392,8 @@ class SceneReader {
     } else {
       throw source.at("type").error("must be point, spot or directional, not " + in_quotes(type));
     }
-    if (source.find("range")) document_.warn("range", source, "the range of lights is ignored: they reach everywhere");
+    if (source.find("range"))
+      document_.warn("range", source, "the range of lights is ignored: they reach any distance");
     light.light_to_world = Transform(to_world);
     if (light.light_to_world.is_singular()) throw reference.error("the light's node has a singular transformation");
     document_.scene.lights.push_back(std::move(light));
@@ -415,11 +417,11 @@ class SceneReader {
 
   Document& document_;
   Materials materials_;
-  std::map<std::size_t, glm::dmat4> to_world_;  // of the nodes in the scene
+  std::map<std::size_t, glm::dmat4> to_world_;  // for the nodes in the scene
   std::map<std::size_t, std::vector<Transform>> mesh_uses_;
   std::vector<PendingStrokes> strokes_;
   std::vector<PlacedCamera> cameras_;
-  float near_ = 0;  ///< of the camera, metres: viewers show nothing that is nearer
+  float near_ = 0;  ///< near plane of the camera, metres
   std::map<std::size_t, std::vector<glm::dmat4>> skins_;
   std::size_t triangles_ = 0, made_triangles_ = 0, shapes_ = 0, instances_ = 0;
 };

@@ -15,16 +15,16 @@ namespace lanthorn::gltf {
 
 class Document;
 
-/// What of a file is read.
+/// Options that select what is read from a file.
 struct Choice {
-  std::optional<double> seconds{};  ///< into the first animation; none: at rest
-  std::string camera{};             ///< its name, or that of its node, or its number from 1 on; empty: the first one
+  std::optional<double> seconds{};  ///< into the first animation; nullopt: the rest pose
+  std::string camera{};             ///< its name, that of its node, or its number starting at 1; empty: the first one
 };
 
-/// A glTF file that is read once, for descriptions of several moments.
+/// A glTF file that is parsed once, for descriptions at several times.
 class File {
  public:
-  /// As `read`. The bytes must outlive it.
+  /// As `read`. The bytes must outlive this object.
   File(std::string_view bytes, std::filesystem::path folder, const std::string& name, FileReader read_file,
        const FileAccess* access = nullptr);
   ~File();
@@ -39,10 +39,10 @@ class File {
   bool has_been_read_ = false;
 };
 
-/// Reads a glTF 2.0 file, text or binary (distinguished by content). Relative URIs start at `folder`. Messages call the
-/// file `name`. Other files are read through `read_file` only. If they are on disk, `access` tells which are missing:
-/// these are named together, or left out if it says so. Throws Error at FILE#POINTER (a JSON pointer), for JSON syntax
-/// errors with line and column.
+/// Reads a glTF 2.0 file, text or binary (distinguished by content). Relative URIs are resolved in `folder`. Messages
+/// call the file `name`. Other files are read only through `read_file`. If they are on disk, `access` determines which
+/// ones are missing: a single Error names them all, or they are skipped if `access` says so. Throws Error at
+/// FILE#POINTER (a JSON pointer), with line and column for JSON syntax errors.
 ModelFile read(std::string_view bytes, std::filesystem::path folder, const std::string& name, FileReader read_file,
                const Choice& choice = {}, const FileAccess* access = nullptr);
 

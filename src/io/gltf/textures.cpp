@@ -39,13 +39,14 @@ void read_sampler(const Document& document, const Value& texture, ImageTexture& 
   if (sampler.integer("magFilter", 0) == nearest) image.filter = ImageFilter::point;
 }
 
-// Some files name KTX2 images without saying the extension.
+// Some files refer to KTX2 images without declaring the extension.
 bool is_ktx2(const Value& image) {
   const auto uri = image.find("uri");
   return image.text("mimeType", "") == "image/ktx2" || (uri && uri->text().ends_with(".ktx2"));
 }
 
-// The image of a texture: "source", or that of an extension for another format. Empty if it cannot be read (warning).
+// The image of a texture: "source", or the image of an extension for another format. nullopt, with a warning, if it is
+// unsupported.
 std::optional<Value> find_image(Document& document, const Value& texture) {
   const auto image_of = [&](const std::optional<Value>& owner) -> std::optional<Value> {
     const auto source = owner ? owner->find("source") : std::nullopt;
@@ -58,7 +59,7 @@ std::optional<Value> find_image(Document& document, const Value& texture) {
   const std::optional<Value> basis = plain ? plain : image_of(texture.extension("KHR_texture_basisu"));
   if (!basis) {
     document.warn("texture source", texture,
-                  "the texture has no image in PNG, JPEG or WebP format: a neutral value stands in");
+                  "the texture has no image in PNG, JPEG or WebP format: a neutral value replaces it");
     return {};
   }
   const auto uri = basis->find("uri");
@@ -66,13 +67,13 @@ std::optional<Value> find_image(Document& document, const Value& texture) {
   document.warn("KHR_texture_basisu", texture,
                 "KHR_texture_basisu: KTX2 images such as " +
                     (is_file ? file_in_quotes(uri->text()) : basis->location().file) +
-                    " cannot be read: neutral values stand in for textures without another image. Convert the file "
+                    " are not supported: neutral values replace textures without another image. Convert the file "
                     "with \"gltf-transform ktxdecompress IN OUT\" (of npm's @gltf-transform/cli and Khronos' "
                     "KTX-Software)");
   return {};
 }
 
-// Returns false if the image is in a missing file that is left out.
+// Returns false if the image's file is missing and skipped.
 bool read_image(Document& document, const Value& image, ImageTexture& texture) {
   const auto uri = image.find("uri");
   if (!uri || uri->text().starts_with("data:"))
@@ -81,8 +82,8 @@ bool read_image(Document& document, const Value& image, ImageTexture& texture) {
   return !document.leaves_out(texture.filename);
 }
 
-// (u', v') = T R S (u, v) in glTF's coordinates, whose v runs down the image, with the conversions between v and t
-// before and after it. A positive angle rotates the coordinates counter-clockwise in the image.
+// (u', v') = T R S (u, v) in glTF's coordinates, whose v points down the image, converted from and to t = 1 - v. A
+// positive angle rotates the coordinates counter-clockwise in the image.
 UvMapping mapping(const Value* transform) {
   if (transform == nullptr) return {};
   const auto pair = [&](std::string_view key, float otherwise) {

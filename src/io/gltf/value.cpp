@@ -82,10 +82,10 @@ std::uint64_t Value::integer(std::uint64_t largest) const {
   const bool whole = json_->is_number_unsigned() ||
                      (json_->is_number_float() && json_->get<double>() >= 0 && json_->get<double>() < 0x1p53 &&
                       json_->get<double>() == std::floor(json_->get<double>()));
-  if (!whole) throw error("must be a whole number, not negative");
+  if (!whole) throw error("must be a non-negative whole number");
   const std::uint64_t value =
       json_->is_number_unsigned() ? json_->get<std::uint64_t>() : static_cast<std::uint64_t>(json_->get<double>());
-  if (value > largest) throw error("is too large: " + std::to_string(largest) + " is the most");
+  if (value > largest) throw error("is too large: the maximum is " + std::to_string(largest));
   return value;
 }
 

@@ -14,7 +14,7 @@
 
 namespace lanthorn::gltf {
 
-/// A value of a JSON file together with its place. A getter that finds a value of another type throws an Error at
+/// A value of a JSON file together with its location. A getter that finds a value of another type throws an Error at
 /// FILE#POINTER, where POINTER is a JSON pointer (RFC 6901, §6). Refers to the parsed file and its name.
 class Value {
  public:
@@ -24,26 +24,26 @@ class Value {
   bool is_object() const { return json_->is_object(); }
   const std::string& pointer() const { return pointer_; }
   SourceLocation location() const { return {*file_ + "#" + pointer_}; }
-  /// An error at this value.
+  /// Makes an error located at this value.
   Error error(std::string message) const { return {location(), std::move(message)}; }
 
-  /// The member `key` of this object, if it has one.
+  /// The member `key` of this object; nullopt if it is missing.
   std::optional<Value> find(std::string_view key) const;
-  /// As `find`; a missing member is an error.
+  /// As `find`, but a missing member is an error.
   Value at(std::string_view key) const;
-  /// The member `key`, an array of any length. Empty if it is missing.
+  /// The member `key`, an array of any length; nullopt if it is missing.
   std::optional<Value> find_array(std::string_view key) const;
   /// Number of elements; an error unless this is an array.
   std::size_t size() const;
   /// Element of this array; `i` must be in range.
   Value element(std::size_t i) const;
-  /// The member EXTENSION of the member "extensions".
+  /// The member `name` of the member "extensions".
   std::optional<Value> extension(std::string_view name) const;
 
   float number() const;  ///< finite
   bool boolean() const;
   const std::string& text() const;
-  /// A whole number of at most `largest`.
+  /// A non-negative whole number, at most `largest`.
   std::uint64_t integer(std::uint64_t largest = std::numeric_limits<std::int64_t>::max()) const;
   /// An array of exactly `count` numbers.
   std::vector<float> numbers(std::size_t count) const;

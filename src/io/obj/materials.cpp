@@ -27,17 +27,17 @@ struct Source {
   int illumination = 2;
   std::optional<ImageTexture> map_kd, map_ks, map_ke, map_d, map_pr, map_pm, norm, bump;
   float bump_multiplier = 1;
-  bool lost_colours = false, lost_emission = false;  ///< their images are missing and left out
+  bool lost_colours = false, lost_emission = false;  ///< the image is missing and skipped
   std::map<std::string, File> files;
 };
 
 bool is_black(const Rgb& c) { return c.r == 0 && c.g == 0 && c.b == 0; }
 
-// GGX width of about the same highlight as Blinn's exponent: alpha^2 = 2 / (n + 2) (Walter et al. 2007, §5.2); its
-// square root is the roughness.
+// Roughness whose GGX alpha gives about the same highlight as Blinn's exponent: alpha^2 = 2 / (n + 2) (Walter et al.
+// 2007, §5.2), roughness = sqrt(alpha).
 float roughness_of(float exponent) { return std::sqrt(std::sqrt(2 / (std::max(exponent, 0.0f) + 2))); }
-// Blender, from 3.1 on, writes the exponent 1000 (1 - roughness)^2, and in map_Ns the roughness itself, in map_refl the
-// metalness.
+// Since 3.1, Blender writes the exponent as 1000 (1 - roughness)^2, and stores the roughness itself in map_Ns and the
+// metalness in map_refl.
 float roughness_by_blender(float exponent) { return 1 - std::sqrt(std::clamp(exponent / 1000, 0.0f, 1.0f)); }
 constexpr std::string_view start_by_blender = "# Blender ";
 bool has_blender_version(std::string_view text) {
@@ -75,11 +75,11 @@ class MaterialFile {
         current->location = words_.location(key);
         current->name = words_.rest().text;
         if (current->name.empty())
-          warn_("mtl name", words_.location(), "the material has no name: usemtl without a name means it");
+          warn_("mtl name", words_.location(), "the material has no name: usemtl without a name refers to it");
       } else if (current) {
         read_line(key, *current);
       } else {
-        throw Error(words_.location(key), in_quotes(key.text) + " stands before the first newmtl");
+        throw Error(words_.location(key), in_quotes(key.text) + " appears before the first newmtl");
       }
     }
     if (current) add(*current);
@@ -89,7 +89,7 @@ class MaterialFile {
   void read_line(const Word& key, Source& m) {
     const std::string name = lower(key.text);
     if (read_colour(name, m) || read_number(name, m) || read_map(name, m)) return;
-    // Ambient light has no meaning in a light simulation; sharpness belongs to reflection maps.
+    // Ambient light has no physical meaning; sharpness belongs to reflection maps.
     if (name == "ka" || name == "map_ka" || name == "sharpness") return;
     warn_("mtl " + std::string(key.text), words_.location(key),
           in_quotes(key.text) + " in materials is not supported: ignored");
@@ -104,7 +104,7 @@ class MaterialFile {
     const Word first = words_.word("a colour");
     if (first.text == "spectral" || first.text == "xyz") {
       warn_("mtl " + std::string(first.text), words_.location(first),
-            "colours given as " + in_quotes(first.text) + " are not supported: ignored");
+            "colours specified by " + in_quotes(first.text) + " are not supported: ignored");
       return true;
     }
     colour->r = colour->g = colour->b = not_negative(first);
@@ -177,15 +177,15 @@ class MaterialFile {
   bool is_left_out(const ImageTexture& image) const {
     return access_ != nullptr && access_->skip_missing && access_->is_missing(image.filename);
   }
-  // What stands in is the neutral value of the image's role: grey colours and no emission, else what there is without
-  // it.
+  // A lost image is replaced by the neutral value of its role: grey colours and no emission; otherwise it has no
+  // effect.
   static void lose(std::optional<ImageTexture>& image, Source& m) {
     image.reset();
     m.lost_colours = m.lost_colours || &image == &m.map_kd;
     m.lost_emission = m.lost_emission || &image == &m.map_ke;
   }
 
-  // Options, then a file name that may contain blanks. `multiplier`: of a bump map, else null.
+  // Reads options, then a file name that may contain blanks. `multiplier`: for bump maps, else null.
   ImageTexture read_image(Source& m, float* multiplier) {
     ImageTexture image;
     Word word = words_.word("a file name");
@@ -205,7 +205,7 @@ class MaterialFile {
     return image;
   }
 
-  // The word after the option and its arguments.
+  // Reads the option's arguments and returns the word after them.
   Word read_option(const Word& option, ImageTexture& image, float* multiplier) {
     const std::string_view name = option.text.substr(1);
     if (name == "s" || name == "o") {
@@ -252,13 +252,13 @@ class MaterialFile {
   SpectrumParameter add_colour(const Source& m, const Rgb& colour, const std::optional<ImageTexture>& map) {
     if (!map) return {RgbSpectrum{colour}, {}};
     ImageTexture image = *map;
-    // Many files leave the colour black beside a map.
+    // Many files leave the colour black if there is a map.
     if (!is_black(colour)) image.tint = colour;
     scene_.spectrum_textures.push_back({image, m.location});
     return {0.0f, static_cast<Index>(scene_.spectrum_textures.size() - 1)};
   }
 
-  // What bump maps are of, normals or heights, their colours tell. Heights are metres, as three.js has them.
+  // Whether an image holds normals or heights is decided by its colours. Heights are metres, as in three.js.
   void add_relief(const Source& m, MetallicRoughness& material) {
     const std::optional<ImageTexture>& image = m.norm ? m.norm : m.bump;
     if (!image) return;
@@ -273,7 +273,7 @@ class MaterialFile {
     material.normal_map = map;
   }
 
-  // Exporters leave the filter black that they do not use.
+  // Exporters leave an unused filter black.
   static DielectricMaterial glass(const Source& m, const SpectrumValue& eta) {
     DielectricMaterial result{eta, {{0, {}}, {0, {}}, false}};
     const Rgb filter{std::min(m.tf.r, 1.0f), std::min(m.tf.g, 1.0f), std::min(m.tf.b, 1.0f)};
@@ -281,7 +281,7 @@ class MaterialFile {
     return result;
   }
 
-  // Where the colours' picture is lost: half of the factor that it would have had, or grey.
+  // If the colours' image is lost: half of the factor that it would have had, or grey.
   SpectrumParameter add_base_color(const Source& m) {
     const Rgb half = 0.5f * (is_black(m.kd) ? Rgb{1, 1, 1} : m.kd);
     return add_colour(m, m.lost_colours ? half : m.kd, m.map_kd);
@@ -289,7 +289,7 @@ class MaterialFile {
 
   Index add_material_of(const Source& m) {
     const bool physical = m.roughness || m.metallic || m.map_pr || m.map_pm;
-    // Blender writes 9 for all that fades by `d`, with an index that every material has.
+    // Blender writes illum 9 for everything that fades by `d`, and an index for every material.
     const bool fades = m.illumination == 9 && (m.opacity.value_or(1) < 1 || m.map_d);
     const bool refracts = m.illumination == 6 || m.illumination == 7 ||
                           ((m.illumination == 4 || m.illumination == 9) && !fades && m.index.value_or(1) > 1);
@@ -305,7 +305,7 @@ class MaterialFile {
                                         .roughness = {{0, {}}, {0, {}}, false}});
     const bool is_dull = (is_black(m.ks) && !m.map_ks) || m.illumination < 2;
     if (!physical && is_dull) return add_node(m, material, DiffuseMaterial{material.base_color});
-    // Ks counts as white: its magnitude means little.
+    // Ks is treated as white: its magnitude is unreliable.
     if (m.map_ks) material.specular_color = add_colour(m, {1, 1, 1}, m.map_ks);
     const float exponent = m.exponent.value_or(0);
     const float by_exponent = by_blender_ ? roughness_by_blender(exponent) : roughness_of(exponent);
@@ -328,14 +328,14 @@ class MaterialFile {
     return static_cast<Index>(scene_.materials.size() - 1);
   }
 
-  // Without map_d, the alpha of map_Kd, by which most programs cut out leaves and fences. Blender's files name it as
-  // map_d, too, where it counts; elsewhere it often is another mask, such as that of a glow.
+  // Without map_d, uses the alpha of map_Kd, with which most programs cut out leaves and fences. Blender's files repeat
+  // such an image as map_d; in other files the alpha is often a different mask, such as one for emission.
   FloatParameter alpha_of(const Source& m, float opacity) {
     if (!m.map_kd || names_alpha_) return {opacity, {}};
     ImageTexture image = *m.map_kd;
     image.channel = 3;
     image.scale = opacity;
-    return add_float(m, image, image.encoding);  // as the colours: the image is decoded once; alpha is linear anyway
+    return add_float(m, image, image.encoding);  // as for colours of the image: decoded once; alpha is linear
   }
 
   void add(const Source& m) {
@@ -346,7 +346,8 @@ class MaterialFile {
     const float opacity = std::clamp(m.opacity.value_or(1), 0.0f, 1.0f);
     if (opacity == 0 && !is_glass && !m.map_d)
       warn_("mtl d", m.location,
-            "material " + in_quotes(m.name) + " would be invisible by \"d\" or \"Tr\", most often by mistake: opaque");
+            "material " + in_quotes(m.name) +
+                " would be invisible because of \"d\" or \"Tr\", usually a mistake: it is opaque");
     if (m.map_d)
       surface.alpha = add_float(m, *m.map_d, Encoding::linear);
     else if (!is_glass)
@@ -359,12 +360,13 @@ class MaterialFile {
       scene_.area_lights.push_back(light);
     }
     if (!materials_.emplace(m.name, surface).second)
-      warn_("mtl twice", m.location, "material " + in_quotes(m.name) + " is defined twice: the first one counts");
+      warn_("mtl twice", m.location,
+            "material " + in_quotes(m.name) + " is defined twice: the first definition is used");
   }
 
   Words words_;
-  bool names_alpha_;  // by map_d, where the alpha of a picture counts: Blender does
-  bool by_blender_;   // from 3.1 on
+  bool names_alpha_;  // Blender's files name an image as map_d if its alpha is opacity
+  bool by_blender_;   // since 3.1
   const std::filesystem::path& folder_;
   const FileAccess* access_;
   SceneDescription& scene_;

@@ -14,7 +14,7 @@
 
 namespace lanthorn::obj {
 
-/// Adds a warning, unless there is one with its key.
+/// Adds a warning, unless there is one with this key.
 using Warn = std::function<void(const std::string& key, const SourceLocation& place, const std::string& message)>;
 
 /// The properties that a material gives to its faces.
@@ -22,18 +22,18 @@ struct Surface {
   description::Index material = 0;
   std::optional<description::Index> area_light;
   description::FloatParameter alpha{1, {}};
-  std::map<std::string, description::File> files;  ///< its images, by the names in the MTL file
+  std::map<std::string, description::File> files;  ///< its images, by their names in the MTL file
 };
 using Materials = std::unordered_map<std::string, Surface>;
 
-/// Reads an MTL file into the scene and adds new materials to `materials`. Their images become files of the scene where
-/// faces use them: those of others may be missing. Relative file names start at `folder`.
-/// `access`: to the images, if they are on disk. Throws Error with line and column.
+/// Reads an MTL file into the scene and adds new materials to `materials`. Images become files of the scene only where
+/// faces use their material: unused ones may be missing. Relative file names are resolved in `folder`. `access`: for
+/// the images, if they are on disk. Throws Error with line and column.
 void read_materials(std::string_view text, const std::filesystem::path& folder, const std::string& name,
                     const FileAccess* access, SceneDescription& scene, Materials& materials, const Warn& warn);
 
-/// Multiplies the diffuse reflectance of all materials, and that of metals, by the colours of vertices, which are 1 on
-/// meshes without them.
+/// Multiplies the diffuse reflectance of all materials, and the reflectance of metals, by the vertex colours, which are
+/// 1 on meshes without any.
 void add_vertex_colors(SceneDescription& scene);
 
 }  // namespace lanthorn::obj

@@ -15,7 +15,7 @@ using Triangle = std::array<std::uint32_t, 3>;
 // Ear clipping takes time proportional to the cube of the number of corners.
 constexpr std::size_t most_corners = 1000;
 
-// The polygon in its plane, counter-clockwise.
+// Projects the polygon into its plane, counter-clockwise.
 std::vector<glm::dvec2> flattened(const std::vector<Point>& corners, const glm::dvec3& normal) {
   const glm::dvec3 n = glm::abs(normal);
   const int z = n.x > n.y && n.x > n.z ? 0 : n.y > n.z ? 1 : 2;
@@ -83,7 +83,7 @@ std::vector<Triangle> triangulate(const std::vector<Point>& corners, std::uint64
     i %= m;
     result.push_back({left[(i + m - 1) % m], left[i], left[(i + 1) % m]});
     left.erase(left.begin() + static_cast<std::ptrdiff_t>(i));
-    ++i;  // continues with the next corner but one, which avoids slivers
+    ++i;  // skips a corner, which avoids slivers
     tried = 0;
   }
   result.push_back({left[0], left[1], left[2]});

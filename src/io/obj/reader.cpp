@@ -33,7 +33,7 @@ struct CornerHash {
   }
 };
 
-/// The faces of one material that have texture coordinates and normals alike.
+/// The faces of one material that agree in having texture coordinates and normals or not.
 struct Part {
   TriangleMesh mesh;
   std::unordered_map<Corner, std::uint32_t, CornerHash> vertices;
@@ -57,7 +57,7 @@ class Reader {
     std::vector<Index> lamps;
     for (Index i = 0; i < scene_.area_lights.size(); ++i)
       if (!scene_.area_lights[i].radiance.texture) lamps.push_back(i);
-    // Faces are wound as seen from their front: an open box is better seen from inside.
+    // Faces are wound as seen from their front: an open box is best viewed from inside.
     std::set<Index> materials;
     for (Index i = 0; i < scene_.materials.size(); ++i) materials.insert(materials.end(), i);
     const bool is_lit = is_lit_by(scene_, lamps);
@@ -68,11 +68,11 @@ class Reader {
   struct PartKey {
     std::string material;
     bool has_uvs = false, has_normals = false;
-    // clang-tidy 14 takes the comparison's 0 for a pointer.
+    // clang-tidy 14 mistakes the comparison's 0 for a pointer.
     friend auto operator<=>(const PartKey&, const PartKey&) = default;  // NOLINT(modernize-use-nullptr)
   };
 
-  /// Faces without normals of one material that follow each other.
+  /// Consecutive faces of one material without normals.
   struct BareRun {
     std::string material;
     std::size_t first_face = 0;
@@ -106,7 +106,7 @@ class Reader {
     }
   }
 
-  // Three numbers after the position are a colour in sRGB, as scanners and sculpting programs write it; a single one is
+  // Three numbers after the position are an sRGB colour, as written by scanners and sculpting programs; a single one is
   // the weight of a rational curve.
   void read_vertex(const Word& key) {
     positions_.push_back(vec3());
@@ -115,7 +115,7 @@ class Reader {
       color = Vec3(component(*r), component(*g), component(*b));
       if (!std::isfinite(color->x + color->y + color->z)) {
         color.reset();
-        warn("vertex colours", words_.location(key), "vertex colours that are no numbers count as white");
+        warn("vertex colours", words_.location(key), "vertex colours that are not numbers are read as white");
       }
     }
     if (!color && colors_.empty()) return;
@@ -125,7 +125,7 @@ class Reader {
     largest_color_ = std::max({largest_color_, color->x, color->y, color->z});
   }
 
-  // NaN if the word is no number.
+  // NaN if the word is not a number.
   static float component(const Word& word) {
     float value = 0;
     const char* const end = word.text.data() + word.text.size();
@@ -153,7 +153,7 @@ class Reader {
           smoothing_groups_.try_emplace(std::string(word->text), smoothing_groups_.size() + 1).first->second;
   }
 
-  // One file, whose name may have blanks in it, or several between blanks.
+  // Reads one file whose name may contain blanks, or several separated by blanks.
   void read_libraries() {
     constexpr std::string_view blanks = " \t";
     const Word all = words_.rest();
@@ -177,14 +177,14 @@ class Reader {
     warn("mtllib " + problem.message, problem.where, problem.message + ": its materials are left out");
   }
 
-  // The error of a file that cannot be read.
+  // Returns the error if the file cannot be read.
   std::optional<Error> read_library(const Word& file) {
     std::string called(file.text);
     std::replace(called.begin(), called.end(), '\\', '/');
     const std::filesystem::path path = find_file(folder_, called, access_, [&](const std::string& message) {
       warn("elsewhere", words_.location(file), message);
     });
-    if (libraries_.contains(path)) return {};  // read before
+    if (libraries_.contains(path)) return {};  // already read
     const std::string name = path.string();
     scene_.files.try_emplace(called, File{path, {}, words_.location(file)});
     std::string text;
@@ -202,7 +202,7 @@ class Reader {
     return {};
   }
 
-  // A number of a corner: from 1 on, or backwards from -1.
+  // A number of a corner: counted from 1, or backwards from -1.
   std::int64_t number(const char*& at, const char* end, const Word& word) const {
     std::int64_t i = 0;
     const auto [next, error] = std::from_chars(at, end, i);
@@ -213,19 +213,19 @@ class Reader {
     return i;
   }
 
-  // The index of an element of which there are `count`.
+  // The index of one of `count` elements.
   std::uint32_t index(std::int64_t i, std::size_t count, const Word& word, const char* what) const {
     const auto n = static_cast<std::int64_t>(count);
     if (i == 0 || i > n || i < -n)
-      throw Error(words_.location(word), std::string("there is no ") + what + " " + std::to_string(i) +
-                                             " here: " + std::to_string(count) + " come before this line");
+      throw Error(words_.location(word), std::string("there is no ") + what + " " + std::to_string(i) + " here: only " +
+                                             std::to_string(count) + " precede this line");
     return static_cast<std::uint32_t>(i > 0 ? i - 1 : n + i);
   }
 
-  // Of texture coordinates or normals, which some files name without having any.
+  // An index of texture coordinates or normals, which some files refer to without having any.
   std::uint32_t attribute(std::int64_t i, std::size_t count, const Word& word, const char* what) {
     if (count > 0) return index(i, count, word, what);
-    warn(what, words_.location(word), std::string("faces name a ") + what + ", but none comes before them: ignored");
+    warn(what, words_.location(word), std::string("faces refer to a ") + what + ", but none precedes them: ignored");
     return none;
   }
 
@@ -263,8 +263,9 @@ class Reader {
       bare_runs_.push_back({material_, bare_faces_.size() - 1, key});
   }
 
-  // Faces without normals follow when all smoothing groups are known. Files without groups are mostly scans and models
-  // of textbooks, of many small triangles, or boxes and rooms: by angle, the former are smooth and the latter sharp.
+  // Faces without normals are added once all smoothing groups are known. Files without groups are mostly scans and
+  // standard models of many small triangles, or boxes and rooms: smoothing by angle keeps the former smooth and the
+  // latter sharp.
   void add_bare_faces() {
     for (Corner& c : bare_corners_) c.vn = none;
     if (!names_smoothing_groups_)
@@ -285,7 +286,7 @@ class Reader {
     return std::all_of(corners_.begin(), corners_.end(), [&](const Corner& c) { return c.*member != none; });
   }
 
-  // The face of the current corners, of the current material.
+  // Adds the current corners as a face of the current material.
   void add_face(const Word& key) {
     const bool has_uvs = all_have(&Corner::vt), has_normals = all_have(&Corner::vn);
     Part& part = part_for(has_uvs, has_normals, key);
@@ -348,7 +349,7 @@ class Reader {
     return it->second;
   }
 
-  // From 0 to 1, or to 255 in files that have larger numbers.
+  // Colours range from 0 to 1, or to 255 in files with larger numbers.
   void make_colors_linear(std::vector<glm::vec4>& colors) const {
     const float scale = largest_color_ > 1 ? 1 / 255.0f : 1.0f;
     for (glm::vec4& color : colors)
@@ -386,7 +387,7 @@ class Reader {
                                       library + " of the lines \"newmtl " + material + "\" and " + map
                                 : "add the line " + map + " to its material";
     warn("texture beside", {scene_.filename, 1, 1},
-         "no material has a picture, but " + file_in_quotes(*picture) + " lies beside the file: to show it, " + how);
+         "no material has a picture, but " + file_in_quotes(*picture) + " lies beside the file: to use it, " + how);
   }
 
   Words words_;
@@ -400,13 +401,13 @@ class Reader {
   std::vector<Point> positions_;
   std::vector<Normal> normals_;
   std::vector<Vec2> uvs_;
-  std::vector<Vec3> colors_;  // one per position; empty before the first that has one
-  float largest_color_ = 0;   // component of a colour
+  std::vector<Vec3> colors_;  // one per position; empty until one has a colour
+  float largest_color_ = 0;   // largest colour component
   std::string material_;      // current
   std::map<std::string, std::uint32_t> smoothing_groups_;
   std::uint32_t smoothing_group_ = flat_group;  // current
   bool names_smoothing_groups_ = false, has_images_ = false;
-  // Faces without normals, in the order of the file.
+  // Faces without normals, in file order.
   std::vector<BareFace> bare_faces_;
   std::vector<Corner> bare_corners_;
   std::vector<BareRun> bare_runs_;
@@ -416,7 +417,7 @@ class Reader {
   std::vector<Corner> corners_;
   std::vector<std::uint32_t> vertices_;
   std::vector<Point> polygon_;
-  std::uint64_t tests_left_ = std::uint64_t{1} << 32;  // of polygons' corners, in the whole file
+  std::uint64_t tests_left_ = std::uint64_t{1} << 32;  // remaining corner tests for triangulation, in the whole file
 };
 
 }  // namespace

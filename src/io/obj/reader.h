@@ -11,10 +11,10 @@
 
 namespace lanthorn::obj {
 
-/// Reads a Wavefront OBJ file and the MTL files that it names. Relative file names start at `folder`. Messages call the
-/// file `name`. Other files are read through `read_file` only. If they are on disk, `access` tells which are missing:
-/// images are named together, or left out if it says so; a missing MTL file is a warning. Throws Error with file, line
-/// and column.
+/// Reads a Wavefront OBJ file and the MTL files that it names. Relative file names are resolved in `folder`. Messages
+/// call the file `name`. Other files are read only through `read_file`. If they are on disk, `access` determines which
+/// ones are missing: a single Error names all missing images, or they are skipped if `access` says so; a missing MTL
+/// file causes a warning. Throws Error with file, line and column.
 ModelFile read(std::string_view text, const std::filesystem::path& folder, const std::string& name,
                FileReader read_file, const FileAccess* access = nullptr);
 

@@ -37,10 +37,10 @@ class Smoother {
   }
 
  private:
-  /// The edge from the vertex at hand to a neighbour, as one of the faces there has it.
+  /// An edge from the current vertex to a neighbour, as one of the faces there uses it.
   struct Spoke {
     std::uint32_t neighbour = none;
-    std::size_t corner = 0;  // among those of the vertex
+    std::size_t corner = 0;  // index among the vertex's corners
     bool is_outgoing = false;
   };
 
@@ -48,7 +48,7 @@ class Smoother {
     return std::span(corners_).subspan(face.first, face.count);
   }
 
-  // Unit, or 0 for a face without area.
+  // Unit length, or 0 for a face without area.
   glm::dvec3 normal_of(const BareFace& face) {
     polygon_.clear();
     for (const Corner& c : corners_of(face)) polygon_.push_back(positions_[c.v]);
@@ -83,16 +83,16 @@ class Smoother {
            (group != group_by_angle || agreement(first_corner, second_corner) > cosine);
   }
 
-  // Disjoint sets of corners.
+  // Union-find over the corners.
   std::size_t root(std::size_t i) {
     while (joined_[i] != i) i = joined_[i] = joined_[joined_[i]];
     return i;
   }
 
-  // Joins each face that runs along the edge in one direction to the face in the other whose normal is nearest: sheets
-  // with a back of their own have two of each. Faces back to back show different sides.
+  // Joins each face that traverses the edge in one direction to the face in the other direction whose normal is
+  // nearest: a double-sided sheet has two of each. Faces that are back to back are not joined.
   void join_across(std::span<const Spoke> edge, std::span<const std::size_t> corners) {
-    constexpr std::size_t most_faces = 16;  // more are no surface
+    constexpr std::size_t most_faces = 16;  // more faces do not form a surface
     constexpr double back_to_back = -0.996;
     if (edge.size() > most_faces) return;
     for (const Spoke& a : edge) {
@@ -155,7 +155,7 @@ class Smoother {
   }
 
   bool is_flat(std::size_t face) const {
-    constexpr float tolerance = 1e-4f;  // of unit vectors
+    constexpr float tolerance = 1e-4f;  // for unit vectors
     const Normal n(face_normals_[face]);
     const std::span<const Corner> own = corners_of(faces_[face]);
     return std::all_of(own.begin(), own.end(), [&](const Corner& c) {
@@ -168,9 +168,9 @@ class Smoother {
   std::vector<Corner>& corners_;
   std::vector<Normal>& normals_;
   std::vector<glm::dvec3> face_normals_;
-  std::vector<std::size_t> face_of_;             // of each corner
+  std::vector<std::size_t> face_of_;             // for each corner
   std::vector<std::size_t> starts_, at_vertex_;  // corners by vertex
-  // Of the face or vertex at hand.
+  // Of the current face or vertex.
   std::vector<Point> polygon_;
   std::vector<Spoke> spokes_;
   std::vector<std::size_t> joined_;

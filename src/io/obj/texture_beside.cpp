@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// What follows the model's name, the likeliest first.
+// Suffixes of the model's name, the most likely first.
 constexpr std::array<std::string_view, 12> endings{"_diffuse", "_basecolor", "_base_color", "_albedo",
                                                    "_color",   "_diff",      "_col",        "_d",
                                                    "_texture", "_tex",       "-diffuse",    ""};

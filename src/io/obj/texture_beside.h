@@ -8,8 +8,8 @@
 
 namespace lanthorn::obj {
 
-/// The name of a picture in the model's folder that is called after the model as its colours, such as
-/// MODEL_diffuse.png beside MODEL.obj: many collections ship such pictures without an MTL file that names them.
+/// Finds a picture in the model's folder whose name marks it as the model's colours, such as MODEL_diffuse.png beside
+/// MODEL.obj: many collections ship such pictures without an MTL file that names them.
 std::optional<std::string> texture_beside(const std::filesystem::path& model);
 
 }  // namespace lanthorn::obj

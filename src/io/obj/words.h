@@ -11,25 +11,25 @@
 
 namespace lanthorn::obj {
 
-/// A word and its place in the file.
+/// A word and its location in the file.
 struct Word {
   std::string_view text;
   int line = 0;
   int column = 0;
 };
 
-/// Splits OBJ and MTL files into lines of words. Lines end with a line feed, a carriage return, or both. # starts a
+/// Splits OBJ and MTL files into lines of words. A line feed, a carriage return, or both end a line. # starts a
 /// comment; a backslash at the end of a line joins it with the next one.
 class Words {
  public:
   /// Both must outlive this.
   Words(std::string_view text, const std::string& file);
 
-  /// Goes to the next line that has words and skips the rest of the current one. False at the end of the file.
+  /// Advances to the next line that has words, skipping the rest of the current one. False at the end of the file.
   bool next_line();
-  /// The next word of the current line, if there is one.
+  /// The next word of the current line; nullopt at its end.
   std::optional<Word> find_word();
-  /// As `find_word`; throws Error, saying that `what` is missing.
+  /// As `find_word`, but throws Error, saying that `what` is missing.
   Word word(const char* what);
   /// The rest of the line, including its inner blanks.
   Word rest();
@@ -39,7 +39,7 @@ class Words {
   float number(const Word& word) const;
 
   SourceLocation location(const Word& word) const { return {file_, word.line, word.column}; }
-  /// The current place in the line.
+  /// The current position in the line.
   SourceLocation location() const { return {file_, line_, column()}; }
 
  private:

@@ -23,7 +23,7 @@ namespace {
 
 using description::Index;
 
-// Each `Attribute` copies the defaults of those before it.
+// Each `Attribute` copies all earlier defaults.
 constexpr std::size_t most_defaults = 4096, most_bytes_of_defaults = std::size_t{1} << 18;
 
 Index index_of_last(const auto& vector) { return static_cast<Index>(vector.size() - 1); }
@@ -90,7 +90,7 @@ void Assembler::coord_sys_transform(const std::string& name, Place place) {
     state_.ctm = it->second;
   else
     context_.warn("coordinate system " + name, place,
-                  "there is no coordinate system " + in_quotes(name) + ": the transform stays as it is");
+                  "there is no coordinate system " + in_quotes(name) + ": the transform does not change");
 }
 
 void Assembler::active_transform(Directive& d) {
@@ -120,7 +120,7 @@ Transform Assembler::fixed_transform(const char* thing, Place place) {
 
 void Assembler::push(Block block, Place place) {
   if (saved_.size() >= deepest_nesting)
-    throw Error(place.location(), "blocks are nested more than " + std::to_string(deepest_nesting) + " deep");
+    throw Error(place.location(), "blocks are nested more than " + std::to_string(deepest_nesting) + " levels deep");
   saved_.push_back({state_, block, place});
 }
 
@@ -193,7 +193,7 @@ void Assembler::option(Directive& d) {
 }
 
 void Assembler::world_begin(Place place) {
-  if (in_world_) throw Error(place.location(), "WorldBegin stands here for the second time");
+  if (in_world_) throw Error(place.location(), "this is the second WorldBegin");
   in_world_ = true;
   state_.ctm = {};
   state_.active = {true, true};
@@ -213,7 +213,7 @@ Index Assembler::object_index(const std::string& name, Place place) {
 
 void Assembler::object_begin(const std::string& name, Place place) {
   require_world("ObjectBegin", place);
-  if (current_object_) throw Error(place.location(), "ObjectBegin inside of an object");
+  if (current_object_) throw Error(place.location(), "ObjectBegin inside an object");
   const Index object = object_index(name, place);
   if (object_defined_[object]) throw Error(place.location(), "object " + in_quotes(name) + " is defined twice");
   push(Block::object, place);
@@ -227,11 +227,11 @@ void Assembler::object_end(Place place) {
   current_object_.reset();
 }
 
-// An instance applies the shapes' own transform first: the current transform at their definition, relative to world
-// space.
+// An instance applies the shapes' own transform first: the transform that was current at their definition, relative to
+// world space.
 void Assembler::object_instance(const std::string& name, Place place) {
   require_world("ObjectInstance", place);
-  if (current_object_) throw Error(place.location(), "ObjectInstance inside of an object");
+  if (current_object_) throw Error(place.location(), "ObjectInstance inside an object");
   context_.scene.instances.push_back({object_index(name, place), object_to_world(), place.location()});
 }
 
@@ -385,8 +385,8 @@ bool Assembler::equal_attributes(const description::Shape& a, const description:
          is_same_material(a.material, b.material) && is_same_alpha(a.alpha, b.alpha);
 }
 
-// Fur has one directive per hair. Consecutive hairs with the same attributes become one shape, unless each emits a
-// given power.
+// Fur has one directive per hair. Consecutive hairs with equal attributes become one shape, unless each emits a given
+// power.
 bool Assembler::add_to_last_curves(description::Shape& shape) {
   constexpr std::size_t most_points = std::size_t{1} << 30;
   auto& curves = std::get<description::Curves>(shape.geometry);
@@ -448,7 +448,7 @@ void Assembler::check_names_used() const {
                   "medium " + in_quotes(context_.scene.media[i].name) + " is not defined");
 }
 
-// Named materials come first so that anonymous mixes find them all; named mixes find the ones before them.
+// Named materials come first so that anonymous mixes find them all; named mixes find only earlier ones.
 void Assembler::build_materials() {
   std::vector<Index> index_of_declaration(materials_.size());
   const auto build = [&](std::size_t i) {
@@ -497,7 +497,7 @@ void Assembler::resolve_references(description::Shape& shape) {
   const auto& material = context_.scene.materials[shape.material].node;
   if (shape.area_light && std::holds_alternative<description::InterfaceMaterial>(material)) {
     context_.warn("interface emitter", shape.location,
-                  "a shape of material \"interface\" cannot give off light: it is dark");
+                  "a shape of material \"interface\" cannot emit light: its emission is ignored");
     shape.area_light.reset();
   }
 }
@@ -508,8 +508,8 @@ void Assembler::resolve_shapes() {
     for (description::Shape& shape : object.shapes) resolve_references(shape);
 }
 
-// Files that are read from here on, or when the scene is built: meshes, images, grids. Those that have been missing
-// before are reported here, too.
+// Reports missing files among those read from here on or when the scene is built (meshes, images, grids), together with
+// those found missing before.
 void Assembler::report_missing_files() {
   if (context_.access == nullptr) return;
   context_.report_missing();
@@ -518,8 +518,8 @@ void Assembler::report_missing_files() {
   });
 }
 
-// Refuses meshes that are too large together, before any of them is read. Files that cannot be read are reported when
-// they are.
+// Rejects meshes that together are too large, before any of them is read. Unreadable files are reported when they are
+// read.
 void Assembler::expect_ply_files() const {
   if (context_.access == nullptr || pending_plys_.empty()) return;
   constexpr std::uint64_t largest_header = 1u << 16;
@@ -557,7 +557,7 @@ void Assembler::read_ply_files() {
     } catch (const std::bad_alloc&) {
       results[i].problem = std::make_exception_ptr(
           Error(pending_plys_[i].place.location(),
-                "mesh \"" + printable(pending_plys_[i].path.string()) + "\" needs more memory than there is"));
+                "mesh \"" + printable(pending_plys_[i].path.string()) + "\" needs more memory than is available"));
     } catch (...) {
       results[i].problem = std::current_exception();
     }
@@ -574,11 +574,11 @@ void Assembler::read_ply_files() {
   for (description::Object& object : context_.scene.objects) std::erase_if(object.shapes, is_empty);
 }
 
-// The quads of a mesh that has triangles too become a separate shape. It is appended, so that other shapes keep their
-// indices.
+// If a mesh has both triangles and quads, its quads become a separate shape. It is appended, so that other shapes keep
+// their indices.
 void Assembler::place_ply(const PendingPly& pending, PlyMesh&& mesh) {
   for (const std::string& warning : mesh.warnings) {
-    const std::size_t kind = warning.find_first_not_of("0123456789");  // numbers of faces differ
+    const std::size_t kind = warning.find_first_not_of("0123456789");  // ignore leading counts, which differ
     context_.warn(std::string_view(warning).substr(kind), pending.place, pending.path.string() + ": " + warning);
   }
   auto& list = shapes(pending.object);

@@ -39,20 +39,21 @@ struct GraphicsState {
   } defaults;
 };
 
-/// Builds the scene from a pbrt-v4 file's directives: `execute` for each, in file order, then `finish`. Holds the state
-/// that directives change. Throws Error at the directive if it is wrong or in the wrong block.
+/// Builds the scene from a pbrt-v4 file's directives: call `execute` for each, in file order, then `finish`. Holds the
+/// state that directives change. Throws Error at a directive that is invalid or in the wrong block.
 class Assembler {
  public:
   explicit Assembler(Context& context, MeshObserver observer = {});
 
   void execute(Directive directive);
-  /// After the last directive, at `place`: resolves names that may be defined after they are used, reads the PLY files.
+  /// Call after the last directive, with its `place`: resolves names that may be defined after their use, and reads the
+  /// PLY files.
   void finish(Place place);
 
  private:
   using Handler = void (Assembler::*)(Directive&);
   static Handler handler(std::string_view directive);
-  /// Directives of the form `Directive "kind" parameters…`, `Directive "name"` and `Directive`.
+  /// Handlers for directives of the form `Directive "kind" parameters…`, `Directive "name"` and `Directive`.
   template <void (Assembler::*call)(const std::string&, Parameters, Place)>
   void with_parameters(Directive& d);
   template <void (Assembler::*call)(const std::string&, Place)>
@@ -61,7 +62,7 @@ class Assembler {
   void alone(Directive& d);
 
   using Change = std::function<Transform(const Transform&)>;
-  /// Replaces the active transforms. Singular transforms are allowed; the things that use them check.
+  /// Changes the active transforms. Singular transforms are allowed here; the directives that use them check.
   void change_transform(const Change& change);
   void look_at(Directive& d);
   void translate_by(Directive& d);
@@ -87,7 +88,7 @@ class Assembler {
   void object_begin(const std::string& name, Place place);
   void object_end(Place place);
   void object_instance(const std::string& name, Place place);
-  /// Around an imported file: its changes of the state do not affect the importing file.
+  /// Bracket an imported file, whose changes of the state do not affect the importing file.
   void begin_import(Place place);
   void end_import(Place place);
   void world_end(Place place);
@@ -97,7 +98,7 @@ class Assembler {
   void pixel_filter(const std::string& kind, Parameters parameters, Place place);
   void sampler(const std::string& kind, Parameters parameters, Place place);
   void integrator(const std::string& kind, Parameters parameters, Place place);
-  void accelerator(Place place);  ///< only its place is checked
+  void accelerator(Place place);  ///< checks only its block
 
   void material(const std::string& kind, Parameters parameters, Place place);
   void make_named_material(const std::string& name, Parameters parameters, Place place);
@@ -119,7 +120,7 @@ class Assembler {
     std::string kind, name;  ///< name: empty if anonymous
     ParameterList parameters;
   };
-  /// The material of a shape: a named one, which may be defined later, or the declaration with this number.
+  /// The material of a shape: a named one, which may be defined later, or an anonymous one by its declaration's number.
   struct MaterialReference {
     std::string name;
     std::size_t declaration = 0;
@@ -147,13 +148,13 @@ class Assembler {
   void pop(Block block, std::string_view directive, Place place);
   std::vector<description::Shape>& shapes(std::optional<description::Index> object);
   description::Index object_index(const std::string& name, Place place);
-  /// Index of a medium, which may be defined later. Empty for the empty name.
+  /// Index of a medium, which may be defined later; nullopt for the empty name.
   std::optional<description::Index> medium_index(const std::string& name, Place place);
   AnimatedTransform object_to_world() const;
   description::Index reference_texture(std::string name, Place place);
   bool equal_attributes(const description::Shape& a, const description::Shape& b) const;
   /// Transforms the curves to the space of their world or object, if the transform scales uniformly. Returns true if
-  /// they were added to the last shape.
+  /// they were merged into the last shape.
   bool add_to_last_curves(description::Shape& shape);
   /// The start transform, for objects that cannot move.
   Transform fixed_transform(const char* thing, Place place);

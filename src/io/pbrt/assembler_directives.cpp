@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Which call of the assembler executes which directive, and the directives that change the current transform.
+// Maps directives to the assembler's functions, and implements those that change the current transform.
 #include <unordered_map>
 #include <utility>
 

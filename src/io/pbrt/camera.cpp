@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// What sees the scene: camera, film, filter.
+// Camera, film and filter.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -15,7 +15,7 @@ namespace {
 
 using namespace description;
 
-// The parameters that the perspective and the orthographic camera share.
+// The parameters that perspective and orthographic cameras share.
 template <class Lens>
 Lens lens(const ParameterList& list) {
   Lens result;
@@ -41,8 +41,8 @@ SphericalCamera spherical(const ParameterList& list) {
 
 constexpr float millimetre = 1e-3f;
 
-// Lines of four numbers: radius of curvature, thickness, index of refraction, diameter of the aperture, in millimetres,
-// from the scene to the film; # comments.
+// Parses lines of four numbers (radius of curvature, thickness, index of refraction, diameter of the aperture, in
+// millimetres), from the scene to the film; # starts a comment.
 std::vector<LensElement> parse_lens(const std::string& bytes, const std::string& file) {
   constexpr std::size_t most_elements = 1000;
   Tokenizer tokens(bytes, &file);
@@ -68,11 +68,11 @@ std::vector<LensElement> parse_lens(const std::string& bytes, const std::string&
   return elements;
 }
 
-// What stands in for a lens whose file is missing: the double Gauss lens of Tronnier (US patent 2673491, 1954), 100 mm
-// in the patent, here of 50 mm, or shorter if it could not focus on a distance (metres) that small.
+// Replaces a missing lens file by Tronnier's double Gauss lens (US patent 2673491, 1954), scaled from the patent's 100
+// mm to 50 mm, or less if it could not otherwise focus as near as `focus_distance` (metres).
 std::vector<LensElement> stand_in_lens(float focus_distance) {
   constexpr float focal_length = 100 * millimetre, wanted = 50 * millimetre;
-  constexpr float nearest = 8;  // focal lengths; 4 at least
+  constexpr float nearest = 8;  // focal lengths; at least 4
   std::vector<LensElement> elements{
       {58.95f, 7.52f, 1.67f, 50.4f}, {169.66f, 0.24f, 1, 50.4f},   {38.55f, 8.05f, 1.67f, 46},
       {81.54f, 6.55f, 1.699f, 46},   {25.5f, 11.41f, 1, 36},       {0, 9, 1, 34.2f},
@@ -98,7 +98,7 @@ RealisticCamera realistic(const ParameterList& list, Context& context) {
     if (e.curvature_radius != 0) continue;
     if (diameter > e.aperture_diameter && list.has("aperturediameter"))
       context.warn("aperturediameter", list.find("aperturediameter")->place,
-                   "\"aperturediameter\" is wider than the stop of the lens: it is as wide as that");
+                   "\"aperturediameter\" is wider than the aperture stop of the lens: it is reduced to the stop");
     e.aperture_diameter = std::min(e.aperture_diameter, diameter);
   }
   if (const Parameter* aperture = list.find("aperture"); aperture && list.get("aperture", "circular") != "circular")
@@ -106,7 +106,7 @@ RealisticCamera realistic(const ParameterList& list, Context& context) {
   return camera;
 }
 
-// Pixel bounds x0, x1, y0, y1 as crop fractions; half a pixel is taken off because ceil(size * fraction) gives the
+// Pixel bounds x0, x1, y0, y1 as crop fractions; half a pixel is subtracted because ceil(size * fraction) yields the
 // bound.
 std::array<float, 4> crop_of_bounds(const std::vector<std::int32_t>& bounds, int width, int height) {
   std::array<float, 4> crop{};
@@ -156,7 +156,7 @@ void read_sensor(const ParameterList& list, Film& film, Context& context) {
     const float largest = positive(list, "maxcomponentvalue", infinity);
     if (largest < std::numeric_limits<float>::max()) film.largest_component = largest;
   }
-  // Parameters without an effect: half floats in the file, and the coordinate system of a G-buffer.
+  // Parameters without effect: half floats in the file, and the coordinate system of a G-buffer.
   for (const std::string_view name : {"savefp16", "coordinatesystem"}) list.find(name);
 }
 
@@ -214,7 +214,7 @@ Camera make_camera(const std::string& kind, const ParameterList& list, Context& 
 }
 
 Film make_film(const std::string& kind, const ParameterList& list, float exposure_time, Context& context) {
-  // The layers of every file contain the channels of a G-buffer.
+  // Every output file contains a G-buffer's channels as layers.
   if (kind != "rgb" && kind != "gbuffer" && kind != "spectral")
     throw context.unknown("film", "Film", kind, list.place());
   Film film;

@@ -58,7 +58,7 @@ void report_unused(const ParameterList& list, Context& context) {
     if (!p.used && list.find(p.name) == &p)
       context.warn(what, p.place, what + " is not used by Lanthorn: ignored");
     else if (list.find(p.name) != &p)
-      context.warn("twice " + what, p.place, what + " is given twice: the last one counts");
+      context.warn("twice " + what, p.place, what + " is given twice: the last value is used");
   }
 }
 

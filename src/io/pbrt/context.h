@@ -21,44 +21,45 @@ namespace lanthorn::pbrt {
 /// State shared by all builders: the scene description, the names defined so far, and access to files.
 struct Context {
   SceneDescription scene;
-  std::filesystem::path folder;  ///< of the scene file: where its relative file names start
+  std::filesystem::path folder;  ///< of the scene file; resolves its relative file names
   FileReader read_file;
-  FindMethod methods = [](const std::string&) { return std::optional<KnownMethod>(); };  ///< knows none
-  const FileAccess* access = nullptr;         ///< to the files that are read later, if they are files on disk
-  std::optional<VersionSign> version;         ///< what tells the version of the file
+  FindMethod methods = [](const std::string&) { return std::optional<KnownMethod>(); };  ///< default: knows none
+  const FileAccess* access = nullptr;         ///< for files that are read later; null if the scene is not on disk
+  std::optional<VersionSign> version;         ///< first evidence of the file's version
   ColorSpace color_space = ColorSpace::srgb;  ///< current
   std::unordered_map<std::string, description::Index> float_textures;
   std::unordered_map<std::string, description::Index> spectrum_textures;
-  /// Images that are missing and left out, and multiples ("scale") of them. Whoever uses one has its neutral value.
+  /// Images that are missing and skipped, and scaled versions ("scale") of them. Their users substitute a neutral
+  /// value.
   std::set<description::Index> lost_float_textures, lost_spectrum_textures;
   std::unordered_map<std::string, description::Index> named_materials;  ///< built so far
   std::unordered_map<std::string, description::Index> measured_brdfs;   ///< by file name
-  std::size_t spectrum_bytes_left = std::size_t{1} << 28;               ///< of files that are read, each time anew
-  double subdivided_triangles_left = 1 << 26;                           ///< of all subdivision surfaces together
+  std::size_t spectrum_bytes_left = std::size_t{1} << 28;               ///< limit for spectrum files; each use rereads
+  double subdivided_triangles_left = 1 << 26;                           ///< limit for all subdivision surfaces together
 
-  /// Adds the warning, or counts it in the one with this `key`: one warning for each kind of problem.
+  /// Adds the warning, or counts it in an earlier one with this `key`: one warning per kind of problem.
   void warn(std::string_view key, Place place, const std::string& message) { warn(key, place.location(), message); }
   void warn(std::string_view key, const SourceLocation& place, const std::string& message);
-  /// The error of a kind that the version of the file does not know. `what`: "material".
+  /// The error for a kind that the file's version does not have. `what`: "material".
   Error unknown(std::string_view what, std::string_view directive, const std::string& kind, Place place) const;
   /// Adds the file `name` to the scene's files and returns its path: absolute, or in the scene's folder, or where
   /// `find_file` finds it.
   std::filesystem::path add_file(const std::string& name, const SourceLocation& location);
   std::filesystem::path add_file(const std::string& name, Place place) { return add_file(name, place.location()); }
-  /// True if this file of the scene is missing and shall be left out.
+  /// True if this file of the scene is missing and is to be skipped.
   bool leaves_out(const std::filesystem::path& path) const {
     return access != nullptr && access->skip_missing && access->is_missing(path);
   }
-  /// True if the file is missing and may be reported later, together with others; until then the reader goes on without
-  /// it. `problem`: the error to report if it is the only one.
+  /// True if the file is missing and will be reported later, together with others; the reader continues without it.
+  /// `problem`: the error to report if it is the only one.
   bool defer_missing(const std::filesystem::path& path, const Error& problem);
-  /// Throws the error of all files that are missing so far, or adds their warnings.
+  /// Throws the error for all files missing so far, or adds warnings for them.
   void report_missing();
-  /// True if there are files whose error waits.
+  /// True if errors for missing files are pending.
   bool has_deferred() const { return first_missing_ && !access->skip_missing; }
-  /// The file's bytes. An Error gets the place `place`, and its message names the file.
+  /// The file's bytes. An Error is located at `place`, and its message names the file.
   std::string read(const std::filesystem::path& path, Place place) const;
-  /// The same; nullopt if the file is missing and that is reported later.
+  /// As `read`; nullopt if the file is missing and will be reported later.
   std::optional<std::string> read_unless_missing(const std::filesystem::path& path, Place place);
 
  private:
@@ -66,7 +67,7 @@ struct Context {
   CountedWarnings warnings_;
 };
 
-/// Warns about every parameter of the directive that no getter has read, and about parameters that are given twice.
+/// Warns about every parameter of the directive that no getter has read, and about parameters given twice.
 void report_unused(const ParameterList& list, Context& context);
 
 }  // namespace lanthorn::pbrt

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// How the scene is rendered: integrator, sampler.
+// Integrator and sampler.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -25,7 +25,7 @@ void read_seed(const ParameterList& list, RenderHints& hints) {
   if (const auto seed = list.find_integer("seed")) hints.seed = static_cast<std::uint32_t>(*seed);
 }
 
-// The value of a method's parameter as the command line has it.
+// The value of a method's parameter in the command line's notation.
 std::string setting(const Parameter& p, const ParameterList& list) {
   const auto text = [&](const auto& values) {
     if (values.size() != 1) throw list.error(p.name, "must have one value");
@@ -34,7 +34,7 @@ std::string setting(const Parameter& p, const ParameterList& list) {
   return std::visit(text, p.values);
 }
 
-// Parameters of Lanthorn's methods, by their own names.
+// Reads parameters of Lanthorn's methods, under their own names.
 void read_method_parameters(const KnownMethod& method, const ParameterList& list, RenderHints& hints) {
   for (const ParameterInfo& known : method.parameters)
     if (const Parameter* p = list.find(known.name)) hints.parameters[known.name] = setting(*p, list);

@@ -18,13 +18,13 @@ using namespace description;
 
 SpectrumValue white(ColorSpace space) { return RgbSpectrum{{1, 1, 1}, space}; }
 
-// A light's spectrum is by default the colour space's illuminant, which is what RGB (1,1,1) means for a light.
+// A light's default spectrum is the colour space's illuminant, which is also what RGB (1,1,1) means for a light.
 Emission emission(const ParameterList& list, std::string_view name, Context& context) {
   return {find_spectrum(list, name, SpectrumRole::illuminant, context).value_or(white(context.color_space)),
           list.get("scale", 1.0f)};
 }
 
-// "power" and "illuminance" take effect if they are positive.
+// "power" and "illuminance" take effect only if they are positive.
 std::optional<float> find_positive(const ParameterList& list, std::string_view name) {
   const auto value = list.find_float(name);
   return value && *value > 0 ? value : std::nullopt;
@@ -49,9 +49,9 @@ SpotLight spot_light(const ParameterList& list, Context& context) {
   light.power = find_positive(list, "power");
   if (!(light.cone_angle > 0 && light.cone_angle <= 180)) throw list.error("coneangle", "must be in (0, 180] degrees");
   if (!(light.cone_delta_angle >= 0)) throw list.error("conedeltaangle", "must not be negative");
-  // pbrt takes the cosine of the angle at which the edge begins, so its sign does not matter. Beyond the cone the edge
-  // is sharp, as in pbrt-v3. pbrt-v4 turns such a spot inside out, so that with the default of 5 degrees a cone of 2
-  // would light all but itself.
+  // pbrt takes the cosine of the angle at which the edge begins, so its sign does not matter. If that angle exceeds the
+  // cone's, the edge is sharp, as in pbrt-v3. pbrt-v4 would turn such a spot inside out: with the default of 5 degrees,
+  // a cone of 2 degrees would light everything outside it.
   const float edge_start = std::fabs(light.cone_angle - light.cone_delta_angle);
   light.cone_delta_angle = light.cone_angle - std::min(edge_start, light.cone_angle);
   return light;
@@ -67,7 +67,7 @@ DistantLight distant_light(const ParameterList& list, Context& context) {
   return light;
 }
 
-// The corners of a rectangle, in order. As in pbrt-v4 they are in world space, without the current transformation.
+// The corners of a rectangle, in order. As in pbrt-v4, they are in world space, unaffected by the current transform.
 std::array<Point, 4> portal(const ParameterList& list) {
   const std::vector<Vec3> p = list.vec3s("portal");
   if (p.size() != 4) throw list.error("portal", "needs four points, has " + std::to_string(p.size()));
@@ -147,7 +147,7 @@ Light make_light(const std::string& kind, const ParameterList& list, const Trans
 
 namespace {
 
-// The image of an emitter is a bilinear texture, its top at v = 1. Black if it is missing and left out.
+// An emitter's image is a bilinear texture with its top at v = 1. Black if the image is missing and skipped.
 SpectrumParameter emission_image(const std::string& name, const SourceLocation& location, Context& context) {
   ImageTexture image;
   image.filename = context.add_file(name, location).string();

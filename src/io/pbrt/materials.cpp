@@ -27,7 +27,7 @@ SpectrumParameter reflectance(const ParameterList& list, std::string_view name, 
   return find_spectrum_or_texture(list, name, SpectrumRole::albedo, context).value_or(SpectrumParameter{otherwise, {}});
 }
 
-// The smallest value in the file; 0 if the file gives none.
+// The smallest of the values given; 0 for named and blackbody spectra.
 float least(const SpectrumValue& value) {
   if (const auto* number = std::get_if<float>(&value)) return *number;
   if (const auto* rgb = std::get_if<RgbSpectrum>(&value)) return std::min({rgb->rgb.r, rgb->rgb.g, rgb->rgb.b});
@@ -48,15 +48,15 @@ SpectrumValue index_of_refraction(const ParameterList& list, std::string_view na
   return std::move(*value);
 }
 
-// A part of a metal's complex index of refraction.
+// Real or imaginary part of a metal's complex index of refraction.
 std::optional<SpectrumParameter> index_of_metal(const ParameterList& list, const std::string& name, Context& context) {
   auto value = find_spectrum_or_texture(list, name, SpectrumRole::unbounded, context);
   if (value && least(value->value) < 0) throw list.error(name, "must not be negative");
   return value;
 }
 
-// The parameters common to ConductorMaterial and CoatedConductorMaterial: a reflectance, or eta and k (copper by
-// default).
+// The parameters common to ConductorMaterial and CoatedConductorMaterial: a reflectance, or eta and k (default:
+// copper).
 template <class Conductor>
 Conductor metal(const ParameterList& list, const std::string& prefix, Context& context) {
   Conductor result;
@@ -133,7 +133,7 @@ MaterialNode hair(const ParameterList& list, Context& context) {
           static_cast<int>(eumelanin || pheomelanin) >
       1)
     context.warn("hair color", list.place(),
-                 "hair has more than one of \"sigma_a\", a colour and melanin: the first of these counts");
+                 "hair has more than one of \"sigma_a\", a colour and melanin: the first of these is used");
   result.eumelanin = eumelanin.value_or(FloatParameter{pheomelanin ? 0.0f : 1.3f, {}});
   result.pheomelanin = pheomelanin.value_or(FloatParameter{0, {}});
   result.eta = float_or_texture(list, "eta", 1.55f, context);

@@ -16,7 +16,7 @@ namespace {
 using namespace description;
 
 // Jensen, Marschner, Levoy, Hanrahan 2001, "A Practical Model for Subsurface Light Transport", figure 5: reduced
-// scattering and absorption, per millimetre.
+// scattering and absorption coefficients, per millimetre.
 struct MeasuredMedium {
   std::string_view name;
   Rgb sigma_s, sigma_a;
@@ -77,14 +77,14 @@ void read_homogeneous(const ParameterList& list, Medium& medium, Context& contex
   medium.density = HomogeneousDensity{};
 }
 
-// Coefficients of media with a variable density, at density 1. Defaults: both 1 per metre.
+// Coefficients of media with varying density, at density 1. Defaults: both 1 per metre.
 void read_varying(const ParameterList& list, Medium& medium, Context& context) {
   medium.sigma_a = medium.sigma_s = 1.0f;
   read_preset(list, "preset", medium, context);
   read_coefficients(list, medium, context);
 }
 
-// A grid with the size and box of the medium's parameters.
+// An empty grid with the medium's size and box.
 template <class T>
 MediumGrid<T> empty_grid(const ParameterList& list) {
   MediumGrid<T> grid;
@@ -198,7 +198,7 @@ Rgb color(const ParameterList& list, std::string_view name, const SpectrumValue&
   throw list.error(name, "must be a number or of type rgb");
 }
 
-// The single-scattering albedo with which a half-space of the medium has this diffuse reflectance (Kulla & Conty 2017,
+// The single-scattering albedo for which a half-space of the medium has this diffuse reflectance (Kulla & Conty 2017,
 // "Revisiting Physically Based Shading at Imageworks").
 float single_scattering_albedo(float reflectance) {
   const float a = std::clamp(reflectance, 0.0f, 1.0f);

@@ -22,7 +22,7 @@ Error wrong_type(const ParameterList& list, const Parameter& p, std::string_view
   return list.error(p.name, "must be of type " + std::string(wanted) + ", not " + std::string(name_of(p.type)));
 }
 
-// The values of a parameter of exactly this type, null if it is missing.
+// The values of a parameter of exactly this type; null if it is missing.
 template <class T>
 const std::vector<T>* values_of(const ParameterList& list, std::string_view name, ParameterType type) {
   const Parameter* p = list.find(name);

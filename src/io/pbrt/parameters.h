@@ -45,25 +45,25 @@ struct Parameter {
   std::string name;
   Place place;
   Values values;
-  ColorSpace color_space = ColorSpace::srgb;  ///< current at the parameter
+  ColorSpace color_space = ColorSpace::srgb;  ///< the colour space current at the parameter
   mutable bool used = false;
 };
 using Parameters = std::vector<Parameter>;
 
-/// The parameters of one directive, with the defaults that `Attribute` has set for its kind. A getter throws Error at
-/// the parameter if its type or number of values is wrong, and marks it as used.
+/// The parameters of one directive, with the defaults that `Attribute` has set for its kind. A getter marks the
+/// parameter as used, and throws Error at it if its type or number of values is wrong.
 class ParameterList {
  public:
   ParameterList() = default;
-  /// `entity` is the owner in messages, such as `Shape "sphere"`.
+  /// `entity` names the owner in messages, such as `Shape "sphere"`.
   ParameterList(std::string entity, Place place, Parameters own, std::shared_ptr<const Parameters> defaults = nullptr);
 
   const std::string& entity() const { return entity_; }
   const Place& place() const { return place_; }
-  /// In the order of the file; without the defaults.
+  /// In file order, without the defaults.
   const Parameters& own() const { return own_; }
 
-  /// The last parameter of this name, otherwise the default. Null if there is neither.
+  /// The last parameter of this name, otherwise the default; null if there is neither.
   const Parameter* find(std::string_view name) const;
   bool has(std::string_view name) const { return find(name) != nullptr; }
 
@@ -77,7 +77,7 @@ class ParameterList {
   bool get(std::string_view name, bool otherwise) const { return find_bool(name).value_or(otherwise); }
   Vec3 get(std::string_view name, const Vec3& otherwise) const { return find_vec3(name).value_or(otherwise); }
   std::string get(std::string_view name, const char* otherwise) const;
-  /// Throws Error at the directive if it is missing.
+  /// Throws Error at the directive if the parameter is missing.
   std::string required_string(std::string_view name) const;
 
   /// Arrays: empty if the parameter is missing. Points, vectors and normals are interchangeable.
@@ -89,7 +89,7 @@ class ParameterList {
   /// Exactly four floats.
   std::optional<std::array<float, 4>> find_float4(std::string_view name) const;
 
-  /// An Error at the parameter (at the directive if the parameter is missing). Its message names both.
+  /// An Error at the parameter, or at the directive if the parameter is missing. The message names both.
   Error error(std::string_view name, const std::string& message) const;
 
  private:

@@ -22,7 +22,8 @@ Error unexpected(const Token& found, const std::string& wanted) {
 Error unknown_directive(const Token& token, bool is_of_v2) {
   const std::string name = in_quotes(token.text);
   if (!is_of_v2) return {token.place.location(), "unknown directive " + name};
-  return {token.place.location(), "directive " + name + " is of pbrt-v2: files of pbrt-v3 and pbrt-v4 are read"};
+  return {token.place.location(),
+          "directive " + name + " belongs to pbrt-v2: only pbrt-v3 and pbrt-v4 files are supported"};
 }
 
 bool bool_value(const Token& token) {
@@ -31,7 +32,7 @@ bool bool_value(const Token& token) {
   throw unexpected(token, "true or false");
 }
 
-// A parameter of type xyz.
+// Converts a parameter of type xyz.
 void to_rgb(Parameter& parameter) {
   auto& v = std::get<std::vector<float>>(parameter.values);
   for (std::size_t i = 0; i + 2 < v.size(); i += 3) {
@@ -89,7 +90,7 @@ void Parser::expect_numbers(const DirectiveForm& form, Directive& directive) {
     if (const Token close = next(); close.kind != TokenKind::close) throw unexpected(close, "\"]\" after 16 numbers");
 }
 
-// What three directives have that is not of the common form.
+// Parses the parts of three directives that do not have the common form.
 void Parser::expect_words(Directive& directive) {
   if (directive.name == "ActiveTransform") {
     const Token token = next();
@@ -169,7 +170,7 @@ Parameter::Values Parser::values(const Parameter& parameter) {
       return read_values<std::string>(read_string);
     case ParameterType::spectrum: {
       if (ahead_.kind == TokenKind::string) return read_values<std::string>(read_string);
-      // Names or numbers, as the first value.
+      // All names or all numbers, as the first value decides.
       std::vector<std::string> names;
       auto numbers = read_values<float>([&](const Token& token) {
         if (token.kind != TokenKind::string) return float_value(token);
@@ -186,7 +187,7 @@ Parameter::Values Parser::values(const Parameter& parameter) {
   }
 }
 
-// Empty if the file is missing and that is reported later.
+// Empty if the file is missing and will be reported later.
 std::string Parser::read_included(const std::filesystem::path& path, Place place) {
   return context_.read_unless_missing(path, place).value_or("");
 }
@@ -197,11 +198,12 @@ void Parser::include(const Directive& directive) {
   if (std::find(files_.open.begin(), files_.open.end(), path) != files_.open.end())
     throw Error(place.location(), "file \"" + printable(path.string()) + "\" includes itself");
   if (files_.open.size() >= deepest_include)
-    throw Error(place.location(), "files include each other more than " + std::to_string(deepest_include) + " deep");
+    throw Error(place.location(),
+                "files include each other more than " + std::to_string(deepest_include) + " levels deep");
   const bool is_import = directive.name == import_begin;
   if (is_import) sink_(directive);
   const std::string text = read_included(path, place);
-  const std::size_t size = std::max(text.size(), page);  // small files take time, too
+  const std::size_t size = std::max(text.size(), page);  // small files cost time, too
   const auto [file, is_new] = files_.names.insert(printable(path.string()));
   if (size > files_.bytes_left) throw Error(place.location(), "the scene includes too many bytes of files");
   files_.bytes_left -= size;

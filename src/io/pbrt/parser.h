@@ -14,21 +14,21 @@
 
 namespace lanthorn::pbrt {
 
-/// The files being read, outermost first, and what has been read so far.
+/// The files being read, outermost first, and totals of what has been read.
 struct FileStack {
   std::vector<std::filesystem::path> open;
-  std::set<std::string> names;  ///< each once, however often it is included; a set, because places point to them
+  std::set<std::string> names;  ///< each once, however often included; a set, because places point to them
   std::size_t bytes_left = std::size_t{16} << 30;  ///< for all inclusions together
-  /// For files that have been included before: a few files that include each other twice are read 2^64 times.
+  /// Limit for repeated inclusions: a few files that each include the next twice would be read 2^64 times.
   static constexpr std::size_t most_repeated_bytes = std::size_t{1} << 30;
   std::size_t repeated_bytes_left = most_repeated_bytes;
 };
 
-/// Reads one file of the scene and the files that it includes. Turns tokens into directives with their parameters and
+/// Reads a file of the scene and the files that it includes. Turns tokens into directives with their parameters and
 /// passes them to the sink. Throws Error with file, line and column.
 class Parser {
  public:
-  /// `text` must outlive the parser. The other arguments must outlive the whole reading of the scene.
+  /// `text` must outlive the parser; the other arguments must outlive the reading of the whole scene.
   Parser(std::string_view text, const std::string& name, FileStack& files, const DirectiveSink& sink, Context& context);
 
   /// Reads all directives up to the end of the text. Returns the place of the end.

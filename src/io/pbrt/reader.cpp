@@ -35,7 +35,7 @@ Place parse(std::string_view text, const DirectiveSink& sink, FileStack& files, 
   return Parser(text, own, files, sink, context).parse();
 }
 
-// The same for a pbrt-v3 file, with pbrt-v4's directives.
+// As `parse` for a pbrt-v3 file, translated to pbrt-v4's directives.
 Place parse_upgraded(std::string_view text, const DirectiveSink& sink, FileStack& files, Context& context) {
   Upgrader upgrader(context, sink);
   const Place end = parse(
@@ -56,7 +56,7 @@ SceneDescription read(std::string_view text, std::filesystem::path folder, const
   try {
     assembler.finish((is_v3(context) ? parse_upgraded : parse)(text, build, files, context));
   } catch (const Error&) {
-    if (context.has_deferred()) context.report_missing();  // what is wrong may be defined in a missing file
+    if (context.has_deferred()) context.report_missing();  // a missing file may define what the error misses
     throw;
   }
   return std::move(context.scene);
@@ -68,8 +68,8 @@ UpgradedScene upgrade(std::string_view text, std::filesystem::path folder, const
   if (!is_v3(context))
     throw Error({name}, context.version
                             ? context.version->text + " in line " + std::to_string(context.version->location.line) +
-                                  " is of pbrt-v4 already: there is nothing to convert"
-                            : "nothing in the file is of pbrt-v3: there is nothing to convert");
+                                  " belongs to pbrt-v4: there is nothing to convert"
+                            : "nothing in the file is specific to pbrt-v3: there is nothing to convert");
   const auto canonical = [](const std::filesystem::path& path) {
     return std::filesystem::weakly_canonical(path.empty() ? "." : path);
   };

@@ -46,7 +46,7 @@ std::vector<Point> positions(const ParameterList& list) {
   return result;
 }
 
-// Attributes of the vertices: none, or one for each position.
+// Vertex attributes: none, or one per position.
 template <class V>
 std::vector<V> per_position(const ParameterList& list, std::string_view name, std::vector<V> values,
                             std::size_t count) {
@@ -63,7 +63,7 @@ TriangleMesh triangle_mesh(const ParameterList& list) {
   mesh.normals = per_position(list, "N", list.vec3s("N"), mesh.positions.size());
   mesh.tangents = per_position(list, "S", list.vec3s("S"), mesh.positions.size());
   mesh.uvs = per_position(list, "uv", list.vec2s("uv"), mesh.positions.size());
-  list.find("faceIndices");  // used by ptex only
+  list.find("faceIndices");  // only ptex uses it
   return mesh;
 }
 
@@ -108,10 +108,10 @@ TriangleMesh loop_subdivision(const ParameterList& list, Context& context) {
   const double triangles = static_cast<double>(control.triangles.size()) * std::pow(4.0, levels);
   if (triangles > context.subdivided_triangles_left)
     throw list.error("levels", "would make more than 67 million triangles of the scene's subdivision surfaces");
-  constexpr double bytes_of_triangle = 150;  // while it is made; measured
+  constexpr double bytes_of_triangle = 150;  // peak during subdivision; measured
   require_memory(bytes_of_triangle * triangles, list.place().location(), "the subdivision surface");
   context.subdivided_triangles_left -= triangles;
-  list.find("scheme");  // there is only one
+  list.find("scheme");  // only one scheme exists
   return loop_subdivide(control, levels);
 }
 
@@ -123,13 +123,13 @@ CurveKind curve_kind(const ParameterList& list) {
   throw list.error("type", "must be flat, cylinder or ribbon, not " + in_quotes(type));
 }
 
-// Control points of one Bézier segment, raised to degree 3.
+// Control points of one Bézier segment, elevated to degree 3.
 std::vector<DVec3> elevated(const std::vector<DVec3>& p) {
   if (p.size() == 4) return p;
   return {p[0], (p[0] + 2.0 * p[1]) / 3.0, (2.0 * p[1] + p[2]) / 3.0, p[2]};
 }
 
-// Control points of one uniform B-spline segment as those of the same Bézier segment (blossoming: Farin 2002, ch. 8).
+// Control points of one uniform B-spline segment, converted to Bézier form (blossoming: Farin 2002, ch. 8).
 std::vector<DVec3> bezier_of_spline(const std::vector<DVec3>& p) {
   if (p.size() == 3) return {(p[0] + p[1]) / 2.0, p[1], (p[1] + p[2]) / 2.0};
   return {(p[0] + 4.0 * p[1] + p[2]) / 6.0, (2.0 * p[1] + p[2]) / 3.0, (p[1] + 2.0 * p[2]) / 3.0,
@@ -179,7 +179,7 @@ Curves curve(const ParameterList& list) {
   const float width0 = list.get("width0", width), width1 = list.get("width1", width);
   for (const auto& [name, value] : {std::pair("width0", width0), std::pair("width1", width1)})
     if (!(value >= 0)) throw list.error(list.has(name) ? name : "width", "must not be negative");
-  list.find("splitdepth");  // affects the intersection algorithm of pbrt-v4, not the shape
+  list.find("splitdepth");  // affects only pbrt-v4's intersection algorithm
   const bool is_ribbon = curves.kind == CurveKind::ribbon;
   append_curve(curves, points, width0, width1,
                is_ribbon ? ribbon_normals(list, (points.size() - 1) / 3) : std::vector<Normal>());

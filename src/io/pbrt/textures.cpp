@@ -18,8 +18,8 @@ namespace {
 
 using namespace description;
 
-// The differences between float and spectrum textures.
-constexpr float grey_input = 0.5f;  // in place of an input that is lost
+// Traits of float and spectrum textures.
+constexpr float grey_input = 0.5f;  // replaces a skipped input
 
 struct FloatKind {
   using Parameter = FloatParameter;
@@ -66,8 +66,8 @@ Wrap wrap_mode(const ParameterList& list) {
   throw list.error("wrap", "must be repeat, black, clamp or octahedralsphere, not " + in_quotes(wrap));
 }
 
-// Paths carry no footprint from which a level of detail could be chosen; the samples of the pixel filter the texture.
-// Therefore all filters except "point" are the same.
+// Paths carry no footprint from which to choose a level of detail; the pixel's samples filter the texture. Therefore
+// all filters except "point" are equivalent.
 ImageFilter image_filter(const ParameterList& list) {
   const std::string filter = list.get("filter", "bilinear");
   list.find("maxanisotropy");
@@ -137,7 +137,7 @@ Direction mix_direction(const Source& from) {
   return direction / length;
 }
 
-// The textures of one kind (float or spectrum), each by its name.
+// Makers of the textures of one kind (float or spectrum), by name.
 template <class Kind>
 struct Maker {
   using Parameter = typename Kind::Parameter;
@@ -242,7 +242,7 @@ void define(std::unordered_map<std::string, Index>& names, const std::string& na
     throw Error(list.place().location(), "texture " + in_quotes(name) + " is defined twice");
 }
 
-// Whether the texture is an image that is missing and left out, or a multiple of one.
+// True if the texture is an image that is missing and skipped, or a scaled version of one.
 template <class Kind>
 bool is_lost(const typename Kind::Texture& texture, const std::string& kind, const ParameterList& list,
              const Context& context) {

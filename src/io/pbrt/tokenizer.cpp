@@ -28,7 +28,7 @@ bool ends_word(char c) {
   }
 }
 
-// Without what std::from_chars does not accept: a leading plus sign, and a comma at the end, which pbrt passes over.
+// Removes what std::from_chars rejects but pbrt accepts: a leading plus sign, and a trailing comma.
 std::string_view bare_number(std::string_view text) {
   if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
   if (text.size() > 1 && text.back() == ',') text.remove_suffix(1);
@@ -127,7 +127,7 @@ std::string string_value(const Token& token) {
 
 namespace {
 
-// No larger than a float can be.
+// Rejects numbers larger than a float can be.
 template <class Number>
 Number number_value(const Token& token) {
   const std::string_view text = bare_number(token.text);

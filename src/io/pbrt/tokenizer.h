@@ -22,7 +22,7 @@ struct Place {
 
 enum class TokenKind : std::uint8_t { end, word, string, open, close };
 
-/// `text` points into the file: the word, or the text between the quotes with its escapes as written.
+/// `text` points into the file: the word, or the text between the quotes with unresolved escapes.
 struct Token {
   TokenKind kind = TokenKind::end;
   std::string_view text;
@@ -30,10 +30,10 @@ struct Token {
   bool has_escapes = false;
 };
 
-/// Splits a pbrt-v4 scene file into words, quoted strings and brackets. Skips blanks and # comments.
+/// Splits a pbrt-v4 scene file into words, quoted strings and brackets. Skips whitespace and # comments.
 class Tokenizer {
  public:
-  /// Both must outlive the tokenizer, `file` also its tokens' places.
+  /// Both must outlive the tokenizer; `file` must also outlive its tokens' places.
   Tokenizer(std::string_view text, const std::string* file);
 
   /// The next token. At the end of the text, and on every later call, `end` with the place after the last character.
@@ -52,11 +52,11 @@ class Tokenizer {
   const std::string* file_;
 };
 
-/// The value of a string token, escapes (\b \f \n \r \t \\ \' \") resolved. Throws Error for any other escape.
+/// The value of a string token, with escapes (\b \f \n \r \t \\ \' \") resolved. Throws Error for any other escape.
 std::string string_value(const Token& token);
-/// A finite number. Underflow gives 0; throws Error at the token if it is no number or too large.
+/// A finite number. Underflow gives 0; throws Error at the token if it is not a number or too large.
 float float_value(const Token& token);
-/// The same in double precision, no larger than a float can be.
+/// As `float_value` in double precision, but within the range of floats.
 double double_value(const Token& token);
 /// A 32-bit integer in decimal; throws Error at the token otherwise.
 std::int32_t integer_value(const Token& token);

@@ -11,14 +11,14 @@ namespace {
 
 constexpr std::string_view transform_end_name = "TransformEnd";
 
-// The coordinate system that holds the transform of the n-th open TransformBegin.
+// The coordinate system that stores the transform of the n-th open TransformBegin.
 std::string saved_transform(std::size_t n) { return "TransformBegin " + std::to_string(n); }
 
 }  // namespace
 
 Upgrader::Upgrader(Context& context, const DirectiveSink& sink) : output_(context, sink) {
   context.warn("version", context.version->location,
-               context.version->text + " is of pbrt-v3: the file is translated to pbrt-v4");
+               context.version->text + " belongs to pbrt-v3: the file is translated to pbrt-v4");
 }
 
 Upgrader::Handler Upgrader::handler(std::string_view directive) {
@@ -76,7 +76,7 @@ void Upgrader::finish() {
 }
 
 void Upgrader::only_in_v2(Directive& d) {
-  output_.note("directive " + in_quotes(d.name) + " is of pbrt-v2: left out", d.place);
+  output_.note("directive " + in_quotes(d.name) + " belongs to pbrt-v2: ignored", d.place);
 }
 
 void Upgrader::only_in_v4(Directive& d) {
@@ -85,7 +85,7 @@ void Upgrader::only_in_v4(Directive& d) {
 
 void Upgrader::open(std::string_view end, Place place) {
   if (blocks_.size() >= deepest_nesting)
-    throw Error(place.location(), "blocks are nested more than " + std::to_string(deepest_nesting) + " deep");
+    throw Error(place.location(), "blocks are nested more than " + std::to_string(deepest_nesting) + " levels deep");
   blocks_.push_back({end, place, material_, is_lamp_});
 }
 
@@ -105,7 +105,7 @@ void Upgrader::attribute_begin(Directive& d) {
   output_.emit(std::move(d));
 }
 
-// pbrt-v3 does not tell the ends of attributes and of objects apart: either ends the innermost block.
+// pbrt-v3 does not distinguish the ends of attributes and of objects: either one ends the innermost block.
 void Upgrader::attribute_end(Directive& d) {
   check_open(false, d);
   if (d.name != blocks_.back().end)
@@ -120,7 +120,7 @@ void Upgrader::attribute_end(Directive& d) {
   output_.emit(std::move(d));
 }
 
-// Only the transform is saved and restored, unlike in pbrt-v4.
+// Unlike in pbrt-v4, only the transform is saved and restored.
 void Upgrader::transform_begin(Directive& d) {
   open(transform_end_name, d.place);
   output_.emit("CoordinateSystem", {saved_transform(blocks_.size())}, {}, d.place);
@@ -143,7 +143,7 @@ void Upgrader::object_instance(Directive& d) {
   output_.emit(std::move(d));
 }
 
-// Film and sampler depend on other directives: all those with defaults other than pbrt-v4's have waited for the last.
+// Film and sampler depend on other directives; all directives whose defaults differ from pbrt-v4's are emitted here.
 void Upgrader::world_begin(Directive& d) {
   if (!film_) film_ = Directive{"Film", {}, {"image"}, {}, d.place};
   const std::string film = film_->strings.front();
@@ -193,14 +193,14 @@ void Upgrader::integrator(Directive& d) {
   output_.emit("Integrator", {result.integrator.kind}, std::move(result.integrator.parameters), d.place);
 }
 
-// Gives textures the names that they have in the output. `is_spectrum` tells by a parameter's name which of both kinds
+// Replaces textures' names by those in the output. `is_spectrum` tells, from a parameter's name, which kind of texture
 // it takes.
 void Upgrader::rename_textures(Parameters& parameters, const std::function<bool(const std::string&)>& is_spectrum) {
   std::erase_if(parameters, [&](const Parameter& p) {
     const std::string name = texture_of(p);
     if (name.empty() || spectrum_textures_.find(name) || float_textures_.find(name)) return false;
     output_.note("texture " + in_quotes(name) + " is not defined before it is used: " + in_quotes(p.name) +
-                     " has its default, as in pbrt-v3",
+                     " keeps its default, as in pbrt-v3",
                  p.place);
     return true;
   });
@@ -211,14 +211,14 @@ void Upgrader::rename_textures(Parameters& parameters, const std::function<bool(
     }
 }
 
-// The parameters of a directive, with the names that their textures have in the output.
+// The parameters of a directive, with its textures' names in the output.
 OldParameters Upgrader::old_parameters(Directive& d, std::string_view textures_of) {
   rename_textures(d.parameters, [&](const std::string& name) { return is_spectrum_parameter(name, textures_of); });
   return {std::string(d.name) + " " + in_quotes(d.strings.empty() ? std::string() : d.strings.back()), d.place,
           std::move(d.parameters)};
 }
 
-// A name may be defined again, and means the last definition from there on.
+// A name may be redefined; the last definition applies from there on.
 void Upgrader::texture(Directive& d) {
   const std::string name = d.strings[0], type = d.strings[1], kind = d.strings[2];
   const bool is_spectrum = type == "color" || type == "spectrum";
@@ -270,7 +270,7 @@ void Upgrader::named_material(Directive& d) {
   const Material* known = materials_.find(d.strings.front());
   if (known == nullptr) {
     output_.note("material " + in_quotes(d.strings.front()) +
-                     " is not defined before it is used: the current material stays, as in pbrt-v3",
+                     " is not defined before it is used: the current material does not change, as in pbrt-v3",
                  d.place);
     return;
   }
@@ -296,7 +296,7 @@ void Upgrader::area_light_source(Directive& d) {
   output_.emit("AreaLightSource", {result.kind}, std::move(result.parameters), d.place);
 }
 
-// A shape may give parameters of its material other values. Emits the material with these, and returns true.
+// A shape may override parameters of its material. If so, emits a material with these values and returns true.
 bool Upgrader::override_material(Directive& d) {
   if (!material_.old) return false;
   const auto is_override = [](const Parameter& p) { return is_material_parameter(p.name); };
@@ -313,11 +313,11 @@ bool Upgrader::override_material(Directive& d) {
   return true;
 }
 
-// A lamp without a surface, which emits in pbrt-v3 alone, becomes a black one. Returns true then.
+// An emitter without a material, which only pbrt-v3 allows to emit, gets a black one; returns true in this case.
 bool Upgrader::make_visible(Place place) {
   const bool has_surface = !material_.old || (!material_.old->kind.empty() && material_.old->kind != "none");
   if (has_surface || !is_lamp_) return false;
-  output_.note("lamps without a material are black: nothing is seen through them", place);
+  output_.note("emitters without a material are black: they hide what is behind them", place);
   output_.emit("AttributeBegin", {}, {}, place);
   output_.emit("Material", {"diffuse"}, {rgb_parameter("reflectance", {0, 0, 0}, place)}, place);
   return true;

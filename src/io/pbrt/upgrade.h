@@ -14,7 +14,7 @@
 
 namespace lanthorn::pbrt {
 
-/// Names of pbrt-v3, which AttributeBegin and AttributeEnd enclose, and what they mean now.
+/// Names in pbrt-v3, whose definitions AttributeBegin and AttributeEnd scope, and their current meanings.
 template <class T>
 class ScopedNames {
  public:
@@ -45,10 +45,10 @@ class ScopedNames {
   std::vector<std::size_t> begins_;
 };
 
-/// Turns the directives of a pbrt-v3 file, or of a pbrt-v2 file as far as it is one, into those of a pbrt-v4 file:
-/// `translate` for each, in file order, then `finish`. The output's place of each is that of the directive it was made
-/// from. What is only approximated becomes a warning, one for each kind. Throws Error for directives that are wrong, or
-/// that only pbrt-v4 has.
+/// Translates the directives of a pbrt-v3 file, or of a pbrt-v2 file as far as its directives are the same, to those of
+/// a pbrt-v4 file: call `translate` for each, in file order, then `finish`. Each output directive has the place of the
+/// directive it was made from. Approximations cause warnings, one per kind. Throws Error for directives that are
+/// invalid or exist only in pbrt-v4.
 class Upgrader {
  public:
   /// The context's version is that of the file.
@@ -58,7 +58,7 @@ class Upgrader {
   void finish();
 
  private:
-  /// A material as the file declares it: shapes may override its parameters.
+  /// A material as declared in the file: shapes may override its parameters.
   struct OldMaterial {
     std::string kind, name;
     Parameters parameters;
@@ -118,7 +118,7 @@ class Upgrader {
   std::optional<int> passes_;
   float exposure_time_ = 1;
   Material material_;     ///< current
-  bool is_lamp_ = false;  ///< current shapes emit
+  bool is_lamp_ = false;  ///< the current shapes emit
   ScopedNames<Material> materials_;
   ScopedNames<std::string> float_textures_, spectrum_textures_;
   std::unordered_map<std::string, std::string> objects_;

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Lights of pbrt-v3 have the spectra that they are given: a black body, which has a maximum of 1, or samples. Those of
-// pbrt-v4 have luminance 1 and a scale.
+// pbrt-v3 uses a light's spectrum as given: a black body, normalised to a maximum of 1, or samples. pbrt-v4 normalises
+// it to luminance 1 and multiplies by a scale.
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -48,7 +48,7 @@ class Emission {
     for (const char* ignored : {"samples", "nsamples"}) old.take(ignored);
   }
 
-  // With an image in place of the spectrum, the factor has no colour.
+  // If an image replaces the spectrum, the factor cannot have a colour.
   void into_scale(OldParameters& old, UpgradeOutput& output) {
     if (!spectrum_) return;
     const Factor grey = output.grey(*spectrum_, old.entity());
@@ -66,7 +66,7 @@ class Emission {
  private:
   void multiply(Parameter& factor, const char* name, OldParameters& old, UpgradeOutput& output) {
     if (factor.type == ParameterType::real) {
-      output.note("\"float scale\" of " + old.entity() + " has no effect in pbrt-v3, where it is a colour: ignored",
+      output.note("\"float scale\" of " + old.entity() + " has no effect in pbrt-v3, which expects a colour: ignored",
                   factor.place);
       return;
     }
@@ -106,7 +106,7 @@ void infinite(OldParameters& old, UpgradeOutput& output) {
   emit_light("infinite", old, std::move(emission), std::move(image), output);
 }
 
-// pbrt-v3 puts the top of the image at the bottom of the picture.
+// pbrt-v3 projects the image upside down.
 void projection(OldParameters& old, UpgradeOutput& output) {
   Emission emission(old, "I", output);
   emission.into_scale(old, output);
@@ -125,8 +125,7 @@ void projection(OldParameters& old, UpgradeOutput& output) {
 void note_edge(const OldParameters& old, UpgradeOutput& output) {
   const Parameter* width = old.find("conedeltaangle");
   const auto angle = width != nullptr ? constant_colour(*width) : std::nullopt;
-  if (!angle || angle->r != 0)
-    output.note("the edge of a spot light is that of pbrt-v4, which falls off more slowly", old.place());
+  if (!angle || angle->r != 0) output.note("spot lights have pbrt-v4's edge, which falls off more slowly", old.place());
 }
 
 }  // namespace

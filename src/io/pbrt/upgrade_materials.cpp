@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Materials of pbrt-v3 are sums of lobes with a weight each. Those of pbrt-v4 are whole surfaces: the sums become
-// mixes, with the lobes' weights as amounts, and the reflectance of a base is chosen such that the surface has the
-// albedo that the lobe had:
+// pbrt-v3's materials are sums of lobes with individual weights; pbrt-v4's are whole surfaces. The sums become mixes
+// with the lobes' weights as amounts, and the reflectance of a base is chosen so that the surface has the albedo of the
+// lobe:
 //   pbrt-v3: Pharr, Jakob & Humphreys 2016, Physically Based Rendering, 3rd ed., chapters 8 and 9 [P16]
 //   substrate: Ashikhmin & Shirley 2000, An Anisotropic Phong BRDF Model [A00]
 //   disney: Burley 2015, Extending the Disney BRDF to a BSDF with Integrated Subsurface Scattering [B15]
@@ -31,9 +31,10 @@ float eta_of(float normal_reflectance) {
   return (1 + root) / (1 - root);
 }
 
-// Albedo, for diffuse light, of a diffuse base under a dielectric interface: transmitted r / (1 - reflected_back r),
-// with the fractions of light that pass the interface both ways and that it reflects back onto the base. An interface
-// of GGX width alpha loses light: the fit is to renders at index 1.5, within 0.03 up to a width of 0.8.
+// Albedo, under diffuse light, of a diffuse base under a dielectric interface: transmitted r / (1 - reflected_back r),
+// with the fraction of light that passes the interface in both directions, and the fraction that it reflects back onto
+// the base. An interface of GGX width alpha loses light: the formula is a fit to renders at index 1.5, within 0.03 up
+// to a width of 0.8.
 struct Coat {
   float transmitted = 1, reflected_back = 0;
 
@@ -49,11 +50,12 @@ struct Coat {
     reflected_back = (1 - escaping) / (1 + std::pow(2 * alpha, 1.6f));
   }
   float albedo(float reflectance) const { return transmitted * reflectance / (1 - reflected_back * reflectance); }
-  /// The reflectance with this albedo, at most 1.
+  /// The base's reflectance that gives this albedo, at most 1.
   float reflectance(float albedo) const { return std::min(albedo / (transmitted + reflected_back * albedo), 1.0f); }
 };
 
-// A diffuse reflection and, on the share `coated` of the surface, a coat over a base: their sum has a given albedo.
+// A diffuse reflection and, on the fraction `coated` of the surface, a coat over a base; together they have a given
+// albedo.
 struct Shares {
   float coated = 1;
   Coat coat;
@@ -89,7 +91,7 @@ class MaterialUpgrade {
     return glossy(kd, ks, gloss(1.5f, roughness({"roughness"}, 0.1f)));
   }
 
-  // Diffuse and glossy reflection, a mirror Kr and clear glass Kt, all of them as opaque as `opacity`.
+  // Diffuse and glossy reflection, a mirror Kr and clear glass Kt, all weighted by `opacity`.
   Upgraded uber() {
     const float eta = index();
     const Factor kr = weight("Kr", 0), kt = weight("Kt", 0);
@@ -97,7 +99,7 @@ class MaterialUpgrade {
     Factor ks = weight("Ks", 0.25f);
     opacity_ = weight("opacity", 1);
     const Gloss rough = gloss(eta, roughness({"roughness", "uroughness", "vroughness"}, 0.1f));
-    // A mix takes the share of its second material from the first, which pbrt-v3 does not.
+    // A mix takes the weight of its second material from the first; pbrt-v3 adds both.
     const Factor& smooth = kt.is(0) ? kr : kt;
     if (smooth.texture.empty() && smooth.value < 1) {
       kd = output_.scaled(std::move(kd), 1 / (1 - smooth.value));
@@ -133,9 +135,10 @@ class MaterialUpgrade {
   }
 
   // A diffuse base of albedo Kd (1 - Ks) under a reflection that is Ks at normal incidence and 1 at grazing angles
-  // [A00]. No clear coat reflects much more than glass does without losing the base's light inside: the rest of Ks is a
-  // mirror on a share of the surface. Both together have Schlick's reflectance: s + (1 - s) (g + (1 - g) (1 - cos)^5)
-  // is Ks + (1 - Ks) (1 - cos)^5 for the share s = (Ks - g) / (1 - g), with g that of glass.
+  // [A00]. A clear coat that reflects much more than glass would trap the base's light. Therefore the coat is glass,
+  // and the rest of Ks is a mirror on a fraction of the surface. Both together have Schlick's reflectance: s + (1 - s)
+  // (g + (1 - g) (1 - cos)^5) equals Ks + (1 - Ks) (1 - cos)^5 for the fraction s = (Ks - g) / (1 - g), with g that of
+  // glass.
   Upgraded substrate() {
     Parameter kd = take("Kd", 0.5f), ks = take("Ks", 0.5f);
     Parameters parameters = roughness({"uroughness", "vroughness"}, 0.1f);
@@ -161,7 +164,7 @@ class MaterialUpgrade {
         });
   }
 
-  // Reflection and transmission, both of them diffuse (Kd) and glossy (Ks).
+  // Reflection and transmission, both diffuse (Kd) and glossy (Ks).
   Upgraded translucent() {
     Parameter kd = take("Kd", 0.25f);
     const Factor ks = weight("Ks", 0.25f);
@@ -180,7 +183,7 @@ class MaterialUpgrade {
         [&] { return leaf("dielectric", std::move(rough)); });
   }
 
-  // Metal, glass, or a glossy surface, thin ones of which let light through [B15].
+  // Metal, glass, or a glossy surface, which transmits light if it is thin [B15].
   Upgraded disney() {
     const Parameter color = take("color", 0.5f);
     const Factor metallic = old_.take_factor("metallic").value_or(Factor{0});
@@ -214,7 +217,7 @@ class MaterialUpgrade {
     return leaf("subsurface", std::move(parameters));
   }
 
-  // The factor is that of the mean free path. In pbrt-v4 it is that of the coefficients.
+  // pbrt-v3's factor scales the mean free path, pbrt-v4's the coefficients.
   Upgraded kd_subsurface() {
     drop_tint();
     Parameters parameters = roughness({"uroughness", "vroughness"}, 0);
@@ -230,7 +233,7 @@ class MaterialUpgrade {
     return {"hair", std::move(parameters)};
   }
 
-  // "amount" is the share of the first material. In pbrt-v4 it is that of the second.
+  // "amount" is the weight of the first material; in pbrt-v4, that of the second.
   Upgraded mix() {
     const Factor amount = weight("amount", 0.5f);
     const auto first = old_.take_string("namedmaterial1"), second = old_.take_string("namedmaterial2");
@@ -256,7 +259,7 @@ class MaterialUpgrade {
 
   struct Gloss {
     float eta;
-    float alpha;  ///< about the width of the highlights
+    float alpha;  ///< approximate width of the highlights
     Parameters roughness;
   };
 
@@ -278,7 +281,7 @@ class MaterialUpgrade {
   }
   float mean(const Parameter& p) { return output_.grey(p, old_.entity()).value; }
 
-  // "eta" or "index". A texture is not known to pbrt-v4.
+  // "eta" or "index". pbrt-v4 does not accept a texture for it.
   float index() {
     Factor eta{1.5f};
     for (const char* name : {"index", "eta"}) eta = old_.take_factor(name).value_or(eta);
@@ -287,8 +290,8 @@ class MaterialUpgrade {
     return 1.5f;
   }
 
-  // Of these names, the first one is that of both directions if there are one or three. Numbers become GGX widths;
-  // textures cannot.
+  // Parameter names for both directions, or one for each: with one or three names, the first is that for both. Numbers
+  // become GGX widths; textures cannot be converted.
   Parameters roughness(const std::vector<const char*>& names, float otherwise) {
     const bool is_remapped = old_.take_bool("remaproughness").value_or(true);
     Factor both{otherwise};
@@ -301,8 +304,7 @@ class MaterialUpgrade {
     for (Factor& f : uv)
       if (is_remapped && f.texture.empty() && !is_smooth) f.value = width_of(f.value);
     if (has_texture && is_remapped)
-      output_.note("the width of highlights by textures of roughness is the root of the roughness, as in pbrt-v4",
-                   place_);
+      output_.note("for textured roughness, GGX alpha is the square root of the roughness, as in pbrt-v4", place_);
     if (has_texture && is_remapped)
       for (Factor& f : uv) f.value *= f.value;
     return widths(uv[0], uv[1], has_texture && is_remapped);
@@ -327,7 +329,7 @@ class MaterialUpgrade {
     return {std::max(eta, 1.0f), std::min(alpha, 1.0f), std::move(roughness)};
   }
 
-  // Squared, and stretched by `anisotropic` [B15].
+  // The square of the roughness, stretched by `anisotropic` [B15].
   Parameters disney_roughness() {
     const Factor rough = old_.take_factor("roughness").value_or(Factor{0.5f});
     const float anisotropic = old_.take_factor("anisotropic").value_or(Factor{0}).value;
@@ -339,7 +341,7 @@ class MaterialUpgrade {
   void drop_tint() {
     for (const char* name : {"Kr", "Kt"})
       if (const auto given = old_.take(name); given && constant_colour(*given) != Rgb{1, 1, 1})
-        output_.note(in_quotes(name) + " of " + old_.entity() + " is left out: it is clear", given->place);
+        output_.note(in_quotes(name) + " of " + old_.entity() + " is left out: the material is clear", given->place);
   }
 
   void note_disney() {
@@ -354,7 +356,7 @@ class MaterialUpgrade {
     }
   }
 
-  // A material with its relief. Mixes have that of their parts.
+  // A material with its bump map. Mixes have those of their parts.
   Upgraded leaf(std::string kind, Parameters parameters) {
     if (bump_) parameters.push_back(renamed(*bump_, "displacement"));
     return {std::move(kind), std::move(parameters)};
@@ -362,7 +364,7 @@ class MaterialUpgrade {
 
   Upgraded diffuse(const Parameter& kd) { return leaf("diffuse", {reflectance("reflectance", kd)}); }
 
-  // At most 1.
+  // Clamped to 1.
   static Parameter reflectance(std::string name, Parameter given) {
     if (const auto c = constant_colour(given))
       return rgb_parameter(std::move(name), {std::min(c->r, 1.0f), std::min(c->g, 1.0f), std::min(c->b, 1.0f)},
@@ -370,7 +372,7 @@ class MaterialUpgrade {
     return renamed(std::move(given), std::move(name));
   }
 
-  // A diffuse reflection of albedo kd and a glossy one, which the interface of the share ks of the surface has.
+  // A diffuse reflection of albedo kd and a glossy one from an interface on the fraction ks of the surface.
   Upgraded glossy(const Parameter& kd, const Factor& ks, const Gloss& gloss) {
     if (ks.is(0)) return diffuse(kd);
     const Shares shares{ks.texture.empty() ? ks.value : middle_grey, Coat(gloss.eta, gloss.alpha)};
@@ -384,14 +386,14 @@ class MaterialUpgrade {
         ks, [&] { return leaf("diffuse", {part(&Shares::bare)}); }, [&] { return coated(part(&Shares::base), gloss); });
   }
 
-  // The same with an interface all over the surface. A rough one loses so much light that a bright base cannot be
-  // bright enough: then it covers a share only, and reflects the more at normal incidence.
+  // As `glossy`, with an interface on the whole surface. A rough interface loses so much light that a bright base
+  // cannot be bright enough: then it covers only a fraction, and reflects more at normal incidence.
   Upgraded coated_all_over(const Parameter& kd, Gloss gloss) {
     const auto c = constant_colour(kd);
     const float most = std::min(c ? std::max({c->r, c->g, c->b}) : middle_grey, 0.95f);
     const float at_normal = normal_reflectance(gloss.eta);
     float share = 1;
-    constexpr int iterations = 10;  // the share determines the index, and this the share
+    constexpr int iterations = 10;  // the fraction determines the index, and vice versa
     for (int i = 0; i < iterations; ++i) {
       const float reached = Coat(gloss.eta, gloss.alpha).albedo(1);
       if (share == 1 && most <= reached) break;
@@ -401,7 +403,7 @@ class MaterialUpgrade {
     return glossy(kd, {share}, gloss);
   }
 
-  // A coat without an absorbing layer below the interface, and with as many reflections in it as count.
+  // A coat without an absorbing layer below the interface, with as many internal reflections as matter.
   Upgraded coated(Parameter base, const Gloss& gloss) {
     constexpr int reflections = 30;
     Parameters parameters = gloss.roughness;
@@ -413,7 +415,7 @@ class MaterialUpgrade {
   }
   Upgraded interface_alone(const Gloss& gloss) { return coated(rgb("reflectance", 0), gloss); }
 
-  // A thin sheet: half of `through` is the share of the diffuse light that goes through it.
+  // A thin sheet; half of `through` is the fraction of diffuse light that it transmits.
   Upgraded sheet(const Parameter& color, const Factor& through) {
     const float share = (through.texture.empty() ? through.value : middle_grey) / 2;
     if (!through.texture.empty())
@@ -422,7 +424,7 @@ class MaterialUpgrade {
                                         renamed(output_.scaled(color, share), "transmittance")});
   }
 
-  // Of two spectra, at least one of which is a colour: otherwise the mean of the second counts.
+  // The product of two spectra, at least one of which should be a colour: otherwise the second is replaced by its mean.
   Parameter times(const Parameter& a, const Parameter& b) {
     const auto x = constant_colour(a), y = constant_colour(b);
     if (x && y) return rgb_parameter(a.name, {x->r * y->r, x->g * y->g, x->b * y->b}, a.place);

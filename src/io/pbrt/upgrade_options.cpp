@@ -44,13 +44,13 @@ Upgraded upgrade_camera(const std::string& kind, OldParameters old, UpgradeOutpu
   }
   if (kind == "realistic") {
     old.take("simpleweighting");
-    output.note("pixels of the camera \"realistic\" hold the irradiance of the film, as in pbrt-v4: another brightness",
+    output.note("pixels of the camera \"realistic\" hold the film's irradiance, as in pbrt-v4: the brightness differs",
                 old.place());
   }
   return with_rest(kind, std::move(parameters), old);
 }
 
-// The time that the shutter is open does not change the brightness in pbrt-v3.
+// In pbrt-v3, the exposure time does not affect the brightness.
 Upgraded upgrade_film(const std::string& kind, OldParameters old, float exposure_time, UpgradeOutput& output) {
   if (kind != "image") throw output.context().unknown("film", "Film", kind, old.place());
   Parameters parameters;
@@ -87,19 +87,19 @@ Upgraded upgrade_sampler(const std::string& kind, OldParameters old) {
 
 namespace {
 
-// Of pbrt-v2. Lanthorn's method of the same name has its parameters, by other names.
+// A pbrt-v2 integrator. Lanthorn's method of the same name has its parameters under other names.
 Upgraded upgrade_photon_map(const std::string& kind, OldParameters old, UpgradeOutput& output) {
   constexpr std::array<Renamed, 4> names = {{{"causticphotons", "caustic-photons"},
                                              {"finalgathersamples", "gather"},
                                              {"indirectphotons", "photonsperiteration"},
                                              {"maxdist", "max-radius"}}};
-  constexpr int most_nearest = 256;  // that photonmap takes
+  constexpr int most_nearest = 256;  // limit of `photonmap`
   Parameters parameters;
   for (const auto& [v2, ours] : names)
     if (auto given = old.take(v2)) parameters.push_back(renamed(std::move(*given), std::string(ours)));
   if (const auto nearest = old.take_integer("nused"))
     parameters.push_back(integer_parameter("nearest", std::min(*nearest, most_nearest), old.place()));
-  // Of the eye's path to the first surface that is not a mirror, and of a photon.
+  // Limits for the eye path up to the first surface that is not a mirror, and for photon paths.
   const auto eye = old.take_integer("maxspeculardepth"), photon = old.take_integer("maxphotondepth");
   constexpr int otherwise = 5, most = 1 << 20;
   if (eye || photon)
@@ -107,8 +107,8 @@ Upgraded upgrade_photon_map(const std::string& kind, OldParameters old, UpgradeO
         "maxdepth", std::min(eye.value_or(otherwise), most) + std::min(photon.value_or(otherwise), most), old.place()));
   old.take("gatherangle");
   const bool gathers = old.take_bool("finalgather").value_or(true);
-  output.note("the integrator " + in_quotes(kind) + " is of pbrt-v2: Lanthorn's photonmap stands for it" +
-                  (gathers ? "" : ", which has a final gathering though \"finalgather\" is false"),
+  output.note("the integrator " + in_quotes(kind) + " is of pbrt-v2: Lanthorn's photonmap replaces it" +
+                  (gathers ? "" : ", which uses final gathering although \"finalgather\" is false"),
               old.place());
   return with_rest("photonmap", std::move(parameters), old);
 }
@@ -126,8 +126,9 @@ UpgradedIntegrator upgrade_integrator(const std::string& kind, OldParameters old
   if (kind == "photonmap" || kind == "exphotonmap") return {upgrade_photon_map(kind, std::move(old), output), passes};
   if (kind != "whitted" && kind != "directlighting") return {with_rest(kind, {}, old), passes};
   old.take("strategy");
-  output.note("the integrator " + in_quotes(kind) + " is replaced by \"path\", which adds light of all other paths",
-              old.place());
+  output.note(
+      "the integrator " + in_quotes(kind) + " is replaced by \"path\", which also includes all other light paths",
+      old.place());
   return {with_rest("path", {}, old), passes};
 }
 
@@ -136,7 +137,7 @@ Parameters upgrade_medium(OldParameters old) {
   const std::string kind = old.take_string("type").value_or("");
   const bool is_grid = kind == "heterogeneous";
   Parameters parameters{string_parameter("type", is_grid ? "uniformgrid" : kind, place)};
-  if (is_grid && !old.has("preset")) {  // milk, as in a homogeneous medium
+  if (is_grid && !old.has("preset")) {  // default milk, as for a homogeneous medium
     if (!old.has("sigma_a")) parameters.push_back(rgb_parameter("sigma_a", {0.0011f, 0.0024f, 0.014f}, place));
     if (!old.has("sigma_s")) parameters.push_back(rgb_parameter("sigma_s", {2.55f, 3.21f, 3.77f}, place));
   }
@@ -145,7 +146,7 @@ Parameters upgrade_medium(OldParameters old) {
 
 namespace {
 
-// Texture coordinates as a list of "float" or "point2", by two names.
+// Texture coordinates as a list of "float" or "point2", under either of two names.
 Parameters texture_coordinates(OldParameters& old) {
   std::optional<Parameter> uv;
   for (const char* name : {"st", "uv"})
@@ -173,7 +174,7 @@ Upgraded triangle_mesh(std::vector<float> points, std::vector<float> normals, st
   return with_rest("trianglemesh", std::move(parameters), old);
 }
 
-// The surface that a curve sweeps when it turns around the z axis. `curve`: its points at v in [0,1].
+// The surface of revolution of a curve around the z axis. `curve`: its points at v in [0,1].
 template <class Curve>
 Upgraded swept(const Curve& curve, OldParameters& old) {
   constexpr int around = 128, along = 32;
@@ -181,8 +182,8 @@ Upgraded swept(const Curve& curve, OldParameters& old) {
   std::vector<float> points, normals, uvs;
   std::vector<std::int32_t> triangles;
   for (int j = 0; j <= along; ++j) {
-    const float v = sqr(static_cast<float>(j) / along);  // closer at v = 0, the tip of a paraboloid
-    constexpr float inside = 1e-3f;                      // a tip has the normals of its neighbourhood
+    const float v = sqr(static_cast<float>(j) / along);  // denser towards v = 0, the tip of a paraboloid
+    constexpr float inside = 1e-3f;                      // a tip takes its normal from slightly inside
     const float w = std::clamp(v, inside, 1 - inside);
     const Vec3 at = curve(v), near = curve(w);
     const Vec3 normal = cross(Vec3(-near.y, near.x, 0), curve(w + inside) - curve(w - inside));
@@ -268,12 +269,11 @@ std::optional<Upgraded> upgrade_shape(const std::string& kind, OldParameters old
     output.note("shapes of kind \"nurbs\", which pbrt-v4 does not have, are left out", old.place());
     return {};
   }
-  if (old.take("shadowalpha"))
-    output.note("\"shadowalpha\", a transparency for shadows alone, is ignored", old.place());
+  if (old.take("shadowalpha")) output.note("\"shadowalpha\", a transparency for shadows only, is ignored", old.place());
   old.take("discarddegenerateUVs");
   if (kind == "heightfield") return height_field(old);
   if (auto mesh = quadric(kind, old)) {
-    output.note("shapes of kind " + in_quotes(kind) + ", which pbrt-v4 does not have, are made of triangles",
+    output.note("shapes of kind " + in_quotes(kind) + ", which pbrt-v4 does not have, are converted to triangles",
                 old.place());
     return mesh;
   }

@@ -38,7 +38,7 @@ void UpgradeOutput::add_texture(const std::string& name, bool is_spectrum, const
 }
 
 Parameter UpgradeOutput::scaled(Parameter spectrum, float factor) {
-  static_cast<void>(constant_colour(spectrum));  // throws for what is no spectrum
+  static_cast<void>(constant_colour(spectrum));  // throws unless it is a spectrum
   if (factor == 1) return spectrum;
   if (auto* numbers = std::get_if<std::vector<float>>(&spectrum.values)) {
     const bool is_sampled = spectrum.type == ParameterType::spectrum;
@@ -66,7 +66,7 @@ Factor UpgradeOutput::grey(const Parameter& spectrum, const std::string& entity)
     return {0.5f};
   }
   if (colour->r != colour->g || colour->g != colour->b)
-    note(in_quotes(spectrum.name) + " of " + entity + " has a colour: its mean counts", spectrum.place);
+    note(in_quotes(spectrum.name) + " of " + entity + " is coloured: its mean is used", spectrum.place);
   return {mean(*colour)};
 }
 
@@ -75,9 +75,9 @@ std::string UpgradeOutput::grey_texture(const std::string& name, Place place, in
   constexpr int deepest = 100;
   if (const auto known = grey_textures_.find(name); known != grey_textures_.end()) return known->second;
   const auto source = spectrum_textures_.find(name);
-  if (source == spectrum_textures_.end()) return name;  // not defined: reported where it is used
+  if (source == spectrum_textures_.end()) return name;  // undefined: reported where it is used
   if (depth > deepest)
-    throw Error(place.location(), "textures are nested more than " + std::to_string(deepest) + " deep");
+    throw Error(place.location(), "textures are nested more than " + std::to_string(deepest) + " levels deep");
   Texture texture = source->second;
   if (texture.kind == "marble") {
     note("texture \"marble\" as a number is not supported: it is 0.5", place);

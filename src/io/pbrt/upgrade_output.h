@@ -16,8 +16,8 @@
 
 namespace lanthorn::pbrt {
 
-/// Where the directives of pbrt-v4 go that a pbrt-v3 file is turned into, and what their makers share: new names,
-/// arithmetic with textures, and the list of what is only approximated.
+/// Receives the pbrt-v4 directives made from a pbrt-v3 file, and provides what their makers share: new names,
+/// arithmetic with textures, and the list of approximations.
 class UpgradeOutput {
  public:
   UpgradeOutput(Context& context, const DirectiveSink& sink) : context_(context), sink_(sink) {}
@@ -27,22 +27,23 @@ class UpgradeOutput {
     emit({name, {}, std::move(strings), std::move(parameters), place});
   }
 
-  /// What pbrt-v4 or Lanthorn does not do as pbrt-v3 does. Each message becomes one warning, with its first place and
+  /// Notes a difference of pbrt-v4 or Lanthorn from pbrt-v3. Each message becomes one warning, with its first place and
   /// the number of its places.
   void note(const std::string& message, Place place);
-  /// Adds the warnings to the scene's.
+  /// Adds the warnings to those of the scene.
   void finish();
 
-  /// `wanted`, or that with a number, and never the same twice for a `space` of names.
+  /// `wanted`, or `wanted` with a number appended; never returns the same name twice within a `space` of names.
   std::string fresh_name(char space, const std::string& wanted);
 
-  /// Emits a texture of pbrt-v4 under a name that no other has.
+  /// Emits a pbrt-v4 texture under a unique name.
   void add_texture(const std::string& name, bool is_spectrum, const std::string& kind, Parameters parameters,
                    Place place);
-  /// A spectrum multiplied by a number: of colours and sampled spectra the values, otherwise a new texture.
+  /// A spectrum multiplied by a number: scales the values of colours and sampled spectra, and makes a new texture
+  /// otherwise.
   Parameter scaled(Parameter spectrum, float factor);
   /// The mean of red, green and blue of a spectrum: a number, or a float texture of the same kind as the spectrum
-  /// texture. A note if a colour is lost.
+  /// texture. Notes if a colour is lost.
   Factor grey(const Parameter& spectrum, const std::string& entity);
   /// The product of two numbers or float textures.
   Factor product(const Factor& a, const Factor& b, Place place);
@@ -70,7 +71,7 @@ class UpgradeOutput {
   const DirectiveSink& sink_;
   std::vector<Note> notes_;
   std::unordered_map<std::string, std::size_t> note_of_message_;
-  std::map<std::pair<char, std::string>, int> names_;  ///< and the number that the next of this name gets
+  std::map<std::pair<char, std::string>, int> names_;  ///< with the number that the next duplicate of this name gets
   std::unordered_map<std::string, Texture> spectrum_textures_;
   std::map<std::pair<std::string, float>, std::string> scaled_textures_;
   std::unordered_map<std::string, std::string> grey_textures_;

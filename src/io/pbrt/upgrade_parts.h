@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The translations of pbrt-v3's directives, by what they describe. Names of textures are pbrt-v4's already. All throw
-// Error for kinds that pbrt-v3 does not know.
+// Translations of pbrt-v3's directives, by what they describe. Texture names are already those of the output. All throw
+// Error for kinds that pbrt-v3 does not have.
 #pragma once
 
 #include <string>
@@ -26,19 +26,19 @@ UpgradedMaterial upgrade_material(const std::string& kind, OldParameters old, co
                                   UpgradeOutput& output);
 /// True if a material of any kind has a parameter of this name, which a shape may override.
 bool is_material_parameter(std::string_view name);
-/// True if pbrt-v3 takes a texture of this parameter from the spectrum textures. `owner`: kind of the material, empty
-/// for textures.
+/// True if pbrt-v3 looks up a texture for this parameter among the spectrum textures. `owner`: kind of the material;
+/// empty for textures.
 bool is_spectrum_parameter(std::string_view name, std::string_view owner);
 
 /// Emits the light.
 void upgrade_light(const std::string& kind, OldParameters old, UpgradeOutput& output);
 Upgraded upgrade_area_light(const std::string& kind, OldParameters old, UpgradeOutput& output);
 
-/// Emits the texture, and others that it needs.
+/// Emits the texture, and further ones that it needs.
 void upgrade_texture(const std::string& name, bool is_spectrum, const std::string& kind, OldParameters old,
                      UpgradeOutput& output);
 
-/// nullopt if the shape is left out.
+/// nullopt if the shape is omitted.
 std::optional<Upgraded> upgrade_shape(const std::string& kind, OldParameters old, UpgradeOutput& output);
 
 /// The directives before WorldBegin.
@@ -46,13 +46,13 @@ Upgraded upgrade_camera(const std::string& kind, OldParameters old, UpgradeOutpu
 Upgraded upgrade_film(const std::string& kind, OldParameters old, float exposure_time, UpgradeOutput& output);
 Upgraded upgrade_filter(const std::string& kind, OldParameters old);
 Upgraded upgrade_sampler(const std::string& kind, OldParameters old);
-/// Takes the number of passes out of the parameters, which is the sampler's in pbrt-v4.
+/// Removes the number of passes, which belongs to the sampler in pbrt-v4, from the parameters.
 struct UpgradedIntegrator {
   Upgraded integrator;
   std::optional<int> passes;
 };
 UpgradedIntegrator upgrade_integrator(const std::string& kind, OldParameters old, UpgradeOutput& output);
-/// Of `MakeNamedMedium`.
+/// Parameters for `MakeNamedMedium`.
 Parameters upgrade_medium(OldParameters old);
 
 }  // namespace lanthorn::pbrt

@@ -58,7 +58,7 @@ void scale(OldTexture from) {
   const auto a = constant_colour(first), b = constant_colour(second);
   if (a && b) return from.add("constant", {rgb_parameter("value", {a->r * b->r, a->g * b->g, a->b * b->b}, place)});
   if (!b)
-    from.output.note("the product of two textures: of one of them, the mean of red, green and blue counts", place);
+    from.output.note("the product of two textures: one of them is replaced by its mean of red, green and blue", place);
   const Factor factor = from.output.grey(second, "a texture \"scale\"");
   from.add("scale", {renamed(std::move(first), "tex"), factor_parameter("scale", factor, place)});
 }
@@ -68,8 +68,7 @@ void checkerboard(OldTexture from) {
   from.add("checkerboard", {});
 }
 
-// (u, v, 0) as a colour.
-// The fractional parts of the coordinates as red and green. A bilerp has no periods: the first one is moved to [0,1].
+// The fractional parts of (u, v) as red and green. A bilerp is not periodic: only the first period, [0,1], is kept.
 void uv(OldTexture from) {
   const Place place = from.old.place();
   Parameters parameters = {rgb_parameter("v00", {0, 0, 0}, place), rgb_parameter("v01", {0, 1, 0}, place),
@@ -85,7 +84,7 @@ void uv(OldTexture from) {
   from.add("bilerp", std::move(parameters));
 }
 
-// A texture that pbrt-v4 has for numbers only: black and white mixed by it.
+// A texture that pbrt-v4 provides only as a float texture: mixes black and white by it.
 void noise(OldTexture from, const std::string& kind) {
   if (!from.is_spectrum) return from.add(kind, {});
   const Place place = from.old.place();

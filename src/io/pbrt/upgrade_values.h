@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Parameters of pbrt-v3's directives while they are turned into those of pbrt-v4.
+// Parameters of pbrt-v3's directives during their translation to pbrt-v4.
 #pragma once
 
 #include <array>
@@ -20,23 +20,23 @@ Parameter rgb_parameter(std::string name, const Rgb& value, Place place);
 Parameter texture_parameter(std::string name, std::string texture, Place place);
 Parameter renamed(Parameter parameter, std::string name);
 
-/// The colour of an "rgb" parameter, or of a "float" one; nullopt for textures and tabulated spectra. Throws Error if
-/// it is anything else, or has another number of values.
+/// The colour of an "rgb" or "float" parameter; nullopt for textures and tabulated spectra. Throws Error for any other
+/// type or a wrong number of values.
 std::optional<Rgb> constant_colour(const Parameter& parameter);
-/// The name of the texture; empty if the parameter is none.
+/// The name of the texture; empty if the parameter is not a texture.
 std::string texture_of(const Parameter& parameter);
 
 /// A number, or a float texture.
 struct Factor {
   float value = 1;
-  std::string texture = {};  ///< empty: the number
+  std::string texture = {};  ///< empty: use `value`
 
   bool is(float number) const { return texture.empty() && value == number; }
 };
 Parameter factor_parameter(std::string name, const Factor& factor, Place place);
 
-/// The parameters of a directive of pbrt-v3, from which its translation takes one after the other. Those that it leaves
-/// are not known to it.
+/// The parameters of a pbrt-v3 directive, from which its translation takes one after the other. Parameters that are
+/// left over are unknown to it.
 class OldParameters {
  public:
   OldParameters(std::string entity, Place place, Parameters parameters);
@@ -47,7 +47,7 @@ class OldParameters {
   /// The last parameter of this name.
   const Parameter* find(std::string_view name) const;
 
-  /// Take the last parameter of this name; others of the name are lost, as in pbrt-v3. Throw Error for a wrong type or
+  /// Take the last parameter of this name; earlier ones are discarded, as in pbrt-v3. Throw Error for a wrong type or
   /// number of values.
   std::optional<Parameter> take(std::string_view name);
   std::optional<float> take_float(std::string_view name);
@@ -55,7 +55,7 @@ class OldParameters {
   std::optional<bool> take_bool(std::string_view name);
   std::optional<std::string> take_string(std::string_view name);
   std::optional<Factor> take_factor(std::string_view name);
-  /// What has not been taken.
+  /// The parameters that have not been taken.
   Parameters rest() { return std::move(parameters_); }
 
  private:

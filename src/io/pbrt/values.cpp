@@ -33,7 +33,7 @@ SpectrumValue sampled(const ParameterList& list, const Parameter& p, const std::
     throw list.error(p.name, count_error("pairs of a wavelength and a value", pairs.size()) + " numbers");
   description::SampledSpectrum samples;
   for (std::size_t i = 0; i < pairs.size(); i += 2) {
-    if (i > 0 && pairs[i] <= samples.nm.back()) throw list.error(p.name, "needs its wavelengths in increasing order");
+    if (i > 0 && pairs[i] <= samples.nm.back()) throw list.error(p.name, "needs wavelengths in increasing order");
     samples.nm.push_back(pairs[i]);
     samples.values.push_back(pairs[i + 1]);
   }
@@ -53,7 +53,7 @@ SpectrumValue spectrum_file(const ParameterList& list, const Parameter& p, const
     throw Error(error);
   }
   if (bytes.size() > context.spectrum_bytes_left)
-    throw list.error(p.name, "names a spectrum's file: these are read anew each time, and are too large together");
+    throw list.error(p.name, "names a spectrum file, but all uses of spectrum files together are too large");
   context.spectrum_bytes_left -= bytes.size();
   const std::string file = path.string();
   Tokenizer tokens(bytes, &file);
@@ -122,7 +122,7 @@ bool names_one_of(const std::set<Index>& lost, const std::unordered_map<std::str
   return found != textures.end() && lost.count(found->second) > 0;
 }
 
-// In place of a texture that is lost: grey surfaces, no emission, else the parameter's default.
+// Replaces a skipped texture: grey surfaces, no emission, else the parameter's default.
 std::optional<description::SpectrumParameter> neutral_spectrum(SpectrumRole role) {
   if (role == SpectrumRole::unbounded) return {};
   return description::SpectrumParameter{role == SpectrumRole::albedo ? 0.5f : 0.0f, {}};

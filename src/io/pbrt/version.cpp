@@ -68,17 +68,17 @@ constexpr std::array<Kind, 45> kinds = {{{"AreaLightSource", "area", true},
                                          {"Shape", "heightfield", true}}};
 
 constexpr std::array<std::string_view, 4> directives_of_v4 = {"Attribute", "ColorSpace", "Import", "Option"};
-// Beginnings of declarations of parameters.
+// Beginnings of parameter declarations.
 constexpr std::array<std::string_view, 8> declarations_of_v3 = {
     "color ", "xyz ", "float xwidth", "float ywidth", "string mapname", "rgb Kd", "rgb Ks", "texture Kd"};
 
-// The included files. Each is searched once, however often it is included.
+// Included files that have been searched; each is searched once, however often it is included.
 struct IncludedFiles {
   const FileReader& read;
   std::set<std::filesystem::path> searched{};
 };
 
-// Goes through the tokens of a file, and knows of each which part of which directive it is.
+// Scans the tokens of a file and tracks which part of which directive each one is.
 class Search {
  public:
   Search(std::string_view text, const std::string& file, IncludedFiles& included, int depth)
@@ -148,7 +148,7 @@ class Search {
     }
   }
 
-  // The values of a parameter in brackets, of which only the kind of a material tells something: it is looked at.
+  // Skips a parameter's bracketed values, except that it inspects the kind of a material.
   void skip_list() {
     is_value_ = declaration_ == "string type";
     if (is_value_) return;

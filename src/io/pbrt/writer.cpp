@@ -39,7 +39,7 @@ std::string text_of(Number value) {
   return {buffer.data(), end};
 }
 
-// True if the strings of the parameter are names of files that are read.
+// True if the strings of the parameter name files that are read.
 bool names_files(const Directive& d, const Parameter& p) {
   constexpr std::array<std::string_view, 3> names = {"filename", "lensfile", "normalmap"};
   if (p.type == ParameterType::spectrum) return true;

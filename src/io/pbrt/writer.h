@@ -9,10 +9,10 @@
 
 namespace lanthorn::pbrt {
 
-/// Writes directives as the text of a pbrt-v4 file. Numbers are read back as the same numbers.
+/// Writes directives as the text of a pbrt-v4 file. Numbers round-trip exactly.
 class Writer {
  public:
-  /// Relative file names start in `folder`, those of the text will start in `target`. Both are canonical.
+  /// Input file names are relative to `folder`, output file names to `target`. Both are canonical.
   Writer(std::filesystem::path folder, std::filesystem::path target)
       : folder_(std::move(folder)), target_(std::move(target)) {}
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The public headers alone, as an embedding program uses them.
+// Uses only the public headers, as an embedding program does.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -104,7 +104,7 @@ TEST(Api, MeshesAreReadFromPlyFiles) {
   EXPECT_THROW(lanthorn::read_mesh(dir.path() / "b.ply"), lanthorn::Error);
 }
 
-// The view of the session stays: the film of 24 x 16 pixels, and not that of the new scene.
+// The session keeps its view: the film of 24 x 16 pixels, not that of the new scene.
 TEST(Api, AnotherSceneIsSeenThroughTheSameView) {
   Session session(load(box), small());
   session.render_pass();
@@ -126,7 +126,7 @@ TEST(Api, APictureThatDoesNotFitIntoMemoryIsRefused) {
   EXPECT_THROW(Session(load(box), options), lanthorn::Error);
 }
 
-// Stops at some time into a pass: the picture is that of the passes before.
+// Stops at some time during a pass: the picture is that of the passes before.
 TEST(Api, AStoppedPassLeavesNoTrace) {
   const SharedScene scene = load(box);
   for (const char* const integrator : {"probppm", "sppm", "ppm", "vcm", "bpm", "bdpt", "path", "light", "mlt",
@@ -149,7 +149,7 @@ TEST(Api, AStoppedPassLeavesNoTrace) {
   }
 }
 
-// Embree can limit the threads of the whole program.
+// Embree can limit the threads of the whole process.
 TEST(Api, ScenesLeaveTheNumberOfThreads) {
   const unsigned before = lanthorn::thread_count();
   const SharedScene scene = load(box);
@@ -211,7 +211,7 @@ TEST(Api, AnEditedSceneIsRenderedAnew) {
   EXPECT_EQ(session.picture().pixels, pixels);
 }
 
-// A scene that a program describes, without any file.
+// A scene built by a program, without any file.
 TEST(Api, SceneDescriptionsArePlainData) {
   lanthorn::SceneDescription scene;
   scene.materials.emplace_back();  // diffuse, grey
@@ -302,7 +302,7 @@ TEST(Api, RaysInAFurnace) {
   EXPECT_THROW(lanthorn::radiance_along(*scene, rays, {.samples = 0}), lanthorn::Error);
 }
 
-// A small view of a large plane: the guide of the method sends more photons there.
+// A small view of a large plane: the method's guide sends more photons there.
 TEST(Api, PhotonsFollowTheGuideOfTheMethod) {
   const lanthorn::test::TemporaryDir dir;
   const SharedScene scene =

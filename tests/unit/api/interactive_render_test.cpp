@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The interactive render by the public headers alone, without a window or a server.
+// The interactive render with only the public headers, without a window or a server.
 #include "lanthorn/interactive_render.h"
 
 #include <gtest/gtest.h>
@@ -62,7 +62,7 @@ std::vector<float> pixels_of(const SharedScene& scene, const ViewDescription& vi
   return picture_of(scene, view, options).pixels;
 }
 
-// The first snapshot of which `is_right` holds. Throws Error if there is none within a minute.
+// The first snapshot for which `is_right` returns true. Throws Error if there is none within a minute.
 template <class Condition>
 InteractiveSnapshot await(const InteractiveRender& render, Condition is_right) {
   const Clock::time_point deadline = Clock::now() + 60s;
@@ -135,7 +135,7 @@ TEST(InteractiveRender, EachPartCanBeEdited) {
   EXPECT_EQ(end.picture->image.pixels, pixels_of(darker(0.5f), view_of_angle(30), other));
 }
 
-// Its pilot takes longer than a coarse pass. Of the file's parameters vcm would take this one, but not its value.
+// Its pilot takes longer than a coarse pass. vcm has a parameter of this name, but rejects the file's value.
 TEST(InteractiveRender, CoarsePicturesOfAutoHaveNoPilot) {
   const SharedScene scene = build_scene(read_pbrt_string(
       "Integrator \"sppm\" \"string volume\" \"short-photon-beam\"\n" + test::camera + test::box, ".", "test scene"));
@@ -157,7 +157,7 @@ TEST(InteractiveRender, CoarsePicturesOfAutoHaveNoPilot) {
   EXPECT_EQ(end.picture->image.pixels, pixels_of(scene, description_of(*scene).view, options));
 }
 
-// The last picture takes milliseconds to make, in which the one before must not be called finished.
+// Making the last picture takes milliseconds, during which the previous one must not be called finished.
 TEST(InteractiveRender, FinishedPicturesHaveAllPasses) {
   RenderOptions options = small(2);
   options.resolution = {300, 200};
@@ -199,7 +199,7 @@ TEST(InteractiveRender, TheLatestOfManyEditsWins) {
   EXPECT_EQ(end.picture->image.pixels, pixels_of(box(), view_of_angle(angle), small()));
 }
 
-// An edit that comes while the thread looks whether there is one.
+// An edit that arrives while the thread checks for edits.
 TEST(InteractiveRender, NoEditIsMissed) {
   InteractiveRender render(box(), view_of_angle(40), small(1), {.coarse_first = false});
   for (int i = 0; i < 60; ++i) {
@@ -238,7 +238,7 @@ TEST(InteractiveRender, AnErrorIsKeptAndThePictureStays) {
   EXPECT_EQ(now.status.revision, broken);
   EXPECT_EQ(now.status.problem, "no such room");
   EXPECT_EQ(now.picture, before);
-  render.edit({.view = view_of_angle(30)});  // the scene is as wrong as before
+  render.edit({.view = view_of_angle(30)});  // the scene is still invalid
   now = await(render, failed);
   EXPECT_EQ(now.status.revision, broken + 1);
   EXPECT_EQ(now.picture, before);
@@ -292,7 +292,7 @@ TEST(InteractiveRender, CoarsePicturesComeFirstAndAloneWhileHandsMove) {
   EXPECT_EQ(end.picture->image.width, 300);
 }
 
-// A pass takes a few milliseconds, and hands have .3 s to move on. The machine may be busy: a try may come too late.
+// A pass takes a few milliseconds, and the camera has .3 s to move on. On a busy machine, an attempt may be too late.
 TEST(InteractiveRender, FullPassesWaitForHands) {
   InteractiveRender render(box(), view_of_angle(40), small(1));
   bool has_looked = false;
@@ -323,7 +323,7 @@ TEST(InteractiveRender, PausesAndGoesOn) {
   InteractiveRender render(box(), view_of_angle(40), small(4'000'000'000));
   await(render, refining);
   render.pause(true);
-  std::this_thread::sleep_for(300ms);  // the end of the running pass
+  std::this_thread::sleep_for(300ms);  // the end of the current pass
   const InteractiveSnapshot resting = render.snapshot();
   EXPECT_EQ(resting.status.phase, paused);
   std::this_thread::sleep_for(100ms);
@@ -382,7 +382,7 @@ TEST(InteractiveRender, PreviewsOfPicturesWithoutNoiseKeepUpWithThePasses) {
             preview_without_noise(picture_of(box(), view_of_angle(40), small(first.denoised->passes))).pixels);
 }
 
-// Of passes that take longer than the interval between pictures.
+// For passes that take longer than the interval between pictures.
 TEST(InteractiveRender, EachPreviewHasHalfAsManyPassesMore) {
   RenderOptions options = small(4'000'000'000);
   options.resolution = {150, 100};

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Files are written whole or not at all, and what they replace keeps what belongs to its name.
+// Files are written whole or not at all; a replaced file keeps its permissions and links.
 #include "lanthorn/file.h"
 
 #include <fcntl.h>
@@ -67,7 +67,7 @@ TEST(WriteFile, LinksStayLinks) {
   const test::TemporaryDir dir;
   const fs::path link = dir.path() / "link", chain = dir.path() / "chain", target = dir.path() / "there" / "target";
   fs::create_directory(target.parent_path());
-  fs::create_symlink("there/target", link);  // to nothing yet
+  fs::create_symlink("there/target", link);  // its target does not exist yet
   fs::create_symlink("link", chain);
   for (const std::string text : {"first", "second"}) {
     write(chain, text);

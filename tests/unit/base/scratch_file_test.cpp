@@ -32,11 +32,11 @@ TEST(ScratchFile, HasNoNameAndGivesBackWhatWasWritten) {
 
 TEST(ScratchFile, NamesTheFolderWhenItCannotBeMadeOrWritten) {
   EXPECT_EQ(test::error_text([] { ScratchFile("/no/such/folder"); }),
-            "/no/such/folder: no temporary file can be made here: No such file or directory; set TMPDIR to another "
+            "/no/such/folder: cannot create a temporary file here: No such file or directory; set TMPDIR to another "
             "folder");
   const test::TemporaryDir folder;
   ScratchFile file(folder.path());
-  // Stands for a full disk.
+  // Simulates a full disk.
   rlimit before{};
   getrlimit(RLIMIT_FSIZE, &before);
   const rlimit small{1 << 16, before.rlim_max};

@@ -70,8 +70,8 @@ TEST(SceneCamera, ConnectionsFindTheRasterTheRayCameFrom) {
   }
 }
 
-// pdf * |d direction / d raster| is the density of raster positions, 1 / pixels; the orthographic camera without lens
-// has the same in positions.
+// pdf * |d direction / d raster| is the density of raster positions, 1 / pixels; for the orthographic camera without
+// lens the same holds for positions.
 TEST(SceneCamera, DensitiesAreTheInverseOfTheFilmsStretch) {
   for (const NamedCamera& c : cameras()) {
     SCOPED_TRACE(c.name);
@@ -169,7 +169,7 @@ TEST(SceneCamera, PointsOutOfViewAreNotConnected) {
   EXPECT_FALSE(camera.connect({0, 0, -1}, {0.5f, 0.5f}, 0));
   EXPECT_FALSE(camera.connect({0, 1.001f, 1}, {0.5f, 0.5f}, 0));
   EXPECT_TRUE(camera.connect({0, 0.999f, 1}, {0.5f, 0.5f}, 0));
-  // The filter sees a little beyond the border.
+  // The filter reaches slightly beyond the border.
   EXPECT_TRUE(Camera(description, width, height, {2, 2}).connect({0, 1.001f, 1}, {0.5f, 0.5f}, 0));
 }
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Lenses made of glass: where they focus, what they let through, and that both directions agree.
+// Glass lenses: their focus, their transmission, and agreement of both directions.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -23,7 +23,7 @@ using description::RealisticCamera;
 
 const std::string scenes = LANTHORN_SOURCE_DIR "/tests/scenes/";
 
-// Read by the reader, so that it is tested too.
+// Uses the reader, so that it is tested too.
 RealisticCamera double_gauss(float focus_distance, float diameter = 30, float diagonal = 60) {
   const SceneDescription scene =
       read_pbrt_string("Camera \"realistic\" \"string lensfile\" \"double-gauss.dat\" \"float focusdistance\" " +
@@ -34,7 +34,7 @@ RealisticCamera double_gauss(float focus_distance, float diameter = 30, float di
   return std::get<RealisticCamera>(scene.view.camera.node);
 }
 
-// A thin lens with a stop behind it.
+// A thin lens with an aperture stop behind it.
 RealisticCamera magnifier(float stop_diameter) {
   RealisticCamera camera;
   camera.elements = {{0.1f, 1e-3f, 1.5f, 0.05f}, {-0.1f, 2e-3f, 1, 0.05f}, {0, 0.1f, 0, stop_diameter}};
@@ -56,7 +56,7 @@ TEST(Lens, FocalLengthsAreTheLensmakers) {
   EXPECT_NEAR(LensSystem(double_gauss(5), 0.03, {}).focal_length(), 0.1, 0.001);
 }
 
-// Rays from the middle of the film near the axis meet again at the distance that the lens is focused on.
+// Rays from the middle of the film near the axis converge at the focus distance.
 TEST(Lens, FocusesWhereItIsTold) {
   for (const float distance : {0.6f, 2.0f, 30.0f}) {
     const LensSystem lens(double_gauss(distance), 0.03, {});
@@ -67,7 +67,7 @@ TEST(Lens, FocusesWhereItIsTold) {
   }
 }
 
-// All that reaches a film point comes from one small place of the plane in focus, and from wide ones of others.
+// All light on a film point comes from a small area of the plane in focus, and from large areas of other planes.
 TEST(Lens, ThePlaneInFocusIsSharp) {
   const Camera camera = camera_of(double_gauss(2), 60, 40);
   for (const Vec2& raster : {Vec2(30, 20), Vec2(20, 12), Vec2(40, 28)}) {
@@ -130,9 +130,9 @@ TEST(Lens, WaysAreReversible) {
   EXPECT_GT(passed, 500);
 }
 
-// The stop behind the lens is its exit pupil: the irradiance of a point of the film under radiance 1 is pi times the
-// form factor of a disk (Howell, configuration factor B-13), which falls off like cos^4. Mean of n samples, 5 standard
-// errors: false-alarm rate below 1e-5 for all points.
+// The stop behind the lens is its exit pupil. Under radiance 1, the irradiance of a point of the film is pi times the
+// form factor of a disk (Howell, configuration factor B-13), which falls off like cos^4. Means of n samples within 5
+// standard errors: false-alarm rate below 1e-5 for all points.
 TEST(Lens, ExposureFallsOffAsTheFormFactorOfThePupil) {
   constexpr int width = 60, height = 40;
   const RealisticCamera lens = magnifier(0.012f);
@@ -157,7 +157,7 @@ TEST(Lens, ExposureFallsOffAsTheFormFactorOfThePupil) {
   }
 }
 
-// Where the pupil's bounds are, nothing of the rear lens outside of them lets light through.
+// Nothing outside the pupil's bounds on the rear lens lets light through.
 TEST(Lens, PupilsHoldAllLight) {
   const LensSystem lens(double_gauss(1, 34.2f), 0.03, {});
   HashRng rng(4);
@@ -174,7 +174,7 @@ TEST(Lens, PupilsHoldAllLight) {
   EXPECT_GT(passed, 10000);
 }
 
-// The densities of the rays that leave the front integrate to the share of rays that the lens lets through.
+// The densities of the rays that leave the front integrate to the fraction of rays that the lens transmits.
 TEST(Lens, DensitiesIntegrateToWhatPasses) {
   const Camera camera = camera_of(magnifier(0.02f), 60, 40);
   const LensSystem lens(magnifier(0.02f), 0.03, {});
@@ -189,7 +189,7 @@ TEST(Lens, DensitiesIntegrateToWhatPasses) {
   for (int i = 0; i < samples; ++i) {
     const glm::dvec2 disk = radius * glm::dvec2(sample_concentric_disk(rng.next2()));
     const Vec3 direction = sample_uniform_cone(rng.next2(), cone);
-    // Areas are those across the axis: the point of the disk under the point of the surface along the ray.
+    // Areas are measured perpendicular to the axis: the point of the disk below the surface point along the ray.
     DVec3 at(disk, lens.front_point({0, 0}).position.z);
     const CameraPdf pdf = camera.pdf({Point(at - 1e-6 * DVec3(direction)), direction});
     const double value = static_cast<double>(pdf.position) * static_cast<double>(pdf.direction) * std::numbers::pi *
@@ -228,8 +228,8 @@ TEST(Lens, ErrorsNameTheirPlace) {
   EXPECT_EQ(error_of(glass, "\"float focusdistance\" 0.2").substr(0, 65),
             "t.pbrt:1:1: the lens cannot focus on a distance of 0.200000 m: it");
   EXPECT_EQ(error_of("-100 1 1.5 50\n100 100 1 50\n"),
-            "t.pbrt:1:1: the lens does not gather light: it has no focal length above 0");
-  EXPECT_EQ(error_of("100 1 1.5 50\n"), "t.pbrt:1:1: behind the last element of the lens there must be air");
+            "t.pbrt:1:1: the lens is not converging: its focal length is not positive");
+  EXPECT_EQ(error_of("100 1 1.5 50\n"), "t.pbrt:1:1: the medium behind the last element of the lens must be air");
   EXPECT_EQ(error_of(glass, "\"float focusdistance\" 0"),
             "t.pbrt:1:46: parameter \"focusdistance\" of Camera \"realistic\" must be above 0");
 }

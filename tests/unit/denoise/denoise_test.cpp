@@ -22,15 +22,15 @@ namespace {
 using Field = std::function<double(int x, int y)>;
 double none(int /*x*/, int /*y*/) { return 0; }
 
-// A layer of grey light: its truth, and the standard deviation of each half's noise. Pixels share noise within a square
-// of `radius`.
+// A layer of grey light: its true value, and the standard deviation of each half's noise. Pixels within `radius` share
+// noise.
 struct Layer {
   std::string name;
   Field truth, sigma = none;
   int radius = 0;
 };
 
-// Independent normal numbers, or such as are smoothed over squares, of variance 1.
+// Normal numbers of variance 1: independent, or smoothed over squares.
 std::vector<double> noise_field(int width, int height, int radius, std::mt19937& rng) {
   std::normal_distribution<double> normal;
   const int w = width + 2 * radius, side = 2 * radius + 1;
@@ -46,7 +46,7 @@ std::vector<double> noise_field(int width, int height, int radius, std::mt19937&
   return field;
 }
 
-// A picture of two halves, as `with_noise` makes them. The surface is white, but for its albedo.
+// A picture of two halves, as made by `with_noise`. The surface is white except for its albedo.
 struct Scene {
   int width, height;
   std::vector<Layer> layers;
@@ -147,7 +147,7 @@ TEST(Denoise, LayersAddUpToThePicture) {
   EXPECT_LT(mean_square(out, "denoised.media.", smooth), mean_square(out, "media.", smooth) / 10);
 }
 
-// No feature shows the edge of a caustic: its two sides may mix by a pixel at most.
+// No feature shows the edge of a caustic: its two sides may mix by at most a pixel.
 TEST(Denoise, KeepsTheEdgesOfCaustics) {
   const Scene scene{64, 64, {{"caustic", step, fifth}, {"direct", smooth, fifth}}};
   const Image out = denoise(picture_of(scene)).picture;
@@ -160,14 +160,14 @@ TEST(Denoise, KeepsTheEdgesOfCaustics) {
   EXPECT_GT(gain(scene, "caustic", step), 8);
 }
 
-// Texture is a feature: it is not smoothed with the noise.
+// Texture is kept: it is not smoothed together with the noise.
 TEST(Denoise, KeepsTexture) {
   const auto albedo = [](int x, int y) { return (x / 3 + y / 3) % 2 == 0 ? 0.9 : 0.2; };
   const auto light = [&](int x, int y) { return albedo(x, y) * smooth(x, y); };
   EXPECT_GT(gain({72, 72, {{"indirect", light, fifth}}, albedo}, "indirect", light), 10);
 }
 
-// Photons within a kernel are noise that its pixels share.
+// Photons within a kernel cause noise that pixels share.
 TEST(Denoise, RemovesNoiseThatNeighboursShare) {
   EXPECT_GT(gain({128, 128, {{"caustic", smooth, fifth, 3}}}, "caustic", smooth), 4);
 }
@@ -190,8 +190,8 @@ TEST(Denoise, RemovesASpikeOfOneHalf) {
   EXPECT_LT(around, 1.1 * static_cast<double>(spike) / 2);
 }
 
-// The sun on water: pixels a thousand times as bright as the picture, some of which each half has. Smoothed, each would
-// be a white spot.
+// Sun glints on water: pixels a thousand times as bright as the picture, some of them in each half. Smoothing would
+// turn each into a white spot.
 TEST(Denoise, LeavesGlintsWhereTheyAre) {
   Image noisy = picture_of({64, 64, {{"emission", smooth, fifth}}});
   const std::size_t first = *noisy.find_channel("emission.R"), noise = *noisy.find_channel("noise.emission.R");
@@ -248,7 +248,7 @@ TEST(Denoise, IsTheSameForAnyNumberOfThreads) {
   EXPECT_EQ(previews[0], previews[2]);
 }
 
-// Light of media is in other layers: it is not counted twice.
+// Media layers repeat light of other layers: it is not counted twice.
 TEST(Denoise, APreviewIsTheWholePictureWithLessNoise) {
   const auto light = [](int x, int y) { return smooth(x, y) + step(x, y); };
   const Image noisy =
@@ -260,7 +260,7 @@ TEST(Denoise, APreviewIsTheWholePictureWithLessNoise) {
   EXPECT_LT(mean_square(denoise(noisy).picture, "denoised.", light), after);
 }
 
-// What is right of a tile's border does not depend on what is far left of it.
+// Pixels right of a tile's border do not depend on those far left of it.
 TEST(Denoise, TilesHaveNoSeams) {
   const Scene scene{1100, 24, {{"direct", smooth, fifth}}};
   const Image noisy = picture_of(scene);
@@ -323,7 +323,7 @@ TEST(Denoise, RefusesPicturesWithoutHalves) {
   EXPECT_THROW(preview_without_noise(single), Error);
 }
 
-// Files from which another program has left out channels.
+// Files from which another program has removed channels.
 TEST(Denoise, RefusesPicturesOfWhichLightIsMissing) {
   const Image whole = picture_of({16, 8, {{"direct", smooth, fifth}, {"caustic", smooth, fifth}}});
   const auto without = [&](const std::string& prefix) {

@@ -30,7 +30,7 @@ double white(int /*x*/, int /*y*/) { return 1; }
 bool is_in_lamp(int x, int y) { return x >= 40 && x < 60 && y >= 20 && y < 30; }
 double lamp(int x, int y) { return is_in_lamp(x, y) ? 25 : 0.4; }
 
-// Pictures of a truth with noise whose standard deviation for one pass is `sigma`. `noise(rng)` makes a field of unit
+// Pictures of `truth` plus noise with a standard deviation of `sigma` per pass. `noise(rng)` makes a field of unit
 // variance.
 struct Picture {
   PictureHalves halves;
@@ -75,7 +75,7 @@ std::vector<double> independent(std::mt19937& rng) {
   for (double& value : field) value = normal(rng);
   return field;
 }
-// Equal in blocks of 8 x 8 pixels, as under a wide kernel.
+// Constant in blocks of 8 x 8 pixels, like the noise of a wide kernel.
 std::vector<double> in_blocks(std::mt19937& rng) {
   std::vector<double> field = independent(rng);
   for (int y = 0; y < height; ++y)
@@ -86,7 +86,7 @@ std::vector<double> in_blocks(std::mt19937& rng) {
   return field;
 }
 
-// Mean over pictures of the estimate over the truth, and how often the bound holds.
+// Ratio of estimated and true error, averaged over pictures, and how often the bound holds.
 struct Tried {
   double ratio = 0, kept = 0, margin = 0;
 };
@@ -113,7 +113,7 @@ TEST(ErrorEstimate, EvenNoiseIsMeasured) {
   EXPECT_LT(tried.margin, 1.03) << "many pixels make it certain";
 }
 
-// Edges of a lamp, whose pixels are mixed, have the largest variance, and no other pixel has it.
+// Only edges of a lamp, whose pixels mix both sides, have the largest variance.
 TEST(ErrorEstimate, NoiseOfEdgesStaysThere) {
   const Field sigma = [](int x, int y) {
     const bool is_edge = is_in_lamp(x, y) && !(is_in_lamp(x - 1, y) && is_in_lamp(x + 1, y) && is_in_lamp(x, y - 1) &&
@@ -124,7 +124,7 @@ TEST(ErrorEstimate, NoiseOfEdgesStaysThere) {
   EXPECT_NEAR(tried.ratio, 1, 0.15);
 }
 
-// Noise in a corner of the picture alone.
+// Noise only in a corner of the picture.
 TEST(ErrorEstimate, NoiseOfAPartIsMeasured) {
   const Tried tried = try_pictures(
       white, [](int x, int y) { return x < 24 && y < 20 ? 1.0 : 0.01; }, independent);
@@ -132,8 +132,8 @@ TEST(ErrorEstimate, NoiseOfAPartIsMeasured) {
   EXPECT_GE(tried.kept, 0.8);
 }
 
-// Most pixels of a half have no bright path, and some have one or two. Stripes leave no surroundings to compare with:
-// the truth is known from the pixel itself, which such a path makes too bright.
+// Most pixels of a half have no bright path, some have one or two. Stripes leave no surroundings to compare with: the
+// true value is estimated from the pixel itself, which such a path makes too bright.
 std::vector<double> rare_bright_paths(std::mt19937& rng) {
   constexpr double mean = 0.3;
   std::poisson_distribution<int> number(mean);
@@ -148,7 +148,7 @@ TEST(ErrorEstimate, BrightPathsDoNotHideBehindTheirOwnLight) {
   EXPECT_NEAR(tried.ratio, 1, 0.06);
 }
 
-// The estimate is as good, but less certain.
+// The estimate is equally good, but less certain.
 TEST(ErrorEstimate, CorrelatedNoiseWidensTheBound) {
   const Tried tried = try_pictures(
       white, [](int, int) { return 0.5; }, in_blocks);
@@ -179,7 +179,7 @@ TEST(ErrorEstimate, FewPassesAreNoMeasure) {
   EXPECT_EQ(doubt({4, 1}), "there are too few passes");
 }
 
-// One pixel in 400 has met a path that brings all the light there is.
+// One pixel in 400 contains a path that carries all the light.
 std::vector<double> spikes(std::mt19937& rng) {
   std::vector<double> field(std::size_t{width} * height * 3);
   for (std::size_t i = 0; i < field.size(); i += 3)
@@ -192,7 +192,7 @@ TEST(ErrorEstimate, LightInSpikesIsNoMeasure) {
             std::string::npos);
 }
 
-// The halves know the bias with noise far larger than itself.
+// In each half, the noise of the bias far exceeds the bias itself.
 TEST(ErrorEstimate, BiasIsFoundUnderNoise) {
   constexpr double bias = 0.05;
   double mean = 0;

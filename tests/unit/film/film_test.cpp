@@ -31,7 +31,7 @@ namespace {
 // Four layers of light, as most methods have.
 constexpr std::size_t emission = 0, direct = 1, indirect = 2, caustic = 3;
 constexpr std::size_t first_splats =
-    3 * 4 + feature_channels + 2;  // plane of a film without bias: after light, features, hits, weights
+    3 * 4 + feature_channels + 2;  // plane index in a film without bias layers: after light, features, hits, weights
 const std::vector<std::string> layers{"emission", "direct", "indirect", "caustic"};
 const Decomposition techniques{{"technique.hit", "technique.nee", "technique.vc", "technique.vm"},
                                "technique.splat",
@@ -41,7 +41,7 @@ constexpr int width = 7, height = 5;
 constexpr std::uint32_t pixels = width * height;
 
 Rgb random_rgb(std::mt19937& rng, float scale) {
-  // Magnitudes over 30 binary orders: far below a step, and far above.
+  // Magnitudes over 30 binary orders: far below one step, and far above.
   const auto value = [&] { return scale * std::exp2(-30 * std::generate_canonical<float, 24>(rng)); };
   const float r = value(), g = value();
   return {r, g, -value()};
@@ -128,7 +128,7 @@ TEST(Film, MergedShardsEqualOneFilm) {
   EXPECT_EQ(planes(ba), planes(a));
 }
 
-// Each half is the film of its passes alone; together they are the picture.
+// Each half equals a film of its passes only. Together they equal the picture.
 TEST(Film, HalvesAreFilmsOfTheirPasses) {
   const std::vector<Contribution> all = random_contributions(3000);
   const Film film = film_of(all);
@@ -143,8 +143,8 @@ TEST(Film, HalvesAreFilmsOfTheirPasses) {
   }
 }
 
-// Also of what is ordered by bit reversal, as wavelengths are: a half of the passes has as many in each part of the
-// range.
+// Also for quantities ordered by bit reversal, such as wavelengths: half of the passes cover each part of the range
+// equally.
 TEST(Film, HalvesHaveOneOfEachTwoPassesAndAreEven) {
   constexpr std::uint64_t passes = 64;
   constexpr std::uint32_t parts = 16;
@@ -208,7 +208,7 @@ SpectralRadiance radiance_at(std::array<float, 4> lambda, float value) {
   SpectralRadiance r;
   r.lambda = lambda;
   r.radiance.fill(value);
-  for (std::size_t i = 0; i < 4; ++i) r.pdf[i] = 1 / (lambda[i] + 1);  // of no meaning, but different
+  for (std::size_t i = 0; i < 4; ++i) r.pdf[i] = 1 / (lambda[i] + 1);  // arbitrary, but all different
   return r;
 }
 
@@ -216,7 +216,7 @@ TEST(Film, BucketsHoldMeansOverTheWavelengthsInThem) {
   const SpectralBuckets buckets{3, 400, 700};
   Film film(2, 1, 4, {.light = layers, .splats = true, .buckets = buckets});
   PixelSample s;
-  s.spectrum = radiance_at({410, 480, 510, 720}, 3);  // one outside of all buckets
+  s.spectrum = radiance_at({410, 480, 510, 720}, 3);  // one outside all buckets
   s.weight = 0.25f;
   FilmPass(film, 0).add(0, s);
   s.spectrum = radiance_at({420, 530, 599, 399}, 3);
@@ -226,12 +226,12 @@ TEST(Film, BucketsHoldMeansOverTheWavelengthsInThem) {
     const Image image = film.resolve(4);
     return image.at(x, 0, image.find_channel(channel).value());
   };
-  // A constant stays one, however the wavelengths are spread; no wavelength fell into the last bucket.
+  // A constant stays constant, however the wavelengths are distributed; no wavelength fell into the last bucket.
   EXPECT_NEAR(value(0, "S0.450,0nm"), 3, 1e-5f);
   EXPECT_NEAR(value(0, "S0.550,0nm"), 3, 1e-5f);
   EXPECT_EQ(value(0, "S0.650,0nm"), 0);
   EXPECT_EQ(value(1, "S0.450,0nm"), 0);
-  // What varies is averaged over wavelengths, however densely they were drawn: pdfs here are 1 / (nm + 1).
+  // Varying values are averaged over wavelengths, independent of their density: pdfs here are 1 / (nm + 1).
   PixelSample varying;
   varying.spectrum = radiance_at({499, 599, 699, 900}, 0);
   varying.spectrum->lambda = {499, 419, 900, 900};
@@ -239,7 +239,7 @@ TEST(Film, BucketsHoldMeansOverTheWavelengthsInThem) {
   FilmPass(film, 0).add(1, varying);
   EXPECT_NEAR(value(1, "S0.450,0nm"), (500 * 1 + 600 * 4) / (500.0f + 600), 1e-4f);
   film = Film(2, 1, 4, {.light = layers, .splats = true, .buckets = buckets});
-  // Splats count with their density, and are divided by the passes.
+  // Splats are weighted by their density and divided by the number of passes.
   FilmPass(film, 0).splat_spectrum(1, radiance_at({449, 659, 699, 900}, 2), 0.5f);
   EXPECT_NEAR(value(1, "S0.450,0nm"), 0.5f * 2 * 450 / (4 * 100) / 4, 1e-5f);
   EXPECT_NEAR(value(1, "S0.650,0nm"), 0.5f * 2 * (660 + 700) / (4 * 100) / 4, 1e-5f);
@@ -278,7 +278,7 @@ TEST(Film, TechniquesAddUpToColor) {
   EXPECT_EQ(select_layer(copy.resolve(4), "technique.splat")->pixels, layer("technique.splat").pixels);
 }
 
-// Light of wavelengths that no display shows may have a negative luminance, which is no share.
+// Light of wavelengths outside the gamut may have negative luminance, which is not a share.
 TEST(Film, SharesAreOfPositiveLight) {
   Film film(1, 1, 4, {.light = layers, .decomposition = techniques});
   PixelSample s;
@@ -347,7 +347,7 @@ TEST(Film, LightLayersAddUpToColor) {
 }
 
 TEST(Film, TinyContributionsAreNotLost) {
-  // 2^-45 of the largest radiance is a thirty-second of a step: rounding to the nearest would lose all of it.
+  // 2^-45 of the largest radiance is 1/32 of a step: rounding to nearest would lose all of it.
   Film film(1, 1, 1, {.light = layers, .splats = true});
   std::mt19937 rng(5);
   double expected = 0;
@@ -397,7 +397,7 @@ TEST(Film, ReportsNonFiniteValuesWithTheirPlace) {
 
 TEST(Film, ReportsOverflowAndSaturates) {
   Film film(2, 1, 1, {.light = layers, .decomposition = techniques, .splats = true});
-  FilmPass(film, 3).splat(1, direct, {0x1p16f, 0x1p17f, 0});  // at the limit of a contribution, and beyond
+  FilmPass(film, 3).splat(1, direct, {0x1p16f, 0x1p17f, 0});  // at the limit of a contribution, and above it
   EXPECT_EQ(film.report().too_large, 1u);
   EXPECT_EQ(film.report().first_too_large, (FilmPlace{3, 1}));
   EXPECT_EQ(film.report().saturated, 0u);
@@ -432,7 +432,7 @@ TEST(Film, ConcurrentOverflowSaturates) {
 TEST(Film, AddsSamplesOfSeveralPassesToOnePixelAtOnce) {
   FilmContents contents{.light = {"direct"}, .decomposition = {.parts = {"a", "b"}}, .bias = true};
   contents.buckets = SpectralBuckets{};
-  constexpr int samples = 2000000;  // so that threads meet
+  constexpr int samples = 2000000;  // so that threads collide
   const std::array<std::uint64_t, 4> passes{0, 3, 5, 6};
   const auto add = [](Film& film, std::uint64_t pass, int i) {
     PixelSample s;
@@ -475,8 +475,8 @@ TEST(Display, MapsToTheUnitInterval) {
   EXPECT_FLOAT_EQ(to_display({1e30f, 0, 0}, filmic).r, 1);
 }
 
-// What the construction says of its curve: middle grey in the middle, black 10 stops below it, white 6.5 above it, and
-// the slope 2 in the middle, over all 16.5 stops.
+// Properties of the curve by construction: middle grey is in the middle, black 10 stops below it, white 6.5 above it,
+// and the slope is 2 in the middle, over all 16.5 stops.
 TEST(Display, AgxKeepsGreysAndTakesSaturationFromBrightColours) {
   const auto grey = [](float x) { return agx({x, x, x}); };
   EXPECT_NEAR(grey(0.18f).r, 0.5f, 1e-5f);
@@ -494,19 +494,19 @@ TEST(Display, AgxKeepsGreysAndTakesSaturationFromBrightColours) {
     EXPECT_GT(c.r, before);
     before = c.r;
   }
-  // From dim to bright, red turns to white without going through another hue.
+  // From dim to bright, red becomes white without changing its hue.
   const Rgb dim = agx({0.1f, 0, 0}), bright = agx({100, 0, 0});
   EXPECT_GT(dim.r, 2 * dim.g);
   EXPECT_GT(bright.g, 0.6f * bright.r);
   EXPECT_NEAR(bright.g, bright.b, 0.02f);
-  // A colour that is white by our primaries is not changed by their inset: as many parts red, green and blue as white.
+  // The inset of the primaries leaves colours unchanged that are white: equal parts of red, green and blue.
   const DisplaySettings display{.exposure = 1, .curve = ToneCurve::agx};
   EXPECT_NEAR(to_display({0.09f, 0.09f, 0.09f}, display).r, 0.5f, 1e-5f);
   EXPECT_FLOAT_EQ(to_display({infinity, infinity, infinity}, display).r, 1);
   EXPECT_NEAR(to_display({-1, std::nanf(""), 0}, display).r, 0, 1e-6f);
 }
 
-// A picture of 100 x 1 pixels: surfaces of one albedo in one light, a lamp over a fifth of it, and the rest black.
+// A picture of 100 x 1 pixels: surfaces of the same albedo in the same light, a lamp in a fifth of it, the rest black.
 Image lit_picture(float albedo, float light, int surfaces) {
   std::vector<std::string> channels{"R", "G", "B"};
   for (const char* layer : {"emission", "direct", "indirect", "caustic", "albedo"})
@@ -532,7 +532,7 @@ TEST(Exposure, IsThatOfTheLightOnSurfacesWhateverTheirColour) {
 }
 
 TEST(Exposure, IsThatOfColoursWhereNoSurfaceIsLit) {
-  EXPECT_FLOAT_EQ(measured_exposure(lit_picture(1, 1, 0)), -10);  // 1000, to a tenth of a stop
+  EXPECT_FLOAT_EQ(measured_exposure(lit_picture(1, 1, 0)), -10);  // 1000, within a tenth of a stop
   EXPECT_FLOAT_EQ(measured_exposure(lit_picture(0.001f, 1, 60)), -10);
   Image plain(10, 1, {"R", "G", "B"});
   EXPECT_EQ(measured_exposure(plain), 0);
@@ -552,7 +552,7 @@ Image test_image() {
   return image;
 }
 
-// Fichet, Pacanowski & Wilkie 2021, "An OpenEXR Layout for Spectral Images": channels by their names, two attributes.
+// Fichet, Pacanowski & Wilkie 2021, "An OpenEXR Layout for Spectral Images": names of channels, and two attributes.
 TEST(ImageFile, SpectralChannelsFollowTheirLayout) {
   const test::TemporaryDir dir;
   const Film film(2, 1, 1, {.buckets = SpectralBuckets{16, 360, 830}});
@@ -635,7 +635,7 @@ TEST(ImageFile, AlphaIsNotDecoded) {
 
 TEST(ImageFile, ReadsPfmTopToBottom) {
   const test::TemporaryDir dir;
-  const std::array<float, 6> values{1, 2, 3, 4, 5, 6};  // the lower row first
+  const std::array<float, 6> values{1, 2, 3, 4, 5, 6};  // PFM stores the lower row first
   std::string bytes = "PF\n1 2\n-1.0\n";
   bytes.append(reinterpret_cast<const char*>(values.data()), sizeof(values));
   const Image image = read_image(dir.write("a.pfm", bytes));
@@ -713,7 +713,7 @@ TEST(FileSet, WritesAllFilesOrNone) {
   EXPECT_EQ(files_in(dir.path()), 2u);
 }
 
-// A grey of 4 has XYZ (3.80, 4, 4.36): all layers are scaled by 2 / 4.36, and the albedo is no light.
+// A grey of 4 has XYZ (3.80, 4, 4.36): all layers are scaled by 2 / 4.36, except the albedo, which is not light.
 TEST(Film, SamplesAreClampedAsAWhole) {
   Film film(1, 1, 10, {.light = layers, .decomposition = techniques, .splats = true});
   film.set_sensor({{}, 2.0f});

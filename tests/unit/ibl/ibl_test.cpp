@@ -30,7 +30,7 @@ void set(Image& image, int x, int y, const Rgb& c) {
   image.at(x, y, 2) = c.b;
 }
 
-// From the definition in ibl.h: the centre is +x, a quarter to its right +z.
+// By the definition in ibl.h, the centre is +x, and +z is a quarter of the width to its right.
 Direction equirectangular_direction(int x, int y, int width) {
   const double polar = pi_d * (y + 0.5) / (width / 2.0), azimuth = 2 * pi_d * (x + 0.5) / width - pi_d;
   return {static_cast<float>(std::sin(polar) * std::cos(azimuth)), static_cast<float>(std::cos(polar)),
@@ -74,7 +74,7 @@ IblSettings small() {
 
 Rgb smooth(const Direction& d) { return {1 + 0.5f * d.y + 0.3f * d.x * d.z, 1 + 0.4f * d.x, 0.8f + 0.5f * d.z * d.z}; }
 
-// Lamps of some size, noise, and a dark ground: nothing that is easy to integrate.
+// Extended lights, noise, and a dark ground: not easy to integrate.
 Rgb lively(const Direction& d) {
   const auto lamp = [&](const Vec3& towards, float width) {
     return dot(d, normalize(towards)) > std::cos(width) ? 10.0f : 0.0f;
@@ -88,7 +88,7 @@ struct Means {
   double mean = 0, largest = 0, least = 1e30;
 };
 
-// Of the red channel, by solid angle.
+// Means of the red channel, weighted by solid angle.
 Means means_of(const Image& strip) {
   const int n = strip.height;
   Means m;
@@ -129,7 +129,7 @@ TEST(CubeMap, FacesAreOpenGls) {
   const std::array<Vec3, 6> axes{{{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}}};
   for (int face = 0; face < 6; ++face)
     EXPECT_LT(length_squared(centre(face) - axes[static_cast<std::size_t>(face)]), 1e-12f);
-  // The right edge of +Z is the left one of +X, the upper edge of +Z the lower one of +Y.
+  // The right edge of +Z is the left edge of +X, and the upper edge of +Z is the lower edge of +Y.
   EXPECT_GT(cube_direction(4, {1, 0.5f}).x, 0.7f);
   EXPECT_GT(cube_direction(0, {0, 0.5f}).z, 0.7f);
   EXPECT_GT(cube_direction(4, {0.5f, 0}).y, 0.7f);
@@ -250,7 +250,7 @@ TEST(Ibl, ReportedErrorsAreThoseOfTheMaps) {
   EXPECT_LT(good.irradiance_error->rms, 2e-3);
 }
 
-// Rolled by a quarter, x becomes z.
+// Rotating the image by a quarter turns x into z.
 TEST(Ibl, TurnsWithTheEnvironment) {
   const Image image = equirectangular(256, lively);
   Image rolled = image;
@@ -298,7 +298,7 @@ TEST_P(Sun, KeepsItsEnergyAndIsSmooth) {
     EXPECT_NEAR(found.mean / mean, 1, 0.01) << "alpha " << level.alpha;
     EXPECT_GE(found.least, 0.999);
     if (level.alpha == 0) continue;
-    // Every texel, not only on average: there is a single light, whose lobe is known.
+    // Checks every texel, not only the mean: there is a single light, whose lobe is known.
     const CubeMap map = cube_of(level.faces);
     const Direction sun = equirectangular_direction(x, y, width);
     const double a2 = sqr(static_cast<double>(level.alpha));
@@ -317,14 +317,14 @@ TEST_P(Sun, KeepsItsEnergyAndIsSmooth) {
   EXPECT_NEAR(ibl.sh->radiance[0].r * 0.28209479 / mean, 1, 0.01);
 }
 
-// Under the horizon, at an edge of faces, near a pole, at the picture's seam.
+// Below the horizon, at an edge between faces, near a pole, at the picture's seam.
 INSTANTIATE_TEST_SUITE_P(Places, Sun,
                          testing::Values(std::pair{300, 150}, std::pair{320, 128}, std::pair{77, 6},
                                          std::pair{511, 90}));
 
 class SmallSun : public testing::TestWithParam<std::pair<int, int>> {};
 
-// A sun is as bright in a mirror as in the image, wherever its texels fall on those of the map, and never brighter.
+// A sun is as bright in a mirror as in the image, and never brighter, wherever its texels fall on those of the map.
 TEST_P(SmallSun, IsAsBrightAsInTheImage) {
   constexpr int width = 512;
   constexpr float sky = 0.2f, sun = 5000;
@@ -348,7 +348,7 @@ TEST_P(SmallSun, IsAsBrightAsInTheImage) {
   }
 }
 
-// Somewhere, at an edge of faces, at a corner of the cube, near a pole, at the image's seam.
+// An arbitrary place, an edge between faces, a corner of the cube, a place near a pole, one at the image's seam.
 INSTANTIATE_TEST_SUITE_P(Places, SmallSun,
                          testing::Values(std::pair{300, 100}, std::pair{320, 128}, std::pair{320, 77},
                                          std::pair{77, 50}, std::pair{511, 90}));
@@ -362,7 +362,7 @@ TEST(Ibl, SunsOfWideTexelsAreNotPoints) {
   const double omega = 2 * pi_d / width * (std::cos(2 * pi_d * 12 / width) - std::cos(2 * pi_d * 13 / width));
   const double mean = 1 + 9999 * omega / (4 * pi_d);
   for (const SpecularLevel& level : ibl.specular) EXPECT_NEAR(means_of(level.faces).mean / mean, 1, 0.01);
-  // A mirror shows the texel's radiance, all over the texel.
+  // A mirror shows the texel's radiance over the whole texel.
   EXPECT_NEAR(means_of(ibl.specular[0].faces).largest, 1e4, 4e3);
 }
 
@@ -446,7 +446,7 @@ TEST(SphericalHarmonics, AreOrthonormal) {
     for (std::size_t j = 0; j < 16; ++j) EXPECT_NEAR(products[i][j], i == j ? 1 : 0, 2e-3) << i << ' ' << j;
 }
 
-// Irradiance of a band is that of radiance times 1, 2/3, 1/4, 0: its projection from the cube map agrees with it.
+// A band's irradiance is its radiance times 1, 2/3, 1/4, 0: the projection of the cube map agrees.
 TEST(SphericalHarmonics, AreTheProjectionOfTheIrradianceMap) {
   IblSettings settings = small();
   settings.irradiance_size = 32;
@@ -485,7 +485,7 @@ TEST(SphericalHarmonics, WindowLeavesNoNegativeIrradiance) {
   EXPECT_EQ(bake_ibl(equirectangular(256, smooth), settings).sh->window, 0) << "nothing is negative";
 }
 
-// Over directions of light, by the closures' own D and G.
+// Integrates over light directions, with D and G of the closures.
 TEST(BrdfTable, BruteForceIsTheIntegralOverTheHemisphere) {
   constexpr int steps = 400;
   for (const double alpha : {0.4, 1.0})
@@ -569,7 +569,7 @@ TEST(ContactSheet, HasARowForEachMap) {
   EXPECT_NEAR(sheet.at(left + 4 + 48, top + 4 + 48, 0), smooth({1, 0, 0}).r, 0.02f);
 }
 
-// Its labels in dots: "+X" above the first face, "SPECULAR" and its roughness before the first row.
+// Its labels as dots: "+X" above the first face, "SPECULAR" and its roughness before the first row.
 TEST(ContactSheet, HasLabels) {
   const Ibl ibl = bake_ibl(equirectangular(64, smooth), small());
   const Image sheet = contact_sheet(ibl);

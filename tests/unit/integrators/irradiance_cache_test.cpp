@@ -30,7 +30,7 @@ struct Sphere {
   float radius;
 };
 
-// Of all sizes, some beyond the box.
+// Of all sizes, some larger than the box.
 std::vector<Sphere> random_spheres(HashRng& rng) {
   std::vector<Sphere> spheres(2000);
   for (Sphere& s : spheres) s = {1.4f * random_point(rng) - Point(0.2f), std::exp2(-1 - 12 * rng.next())};
@@ -57,7 +57,7 @@ TEST(SphereOctree, FindsAllSpheresAroundAPoint) {
       ASSERT_EQ(found.count(i), 1u) << q << ' ' << i;
     }
   }
-  // Boxes of twice to four times the diameter hold a point 15 to 122 times as often as the sphere.
+  // Boxes two to four times as wide as the diameter contain a point 15 to 122 times as often as the sphere does.
   EXPECT_LT(visited, 60 * contained);
 }
 
@@ -128,7 +128,7 @@ TEST(IrradianceCache, FindsWhatAllRecordsTell) {
       ASSERT_EQ(found.has_value(), expected.has_value());
       if (!expected) continue;
       ++known;
-      // Floats know 1 - cos of nearly equal normals to 1e-7, and its square root, which weights are made of, to 3e-4.
+      // Single precision gives 1 - cos of nearly equal normals to 1e-7, and its square root, used in weights, to 3e-4.
       ASSERT_NEAR(static_cast<double>((*found)[channel]), *expected, 3e-4) << q;
     }
   }
@@ -174,7 +174,7 @@ TEST(IrradianceCache, SkipsRecordsBeforeThePoint) {
   EXPECT_FALSE(cache.find({1.51f, 0.5f, 0.5f}, up));
 }
 
-// A floor with a step that only one record is near enough to have noticed; on the other side of a wall nobody cares.
+// A floor with a step that only one record is near enough to detect; across a wall it has no effect.
 TEST(IrradianceCache, NeighboursClampDistances) {
   for (const bool small_first : {true, false}) {
     IrradianceCache cache(unit_box, 0.2f);
@@ -195,7 +195,7 @@ TEST(IrradianceCache, NeighboursClampDistances) {
   }
 }
 
-// The octree's way of finding neighbours leaves none out.
+// The octree's search for neighbours omits none.
 TEST(IrradianceCache, NoDistanceIsLongerThanANeighboursAndTheWayThere) {
   HashRng rng(5);
   IrradianceCache cache(unit_box, 0.2f);
@@ -259,8 +259,8 @@ TEST(HemisphereGrid, HasTheCellsAskedForAndCosineDensity) {
   EXPECT_NEAR(mean.y, 0, 5e-3f);
 }
 
-// Half the sky is bright: of the lune between its border and the horizon, E = π/2 (1 + sin δ), δ being the inclination
-// towards the bright half.
+// Half the sky is bright: for the lune between its border and the horizon, E = π/2 (1 + sin δ), where δ is the
+// inclination towards the bright half.
 TEST(IrradianceGradients, OfRotationUnderHalfASky) {
   const Frame frame(normalize(Vec3(0.3f, -0.2f, 0.9f)));
   const Direction bright = frame.to_world(normalize(Vec3(2, 1, 0)));
@@ -278,14 +278,14 @@ TEST(IrradianceGradients, OfRotationUnderHalfASky) {
   EXPECT_NEAR(dot(rotation, frame.n), 0, 1e-4f);
   EXPECT_NEAR(record.rotation.x[1], 0, 1e-4f);  // an even sky
   EXPECT_EQ(record.translation.x, Spectrum());  // that is infinitely far away
-  // And extrapolated, to the first order.
+  // Also extrapolated, to first order.
   const float tilt = 0.1f;
   const Normal inclined = std::cos(tilt) * frame.n + std::sin(tilt) * bright;
   EXPECT_NEAR(record.at(Point(0), inclined)[0], pi / 2 * (1 + std::sin(tilt)), 0.01f);
 }
 
-// A bright half of a ceiling, at height h beyond x = e: E(x) = π/2 (1 - s / √(h² + s²)), s = e - x. What is dark is the
-// other half, or lies far behind: the edge that moves is that of the nearer.
+// A bright half of a ceiling, at height h beyond x = e: E(x) = π/2 (1 - s / √(h² + s²)), s = e - x. The dark part is
+// the other half of the ceiling, or far behind it: the edge that moves belongs to the nearer surface.
 TEST(IrradianceGradients, OfTranslationUnderHalfACeiling) {
   constexpr float h = 0.7f;
   for (const float behind : {1.0f, 10.0f})
@@ -300,7 +300,7 @@ TEST(IrradianceGradients, OfTranslationUnderHalfACeiling) {
           Frame());
       const float slant2 = sqr(h) + sqr(edge);
       EXPECT_NEAR(record.irradiance[0], pi / 2 * (1 - edge / std::sqrt(slant2)), 0.01f);
-      // Cells in which the edge lies count with the nearer of two distances: a few per cent too much.
+      // Cells that contain the edge count with the smaller of two distances, which is a few per cent too much.
       EXPECT_NEAR(record.translation.x[0] / (pi / 2 * sqr(h) / (slant2 * std::sqrt(slant2))), 1, 0.06f) << edge;
       EXPECT_NEAR(record.translation.y[0], 0, 0.03f);
       EXPECT_NEAR(record.translation.z[0], 0, 1e-4f);
@@ -323,7 +323,7 @@ TEST(IrradianceGradients, DistanceIsTheHarmonicMeanAndLimitedByTheGradient) {
   EXPECT_NEAR(ceiling(0).distance, h, 0.06f);  // E / |dE/dx|
 }
 
-// Where R counts for more than it is, the gradient must not take away more light.
+// If clamping has enlarged R, the gradient must not remove more light.
 TEST(IrradianceGradients, AreFlattenedWhereDistancesAreTooShort) {
   IrradianceRecord record;
   record.irradiance = Spectrum(1);
@@ -334,7 +334,7 @@ TEST(IrradianceGradients, AreFlattenedWhereDistancesAreTooShort) {
   EXPECT_NEAR(record.at({0.2f, 0, 0}, record.normal)[0], 0.5f, 1e-6f);
 }
 
-// On the left all photons leave three scatterings to eye paths, on the right two.
+// On the left, photons leave three scattering events to eye paths; on the right, two.
 TEST(IrradiancePhotons, AreForEyePathsThatMayUseAllTheirPhotons) {
   HashRng rng(8);
   std::vector<Photon> photons(1000);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// A rendering method that the library does not know: one class with its IntegratorInfo. All that is asked of methods
-// (layers, states, parameters, merging) comes with it.
+// A user-defined rendering method: one class with its IntegratorInfo. Layers, states, parameters and merging work
+// without further code.
 #include <gtest/gtest.h>
 
 #include <memory>
@@ -20,8 +20,8 @@
 namespace lanthorn::own_integrator_test {
 namespace {
 
-// Ambient occlusion: the share of a cosine-weighted hemisphere that is free up to a distance, where something is seen,
-// and 1 where nothing is; the second in a layer of its own.
+// Ambient occlusion: the unoccluded fraction of a cosine-weighted hemisphere up to a distance, for pixels that see a
+// surface, and 1 for others, which go into a separate layer.
 class AmbientOcclusion final : public Integrator {
  public:
   explicit AmbientOcclusion(const Parameters& parameters)
@@ -63,7 +63,7 @@ class AmbientOcclusion final : public Integrator {
   float reach_;
 };
 
-// Its passes from the third on need more memory than there is.
+// From the third on, its passes need more memory than is available.
 class Insatiable final : public Integrator {
  public:
   PassReport render_pass(const RenderJob& /*any*/, std::uint32_t pass, const FilmPass& film,
@@ -77,7 +77,7 @@ class Insatiable final : public Integrator {
   }
 };
 
-// Once in this program, whichever tests run.
+// Registered once per process, whichever tests run.
 const bool added = [] {
   add_integrator({"toy", "ambient occlusion", "a test", {{"reach", "10", "metres"}}, [](const Parameters& p) {
                     return std::unique_ptr<Integrator>(std::make_unique<AmbientOcclusion>(p));
@@ -88,7 +88,7 @@ const bool added = [] {
   return true;
 }();
 
-// A floor with a wall that stands on it, seen from above; half of the picture is sky.
+// A floor with a wall on it, seen from above; half of the picture is sky.
 const std::string corner = R"(
 LookAt 0 3 6  0 0.5 0  0 1 0
 Camera "perspective" "float fov" [60]
@@ -116,7 +116,7 @@ TEST(OwnIntegrator, HasItsLayersAndTheyAddUpToColor) {
   }
   EXPECT_GT(free, 0);
   EXPECT_GT(sky, 0);
-  // Nothing is in the way of rays of no length.
+  // Rays of length 0 are never occluded.
   const Image open = *select_layer(test::render_image(scene, test::options_for("toy:reach=1e-6", 8)), "color");
   for (const float value : open.pixels) EXPECT_FLOAT_EQ(value, 1);
 }

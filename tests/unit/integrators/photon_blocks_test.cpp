@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Passes whose photons come in blocks find the light that they find at once.
+// Passes that trace photons in blocks find the same light as with a single block.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -53,7 +53,7 @@ Outcome run(const Scene& scene, const std::string& method, std::uint64_t block, 
   return result;
 }
 
-// The largest difference of a value of the pictures, over the largest value of its channel; and the mean difference.
+// The largest difference of the pictures, relative to the largest value of its channel; and the mean difference.
 struct Difference {
   double largest = 0, mean = 0;
 };
@@ -76,7 +76,7 @@ Difference difference(const RenderState& a, const RenderState& b) {
 
 class PhotonBlocks : public testing::TestWithParam<const char*> {};
 
-// Photon maps store the lengths of flights in steps that depend on the longest one; else only sums are rounded.
+// Photon maps quantise the lengths of flights by the longest one; otherwise only sums are rounded differently.
 TEST_P(PhotonBlocks, FindTheLightThatOneBlockFinds) {
   for (const ColorMode color : {ColorMode::rgb, ColorMode::spectral}) {
     const Outcome whole = run(still_room(), GetParam(), at_once, {0, 2}, 2, color);
@@ -106,7 +106,7 @@ TEST_P(PhotonBlocks, BytesDoNotDependOnThreadsOrShards) {
   }
 }
 
-// Eye paths take the time of the light path that they are connected to, whose block is not there yet or no more.
+// Eye paths use the time of the light path that they connect to, even if its block is not in memory.
 TEST_P(PhotonBlocks, MeetWhatMovesAtTheSameTimes) {
   const Scene moving = room(true);
   const RenderState whole = run(moving, GetParam(), at_once, {0, 16}).state;
@@ -120,7 +120,7 @@ INSTANTIATE_TEST_SUITE_P(Methods, PhotonBlocks,
                                          "vcm:volume=point+photon-beam", "auto"),
                          [](const auto& of) { return test::identifier(of.param); });
 
-// The tree of light paths of a large scene is sorted block by block.
+// In a large scene, the tree of light paths is sorted block by block.
 TEST(LightPathBlocks, DivideAPassWithoutGaps) {
   for (const std::uint64_t paths : {0u, 1u, 999u, 1000u, 1001u, 5000u}) {
     const LightPathBlocks blocks(paths, 1000);

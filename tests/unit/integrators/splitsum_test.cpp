@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Split-sum shading: exact under a white sky, and near path tracing without visibility where n = v = r.
+// Split-sum shading: exact under a white sky, and close to path tracing without visibility where n = v = r.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ namespace {
 
 const std::string white_sky = "LightSource \"infinite\" \"rgb L\" [1 1 1]\n";
 
-// A wide plane, seen from above at an angle from the zenith by parallel rays: every pixel sees the same.
+// A wide plane, seen from above at this angle from the zenith by parallel rays: all pixels see the same.
 std::string plane(double degrees, const std::string& sky, const std::string& material) {
   const double angle = degrees * 0.017453292519943295;
   return fmt::format(
@@ -54,7 +54,7 @@ Rgb mean_of(const std::string& scene, const std::string& integrator, std::uint64
 
 class SplitSumShading : public testing::Test {
  protected:
-  // Uneven, without anything small and bright: the zenith of the file is +z.
+  // Not uniform, but without small bright spots. The file's zenith is +z.
   SplitSumShading() {
     Image image(256, 128, {"R", "G", "B"});
     for (int y = 0; y < image.height; ++y)
@@ -77,7 +77,7 @@ TEST_F(SplitSumShading, IsExactUnderAWhiteSky) {
     for (const double alpha : {0.05, 0.4, 1.0}) {
       const std::string scene = plane(degrees, white_sky, metal(alpha));
       const Rgb found = mean_of(scene, "splitsum", 1), truth = mean_of(scene, "path", 64);
-      // Schlick's term is not the metal's own.
+      // Schlick's approximation differs from the metal's exact Fresnel term.
       EXPECT_NEAR(found.r, truth.r, 0.02f) << degrees << ' ' << alpha;
       EXPECT_NEAR(found.b, truth.b, 0.04f) << degrees << ' ' << alpha;
     }
@@ -99,7 +99,7 @@ TEST_F(SplitSumShading, OfDiffuseSurfacesIsPathTracings) {
   EXPECT_NEAR(found.b / truth.b, 1, 0.01f);
 }
 
-// A sun of 2 x 2 texels of a fine image, turned: its light is neither missed nor counted twice.
+// A sun of 2 x 2 texels of a fine image, rotated: its light is neither missed nor counted twice.
 TEST_F(SplitSumShading, SeesSmallSuns) {
   constexpr int size = 1024;
   const double irradiance = 4 * 4 * 3.14159265 / (size * size) * 1e5 / 3.14159265;
@@ -117,7 +117,7 @@ TEST_F(SplitSumShading, SeesSmallSuns) {
   }
 }
 
-// What remains is the Fresnel term, which the separated sum takes for independent of the light.
+// The remaining error is the Fresnel term, which the split sum assumes independent of the light.
 TEST_F(SplitSumShading, IsNearPathTracingWhereNormalViewAndReflectionAreOne) {
   const auto expect_near = [&](double alpha, float limit) {
     const std::string scene = plane(0, uneven_sky(), metal(alpha));
@@ -132,8 +132,8 @@ TEST_F(SplitSumShading, IsNearPathTracingWhereNormalViewAndReflectionAreOne) {
   for (const double alpha : {0.05, 0.17}) expect_near(alpha, 0.045f);
 }
 
-// A metal whose Fresnel term is 1 has no other error there than that of the maps: the filter's and, in the last levels
-// of 16 and 4 texels across, that of interpolation between texels.
+// For a metal whose Fresnel term is 1, only the maps have errors there: those of the filter and, in the last levels of
+// 16 and 4 texels across, of interpolation between texels.
 TEST_F(SplitSumShading, EqualsPathTracingWhereNormalViewAndReflectionAreOne) {
   struct Level {
     int k;
@@ -155,8 +155,8 @@ TEST_F(SplitSumShading, EqualsPathTracingWhereNormalViewAndReflectionAreOne) {
   }
 }
 
-/// The points of a ball see only the environment, from all angles: relative RMS differences of splitsum and path in
-/// rings of the ball's picture, where the angle of normal and view is below 15, 45 to 60, and 65 to 80 degrees.
+/// The points of a ball see only the environment, from all angles. Relative RMS differences between splitsum and path,
+/// in rings of the ball's picture where the angle between normal and view is below 15, 45 to 60, and 65 to 80 degrees.
 std::array<double, 3> deviations(const std::string& sky, double alpha, const std::filesystem::path& folder) {
   constexpr int size = 32;
   const Scene scene = test::scene_from_text(
@@ -171,7 +171,7 @@ std::array<double, 3> deviations(const std::string& sky, double alpha, const std
     options.color = ColorMode::rgb;
     return *select_layer(test::render_image(scene, options), "color");
   };
-  // The product of differences whose noise is independent has the square of the difference as its mean.
+  // If two differences have independent noise, the mean of their product is the squared difference.
   const Image fast = rendered("splitsum", 16, 0), a = rendered("path", 64, 1), b = rendered("path", 64, 2);
   std::array<double, 3> squares{}, sums{}, counts{};
   for (int y = 0; y < size; ++y)
@@ -193,8 +193,8 @@ std::array<double, 3> deviations(const std::string& sky, double alpha, const std
   return result;
 }
 
-// What n = v = r costs. The expected numbers are measured (2026-11-24) and vary by 2 % over seeds; brute force has no
-// say in them but by `path`. A change of either method that is worth a look changes them.
+// The cost of assuming n = v = r. The expected numbers were measured (2026-11-24) and vary by 2 % over seeds; they are
+// regression values, independent only through `path`. Any significant change of either method changes them.
 TEST_F(SplitSumShading, DeviatesFromPathTracingAsMeasured) {
   struct Measured {
     double alpha, straight, oblique, grazing;

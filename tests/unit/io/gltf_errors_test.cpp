@@ -27,21 +27,21 @@ TEST(GltfErrors, SyntaxHasLineAndColumn) {
 
 TEST(GltfErrors, Container) {
   const std::string file = one_mesh().binary();
-  EXPECT_EQ(gltf_error(file.substr(0, 10)), "t.gltf: the file ends inside of its header");
+  EXPECT_EQ(gltf_error(file.substr(0, 10)), "t.gltf: the file ends inside its header");
   EXPECT_EQ(gltf_error(file.substr(0, 40)),
             "t.gltf: the file has 40 bytes, but its header says " + std::to_string(file.size()));
   std::string other = file;
   other[4] = 1;
-  EXPECT_EQ(gltf_error(other), "t.gltf: is version 1 of glTF's binary container: only 2 is read");
+  EXPECT_EQ(gltf_error(other), "t.gltf: is version 1 of glTF's binary container: only version 2 is supported");
   other = file;
   other[15] = '\x7f';
-  EXPECT_EQ(gltf_error(other), "t.gltf: the file ends inside of a chunk");
+  EXPECT_EQ(gltf_error(other), "t.gltf: the file ends inside a chunk");
   other = file;
   other[16] = 'X';
   EXPECT_EQ(gltf_error(other), "t.gltf: the file has no JSON chunk");
 }
 
-// What is wrong with the file if the value at `pointer` is replaced.
+// Returns the error if the value at `pointer` is replaced.
 std::string broken(const char* pointer, const json& value, GltfWriter file = one_mesh()) {
   json root = json::parse(file.text());
   root[json::json_pointer(pointer)] = value;
@@ -49,13 +49,13 @@ std::string broken(const char* pointer, const json& value, GltfWriter file = one
 }
 
 TEST(GltfErrors, NameThePlace) {
-  EXPECT_EQ(broken("/asset/version", "1.0"), "t.gltf#/asset/version: only glTF 2 is read, not \"1.0\"");
+  EXPECT_EQ(broken("/asset/version", "1.0"), "t.gltf#/asset/version: only glTF 2 is supported, not \"1.0\"");
   EXPECT_EQ(broken("/asset", json::object()), "t.gltf#/asset: needs the member \"version\"");
   EXPECT_EQ(
       broken("/extensionsRequired", {"EXT_x"}),
       "t.gltf#/extensionsRequired/0: the file cannot be read without extension \"EXT_x\", which is not supported");
   EXPECT_EQ(broken("/scene", 3), "t.gltf#/scene: is 3, but there are 1 scenes");
-  EXPECT_EQ(broken("/scenes/0/nodes/0", -1), "t.gltf#/scenes/0/nodes/0: must be a whole number, not negative");
+  EXPECT_EQ(broken("/scenes/0/nodes/0", -1), "t.gltf#/scenes/0/nodes/0: must be a non-negative whole number");
   EXPECT_EQ(broken("/nodes/0/mesh", 9), "t.gltf#/nodes/0/mesh: is 9, but there are 1 meshes");
   EXPECT_EQ(broken("/nodes/0/matrix", {1, 2}), "t.gltf#/nodes/0/matrix: needs 16 numbers, has 2");
   EXPECT_EQ(broken("/nodes/0/translation", "up"), "t.gltf#/nodes/0/translation: must be an array");
@@ -86,17 +86,17 @@ TEST(GltfErrors, NothingLiesOutsideOfItsBuffer) {
   EXPECT_EQ(broken("/bufferViews/0/byteStride", 4),
             "t.gltf#/accessors/0: an element has 12 bytes, but the byteStride is only 4");
   EXPECT_EQ(broken("/bufferViews/0/byteStride", 100000),
-            "t.gltf#/bufferViews/0/byteStride: is too large: 256 is the most");
+            "t.gltf#/bufferViews/0/byteStride: is too large: the maximum is 256");
   EXPECT_EQ(broken("/bufferViews/0/byteOffset", 20),
-            "t.gltf#/bufferViews/0: bytes 20 to 56 lie outside of the buffer, which has 48");
+            "t.gltf#/bufferViews/0: bytes 20 to 56 lie outside the buffer, which has 48");
   EXPECT_EQ(broken("/bufferViews/0/byteOffset", 9223372036854775807),
-            "t.gltf#/bufferViews/0: bytes 9223372036854775807 to 9223372036854775843 lie outside of the buffer, which "
+            "t.gltf#/bufferViews/0: bytes 9223372036854775807 to 9223372036854775843 lie outside the buffer, which "
             "has 48");
   EXPECT_EQ(broken("/buffers/0/byteLength", 49), "t.gltf#/buffers/0: byteLength is 49, but there are only 48 bytes");
   EXPECT_EQ(broken("/buffers/0/uri", "none.bin"), "t.gltf#/buffers/0/uri: none.bin: no such file");
   EXPECT_EQ(broken("/buffers/0/uri", "https://example.org/a.bin"),
-            "t.gltf#/buffers/0/uri: only data URIs and relative URIs that stay in the file's folder are "
-            "read, not \"https://example.org/a.bin\"");
+            "t.gltf#/buffers/0/uri: only data URIs and relative URIs that stay in the file's folder are supported, not "
+            "\"https://example.org/a.bin\"");
   EXPECT_EQ(broken("/buffers/0/uri", "data:;base64,@@"), "t.gltf#/buffers/0/uri: the data URI is not valid base64");
   EXPECT_EQ(broken("/buffers/0/uri", "data:text/plain,abc"), "t.gltf#/buffers/0/uri: a data URI must be in base64");
   EXPECT_EQ(broken("/accessors/0/count", 2),

@@ -73,7 +73,7 @@ TEST(MeasuredBrdfFile, EveryTruncationIsRefused) {
   for (std::size_t size = 0; size < whole.size(); size += size < 700 ? 1 : 37)
     EXPECT_NE(message_of(whole.substr(0, size)), "") << size;
   EXPECT_EQ(message_of(""), "is not a tensor file");
-  EXPECT_EQ(message_of(whole.substr(0, 20)), "ends inside of its header");
+  EXPECT_EQ(message_of(whole.substr(0, 20)), "ends inside its header");
 }
 
 TEST(MeasuredBrdfFile, HostileHeadersAreRefusedWithoutAllocating) {
@@ -90,7 +90,7 @@ TEST(MeasuredBrdfFile, HostileHeadersAreRefusedWithoutAllocating) {
   EXPECT_EQ(message_of(with(1, 0, most)), "has a field that is empty or larger than the file");
   EXPECT_EQ(message_of(with(3, 0, std::uint64_t{1} << 32)), "has a field that is empty or larger than the file");
   EXPECT_EQ(message_of(with(1, 0, 0)), "has a field that is empty or larger than the file");
-  EXPECT_EQ(message_of(with(1, most, 1)), "has a field that does not lie in the file");
+  EXPECT_EQ(message_of(with(1, most, 1)), "has a field that extends beyond the file");
   EXPECT_EQ(message_of(with(60000, 0, 1)), "has a field of 60000 dimensions");
   std::string many = with(1, 0, 1);
   many[17] = '\x7f';
@@ -107,13 +107,14 @@ TEST(MeasuredBrdfFile, MessagesSayWhatIsWrong) {
     return message_of(test::bsdf_file(data));
   };
   EXPECT_EQ(changed([](MeasuredData& d) { std::swap(d.theta[0], d.theta[1]); }),
-            "the values of \"theta_i\" do not ascend");
+            "the values of \"theta_i\" are not ascending");
   EXPECT_EQ(changed([](MeasuredData& d) { d.theta.back() = 3; }), "\"theta_i\" is not between 0 and pi / 2");
-  EXPECT_EQ(changed([](MeasuredData& d) { d.wavelengths[2] = 400; }), "the values of \"wavelengths\" do not ascend");
+  EXPECT_EQ(changed([](MeasuredData& d) { d.wavelengths[2] = 400; }),
+            "the values of \"wavelengths\" are not ascending");
   EXPECT_EQ(changed([](MeasuredData& d) { d.sigma.values[3] = std::nanf(""); }),
             "field \"sigma\" has a value that is not finite");
   EXPECT_EQ(changed([](MeasuredData& d) { std::fill_n(d.vndf.values.begin() + 25, 25, 0.0f); }),
-            "\"vndf\" shows no normal from some incident direction");
+            "\"vndf\" has no visible normal for some incident direction");
   const auto with_azimuths = [](const std::vector<float>& phi) {
     MeasuredData d = small_measurement();
     d.phi = phi;
@@ -124,9 +125,9 @@ TEST(MeasuredBrdfFile, MessagesSayWhatIsWrong) {
     return message_of(test::bsdf_file(d));
   };
   EXPECT_EQ(with_azimuths({-pi, 0, pi}), "");
-  EXPECT_EQ(with_azimuths({-3, 0, 1}), "\"phi_i\" spans neither a whole turn nor a half or a quarter of one");
-  EXPECT_EQ(with_azimuths({0, 1, pi}), "\"phi_i\" does not begin at -pi, as it must if it spans a part of a turn");
-  EXPECT_EQ(with_azimuths({0, -1}), "the values of \"phi_i\" do not ascend");
+  EXPECT_EQ(with_azimuths({-3, 0, 1}), "\"phi_i\" spans neither a full, a half nor a quarter turn");
+  EXPECT_EQ(with_azimuths({0, 1, pi}), "\"phi_i\" must begin at -pi if it spans less than a full turn");
+  EXPECT_EQ(with_azimuths({0, -1}), "the values of \"phi_i\" are not ascending");
   test::TensorFileWriter file;
   file.add("phi_i", {1}, {0.0f});
   EXPECT_EQ(message_of(file.bytes()), "has no field \"theta_i\"");

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Scenes of many files, which are read and decoded at the same time. What ThreadSanitizer has to say of it counts most
-// (scripts/test --tsan).
+// Scenes of many files, which are read and decoded concurrently. Run it mainly under ThreadSanitizer (scripts/test
+// --tsan).
 #include <gtest/gtest.h>
 
 #include <string>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The grammar of pbrt-v4 files: tokens, directives, state, files that include files, places of errors.
+// The grammar of pbrt-v4 files: tokens, directives, state, included files, locations of errors.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -68,7 +68,7 @@ TEST(PbrtTokenizer, ReadsNumbers) {
   EXPECT_EQ(number("5."), 5);
   EXPECT_EQ(number("1e5"), 1e5f);
   EXPECT_EQ(number("-1.5E-2"), -1.5e-2f);
-  EXPECT_EQ(number("1.5,"), 1.5f);  // as pbrt passes over commas
+  EXPECT_EQ(number("1.5,"), 1.5f);  // pbrt ignores commas
   EXPECT_EQ(number("1e-60"), 0);
   EXPECT_EQ(number("1e-600"), 0);
   EXPECT_EQ(number("0." + std::string(400, '0') + "1"), 0);
@@ -82,7 +82,7 @@ TEST(PbrtTokenizer, ReadsNumbers) {
   for (const std::string text : {"2147483648", "1.0", "1e3", "", "a"}) EXPECT_THROW(integer(text), Error) << text;
 }
 
-// Every error has its exact place and says what is wrong.
+// Every error has an exact location and states the problem.
 TEST(Pbrt, ErrorsHavePlaces) {
   struct Bad {
     std::string text, message;
@@ -122,16 +122,16 @@ TEST(Pbrt, ErrorsHavePlaces) {
        "t.pbrt:2:2: parameter \"xresolution\" of Film \"rgb\" needs one value, has 2"},
       {"Film \"rgb\" \"string filename\" [name]", "t.pbrt:1:31: expected a string in quotes, found \"name\""},
       {"Integrator \"path\" \"bool regularize\" yes", "t.pbrt:1:37: expected true or false, found \"yes\""},
-      {"WorldBegin WorldBegin", "t.pbrt:1:12: WorldBegin stands here for the second time"},
+      {"WorldBegin WorldBegin", "t.pbrt:1:12: this is the second WorldBegin"},
       {"WorldBegin Camera \"perspective\"", "t.pbrt:1:12: Camera must come before WorldBegin"},
       {"Shape \"sphere\"", "t.pbrt:1:1: Shape must come after WorldBegin"},
       {"WorldBegin AttributeEnd", "t.pbrt:1:12: AttributeEnd has no matching begin"},
       {"WorldBegin\nAttributeBegin ObjectBegin \"o\"\nAttributeEnd",
        "t.pbrt:3:1: AttributeEnd has no matching begin (the innermost open block begins at line 2)"},
       {"WorldBegin\n AttributeBegin\n", "t.pbrt:2:2: the block that begins here has no end"},
-      {"WorldBegin ObjectBegin \"o\" ObjectBegin \"p\"", "t.pbrt:1:28: ObjectBegin inside of an object"},
+      {"WorldBegin ObjectBegin \"o\" ObjectBegin \"p\"", "t.pbrt:1:28: ObjectBegin inside an object"},
       {"WorldBegin ObjectBegin \"o\" ObjectEnd ObjectBegin \"o\"", "t.pbrt:1:38: object \"o\" is defined twice"},
-      {"WorldBegin ObjectBegin \"o\" ObjectInstance \"o\"", "t.pbrt:1:28: ObjectInstance inside of an object"},
+      {"WorldBegin ObjectBegin \"o\" ObjectInstance \"o\"", "t.pbrt:1:28: ObjectInstance inside an object"},
       {"WorldBegin\nObjectInstance \"o\"", "t.pbrt:2:1: object \"o\" is not defined"},
       {"WorldBegin\nNamedMaterial \"m\"", "t.pbrt:2:1: material \"m\" is not defined"},
       {"WorldBegin MakeNamedMaterial \"m\"", "t.pbrt:1:12: parameter \"type\" of MakeNamedMaterial \"m\" is missing"},
@@ -146,7 +146,7 @@ TEST(Pbrt, ErrorsHavePlaces) {
       {"WorldBegin Material \"diffuse\" \"rgb reflectance\" [0 -1 0]",
        "t.pbrt:1:31: parameter \"reflectance\" of Material \"diffuse\" must not be negative"},
       {"WorldBegin Material \"diffuse\" \"spectrum reflectance\" [400 1 300 1]",
-       "t.pbrt:1:31: parameter \"reflectance\" of Material \"diffuse\" needs its wavelengths in increasing order"},
+       "t.pbrt:1:31: parameter \"reflectance\" of Material \"diffuse\" needs wavelengths in increasing order"},
       {"WorldBegin Material \"mix\" \"string materials\" [\"a\" \"b\"]",
        "t.pbrt:1:27: parameter \"materials\" of Material \"mix\" names \"a\", which is not defined before it"},
       {"WorldBegin Material \"conductor\" \"rgb reflectance\" [1 1 1]\n \"rgb k\" [1 1 1]",
@@ -352,7 +352,7 @@ TEST(Pbrt, IncludeErrors) {
   EXPECT_EQ(error_in("Include \"n0.pbrt\""), folder + "n62.pbrt:1:1: files include each other more than 64 deep");
 }
 
-// Fractals include the same files again and again: what bounds them are their bytes, not their number.
+// Fractals include the same files many times: the limit is on their bytes, not on their number.
 TEST(Pbrt, ManyInclusions) {
   const auto times = [](int n, const std::string& text) {
     std::string result;
@@ -428,8 +428,8 @@ TEST(Pbrt, WorkOfTheWholeSceneIsBounded) {
           "Shape \"loopsubdiv\" \"integer levels\" 2 \"point3 P\" [0 0 0 1 0 0 0 1 0] \"integer indices\" [0 1 2]\n";
   EXPECT_EQ(error_in(light + light + surface + surface, 22, 32), "no error");
   EXPECT_EQ(error_in(light + light, 21, 0),
-            "t.pbrt:3:21: parameter \"I\" of LightSource \"point\" names a spectrum's file: these are read anew each "
-            "time, and are too large together");
+            "t.pbrt:3:21: parameter \"I\" of LightSource \"point\" names a spectrum file, but all uses of spectrum "
+            "files together are too large");
   EXPECT_EQ(
       error_in(surface + surface, 0, 31),
       "t.pbrt:3:20: parameter \"levels\" of Shape \"loopsubdiv\" would make more than 67 million triangles of the "
@@ -465,16 +465,16 @@ TEST(Pbrt, WarnsOncePerKind) {
       "1:1 Option \"disablepixeljitter\" is not used by Lanthorn: ignored (and 1 more like it)",
       "3:17 parameter \"frob\" of Sampler \"sobol\" is not used by Lanthorn: ignored",
       "7:16 parameter \"size\" of Shape \"sphere\" is not used by Lanthorn: ignored (and 1 more like it)",
-      "7:31 parameter \"radius\" of Shape \"sphere\" is given twice: the last one counts",
+      "7:31 parameter \"radius\" of Shape \"sphere\" is given twice: the last value is used",
       "9:14 parameter \"size\" of Shape \"disk\" is not used by Lanthorn: ignored",
       "10:1 TransformBegin and TransformEnd are read as AttributeBegin and AttributeEnd",
       "11:1 WorldEnd has no meaning in pbrt-v4: ignored",
-      "12:1 there is no coordinate system \"none\": the transform stays as it is (and 1 more like it)"};
+      "12:1 there is no coordinate system \"none\": the transform does not change (and 1 more like it)"};
   EXPECT_EQ(messages, expected);
   EXPECT_EQ(std::get<description::Sphere>(scene.shapes[0].geometry).radius, 2);
 }
 
-// Counts of the scenes that everything else is tested on.
+// Counts for the scenes that the other tests use.
 struct SceneCounts {
   const char* file;
   std::size_t shapes, triangles, patches, lights, area_lights, materials, instances, warnings;

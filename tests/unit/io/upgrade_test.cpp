@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Files of pbrt-v3: pictures against those of the same scenes in the form of pbrt-v4, albedos against pbrt-v3's sums of
-// lobes, and the rules of translation that pictures do not show.
+// Translation of pbrt-v3 files: pictures against those of the same scenes written for pbrt-v4, albedos against
+// pbrt-v3's sums of lobes, and rules of translation that pictures do not show.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -33,7 +33,7 @@ std::vector<std::string> warnings_of(const std::string& text) {
 
 const std::string v3_head = "Film \"image\" \"integer xresolution\" 24 \"integer yresolution\" 24\n";
 
-// The heads are of different versions, and give the same film.
+// The headers are for different versions, and describe the same film.
 struct Pair {
   std::string name;
   std::string v3_options, v4_options;
@@ -58,8 +58,8 @@ std::string v4_text(const Pair& p) {
          "\nPixelFilter \"box\" \"float xradius\" [0.5] \"float yradius\" [0.5]\nWorldBegin\n" + p.v4;
 }
 
-// Numbers of the v4 forms that are not in the v3 forms were computed apart from the program: widths of highlights by
-// the polynomial of pbrt-v3, luminances of black bodies from Planck's law and the CIE's table.
+// Numbers that only the v4 text contains were computed independently: GGX alpha by pbrt-v3's polynomial, luminances of
+// black bodies from Planck's law and the CIE's table.
 std::vector<Pair> pairs() {
   const std::string sky3 = "LightSource \"infinite\" \"color L\" [.5 .6 .7] \"color scale\" [2 2 2]\n";
   const std::string sky4 = "LightSource \"infinite\" \"rgb L\" [.5 .6 .7] \"float scale\" 2\n";
@@ -169,7 +169,7 @@ Image picture(const std::string& text, const std::filesystem::path& folder = "."
   return *select_layer(test::render_image(scene, options), "color");
 }
 
-// The same random numbers make the same paths: the pictures differ by no more than the rounding of what is computed.
+// The same random numbers make the same paths, so that pictures only differ by rounding.
 TEST_P(UpgradedPictures, AreThoseOfTheSameSceneInTheNewForm) {
   const Image found = picture(v3_text(GetParam())), expected = picture(v4_text(GetParam()));
   ASSERT_GT(test::mean_of(expected), 0.001);
@@ -182,8 +182,8 @@ TEST_P(UpgradedPictures, AreThoseOfTheSameSceneInTheNewForm) {
 INSTANTIATE_TEST_SUITE_P(V3, UpgradedPictures, testing::ValuesIn(pairs()),
                          [](const auto& instance) { return test::identifier(instance.param.name); });
 
-// Under a uniform sky of radiance 1, a flat body as wide as the picture has the albedo of its material as radiance: at
-// normal incidence, or, for a sphere, the mean over all directions, weighted by their cosine.
+// Under a uniform sky of radiance 1, the radiance of a flat body as wide as the picture is its material's albedo: at
+// normal incidence; or for a sphere, the mean over all directions, weighted by their cosine.
 double mean_albedo(const std::string& material) {
   const Scene scene = test::scene_from_text(
       "LookAt 0 0 5  0 0 0  0 1 0\nCamera \"orthographic\" \"float screenwindow\" [-1 1 -1 1]\n" + v3_head +
@@ -205,8 +205,8 @@ struct Sum {
   double albedo;  ///< the sum of pbrt-v3's lobes
 };
 
-// The mean Fresnel reflectance of index 1.5 is 0.0918 when smooth; of GGX, with its shadowing, it is 0.054 at a width
-// of 0.3, and 0.040 at 0.49 (by Monte Carlo integration apart from the program). Coats of that width are fits.
+// The mean Fresnel reflectance at index 1.5 is 0.0918 for a smooth surface. For GGX with shadowing it is 0.054 at an
+// alpha of 0.3, and 0.040 at 0.49 (by separate Monte Carlo integration). Coats of that alpha are fits.
 std::vector<Sum> sums() {
   const std::string smooth = " \"float roughness\" .001 \"bool remaproughness\" \"false\"";
   return {
@@ -244,7 +244,7 @@ INSTANTIATE_TEST_SUITE_P(V3, UpgradedAlbedos, testing::ValuesIn(sums()),
 
 TEST(Upgrade, TheFirstSignTellsTheVersion) {
   const auto first_warning = [](const std::string& text) { return warnings_of(text).front(); };
-  const std::string message = " is of pbrt-v3: the file is translated to pbrt-v4";
+  const std::string message = " belongs to pbrt-v3: the file is translated to pbrt-v4";
   EXPECT_EQ(first_warning(v3_head + "WorldBegin"), "1 Film \"image\"" + message);
   EXPECT_EQ(first_warning("WorldBegin\nMaterial \"matte\""), "2 Material \"matte\"" + message);
   EXPECT_EQ(first_warning("WorldBegin\nMakeNamedMaterial \"m\" \"string type\" [\"glass\"]"),
@@ -274,8 +274,9 @@ TEST(Upgrade, MixturesAreErrors) {
       "t.pbrt:2:1: unknown directive \"ColorSpace\"; it is of pbrt-v4, but Film \"image\" in line 1 is of pbrt-v3");
   EXPECT_EQ(error_of(v3_head + "WorldBegin\nMaterial \"mate\""), "t.pbrt:3:1: unknown material \"mate\"");
   EXPECT_EQ(error_of("Film \"rgb\" \"color x\" [1 1 1]"), "t.pbrt:1:12: unknown parameter type \"color\"");
-  EXPECT_EQ(error_of("SurfaceIntegrator \"photonmap\""),
-            "t.pbrt:1:1: directive \"SurfaceIntegrator\" is of pbrt-v2: files of pbrt-v3 and pbrt-v4 are read");
+  EXPECT_EQ(
+      error_of("SurfaceIntegrator \"photonmap\""),
+      "t.pbrt:1:1: directive \"SurfaceIntegrator\" belongs to pbrt-v2: only pbrt-v3 and pbrt-v4 files are supported");
 }
 
 TEST(Upgrade, ErrorsHavePlaces) {
@@ -295,7 +296,7 @@ TEST(Upgrade, ErrorsHavePlaces) {
             "t.pbrt:3:1: Shape \"heightfield\" needs \"nu\" and \"nv\" from 2 to 32768 and nu * nv numbers \"Pz\"");
 }
 
-// What is only approximated is named once, with the first place and the number of places.
+// Each approximation is reported once, with its first place and the number of places.
 TEST(Upgrade, NotesAreCounted) {
   const std::vector<std::string> warnings =
       warnings_of(v3_head +
@@ -304,16 +305,16 @@ TEST(Upgrade, NotesAreCounted) {
                   "Texture \"t\" \"float\" \"constant\" Shape \"sphere\" \"texture shadowalpha\" \"t\"\n"
                   "NamedMaterial \"m\"\nMaterial \"matte\" \"texture Kd\" \"u\"\n");
   const std::vector<std::string> expected = {
-      "1 Film \"image\" is of pbrt-v3: the file is translated to pbrt-v4",
-      "2 the integrator \"whitted\" is replaced by \"path\", which adds light of all other paths",
-      "4 shapes of kind \"cone\", which pbrt-v4 does not have, are made of triangles (2 times)",
+      "1 Film \"image\" belongs to pbrt-v3: the file is translated to pbrt-v4",
+      "2 the integrator \"whitted\" is replaced by \"path\", which also includes all other light paths",
+      "4 shapes of kind \"cone\", which pbrt-v4 does not have, are converted to triangles (2 times)",
       "6 shapes of kind \"nurbs\", which pbrt-v4 does not have, are left out",
       "7 the roughness \"sigma\" of the material \"matte\" is left out",
-      "8 \"Kt\" of Material \"glass\" is left out: it is clear",
+      "8 \"Kt\" of Material \"glass\" is left out: the material is clear",
       "9 the data of materials \"fourier\" cannot be read: they are replaced by \"diffuse\"",
-      "10 \"shadowalpha\", a transparency for shadows alone, is ignored",
-      "11 material \"m\" is not defined before it is used: the current material stays, as in pbrt-v3",
-      "12 texture \"u\" is not defined before it is used: \"Kd\" has its default, as in pbrt-v3"};
+      "10 \"shadowalpha\", a transparency for shadows only, is ignored",
+      "11 material \"m\" is not defined before it is used: the current material does not change, as in pbrt-v3",
+      "12 texture \"u\" is not defined before it is used: \"Kd\" keeps its default, as in pbrt-v3"};
   EXPECT_EQ(warnings, expected);
 }
 
@@ -356,7 +357,7 @@ TEST(Upgrade, LampsWithoutAMaterialEmit) {
   EXPECT_TRUE(std::holds_alternative<description::InterfaceMaterial>(material_of(scene, 1).node));
 }
 
-// Colours as textures have float twins where numbers are needed.
+// Colour textures get a float twin where numbers are needed.
 TEST(Upgrade, TexturesAsAmounts) {
   const SceneDescription scene =
       read(v3_head +
@@ -377,7 +378,7 @@ std::string file_text(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-// The text reads as the same scene, and files are found from its folder.
+// The text describes the same scene, and files are found from its folder.
 TEST(Upgrade, WritesTheTranslation) {
   const test::TemporaryDir dir;
   std::filesystem::create_directories(dir.path() / "new");
@@ -403,10 +404,10 @@ TEST(Upgrade, WritesTheTranslation) {
   EXPECT_EQ(after.files.count("../old/parts/one.ply"), 1u);
   EXPECT_EQ(test::error_text([&] { upgrade_pbrt(dir.path() / "new/scene.pbrt", dir.path()); }),
             (dir.path() / "new/scene.pbrt").string() +
-                ": Film \"rgb\" in line 4 is of pbrt-v4 already: there is nothing to convert");
+                ": Film \"rgb\" in line 4 belongs to pbrt-v4: there is nothing to convert");
 }
 
-// What pbrt-v2 has of its own is translated, or left out with a warning; the rest is as in pbrt-v3.
+// Features of pbrt-v2 only are translated, or skipped with a warning; the rest is as in pbrt-v3.
 TEST(Upgrade, FilesOfPbrtV2AreRead) {
   const std::string world =
       "WorldBegin\nAttributeBegin\nAreaLightSource \"area\" \"color L\" [3 2 1] \"integer nsamples\" 4\nShape "
@@ -424,7 +425,7 @@ TEST(Upgrade, FilesOfPbrtV2AreRead) {
   const std::vector<std::string> said = warnings_of(text);
   for (const char* name : {"Renderer", "Volume", "VolumeIntegrator"})
     EXPECT_TRUE(std::any_of(said.begin(), said.end(), [&](const std::string& warning) {
-      return warning.ends_with("directive \"" + std::string(name) + "\" is of pbrt-v2: left out");
+      return warning.ends_with("directive \"" + std::string(name) + "\" belongs to pbrt-v2: ignored");
     })) << name;
   const auto milk = [](const std::string& name) {
     return read(v3_head + "WorldBegin\nMaterial \"subsurface\" \"color sigma_a\" [1 2 3] \"color " + name +
@@ -434,7 +435,7 @@ TEST(Upgrade, FilesOfPbrtV2AreRead) {
   EXPECT_EQ(warnings_of(v3_head + "WorldBegin\nMaterial \"subsurface\" \"color sigma_prime_s\" [4 5 6]").size(), 1u);
 }
 
-// A name of pbrt-v2, with the parameters that it had there.
+// A name from pbrt-v2, with its parameters there.
 TEST(Upgrade, PhotonMapsAreOurs) {
   const std::string head = v3_head +
                            "Integrator \"photonmap\" \"integer causticphotons\" 5000 \"integer indirectphotons\" "
@@ -451,13 +452,13 @@ TEST(Upgrade, PhotonMapsAreOurs) {
     const std::vector<std::string> all = warnings_of(head + more + "WorldBegin WorldEnd");
     return all.empty() ? std::string() : all.back();
   };
-  const std::string replaced = "2 the integrator \"photonmap\" is of pbrt-v2: Lanthorn's photonmap stands for it";
+  const std::string replaced = "2 the integrator \"photonmap\" is of pbrt-v2: Lanthorn's photonmap replaces it";
   EXPECT_EQ(said(""), replaced);
   EXPECT_EQ(said("\"bool finalgather\" false "),
-            replaced + ", which has a final gathering though \"finalgather\" is false");
+            replaced + ", which uses final gathering although \"finalgather\" is false");
 }
 
-// Quadrics that pbrt-v4 lacks: their points and normals, by the equations f(p) = 0 and grad f of the surfaces.
+// Quadrics that pbrt-v4 lacks: their points and normals, against the surfaces' equation f(p) = 0 and grad f.
 TEST(Upgrade, QuadricsAreMeshes) {
   struct Quadric {
     std::string text;
@@ -499,7 +500,7 @@ TEST(Upgrade, QuadricsAreMeshes) {
             "t.pbrt:2:12: Shape \"paraboloid\" needs 0 <= zmin < zmax");
 }
 
-// The texture "uv" shows fractional parts: (-1) u + 0 is 1 - u, 0.5 u + 2.25 is 0.25 + 0.5 u.
+// The texture "uv" returns fractional parts: (-1) u + 0 becomes 1 - u, 0.5 u + 2.25 becomes 0.25 + 0.5 u.
 TEST(Upgrade, CoordinatesAsColoursStayBetween0And1) {
   const SceneDescription scene =
       read(v3_head +

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// A toy light, of which each part can be left out: without any one that its traits ask for it is no light, and could
-// not become one of those in `Light`.
+// A toy light with optional parts: without any part that its traits require it does not satisfy the concept, and could
+// not become one of the alternatives of `Light`.
 #include <gtest/gtest.h>
 
 #include <type_traits>
@@ -36,7 +36,7 @@ struct WithInvisible {
 };
 struct WithoutInvisible {};
 
-// Black. `At`: what tells where it is seen, a hit or a direction.
+// A black light. `At`: argument that says where it is seen, a hit or a direction.
 template <Part missing, class Traits, class At>
 struct Toy : std::conditional_t<missing == Part::traits, WithoutTraits, Traits>,
              std::conditional_t<missing == Part::invisible, WithoutInvisible, WithInvisible> {
@@ -101,7 +101,7 @@ TEST(LightSource, HaveWhatTheirTraitsAskFor) {
   static_assert(LightSource<Spark<Part::emitted>>);
 }
 
-/// Traits and the answers that depend on them agree.
+/// Traits agree with the functions that depend on them.
 TEST(LightSource, TraitsOfLights) {
   const auto expect = [](const Light& light, bool surface, bool infinite, bool far, bool delta) {
     EXPECT_EQ(has_surface(light), surface) << light.index();

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// A toy material: what the file of a material in src/material has, and all that it needs.
+// A toy material: everything that a material's file in src/material must provide.
 #include <gtest/gtest.h>
 
 #include "material/kind.h"
@@ -12,7 +12,7 @@ namespace lanthorn {
 namespace description {
 namespace {
 
-/// Paper that shines through where it is thin.
+/// Paper that transmits light where it is thin.
 struct ToyMaterial {
   SpectrumParameter colour{0.5f, {}};
   FloatParameter thickness{1, {}};  ///< in [0,1]
@@ -34,7 +34,7 @@ template ClosureAt compile(const description::ToyMaterial& m, MaterialCompiler& 
 namespace toy_material_test {
 namespace {
 
-// A scene of its own, for textures.
+// A separate scene, for textures.
 struct Workshop {
   SceneDescription scene;
   SpectrumStore spectra;

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t width = 5, height = 4;
 
-// Two densities; the first has a row and a corner without any.
+// Two densities. The first has a row and a corner of zeros.
 std::vector<float> two_grids() {
   std::vector<float> values{0, 0, 0, 0, 0, 0, 3, 1, 2, 5, 1, 1, 8, 0, 0, 2, 1, 1, 0, 0};
   for (std::size_t i = 0; i < width * height; ++i) values.push_back(1 + 0.3f * static_cast<float>(i % 7));
@@ -30,13 +30,13 @@ TEST(BilinearDistributions, DensityIsTheNormalizedBlend) {
   const BilinearDistributions d(two_grids(), width, height);
   for (const Blend& blend : blends()) {
     double sum = 0;
-    const int n = 240;  // a multiple of both numbers of cells: the midpoint rule is exact for what is linear
+    const int n = 240;  // divisible by both cell counts, so the midpoint rule is exact for the linear pieces
     for (int i = 0; i < n * n; ++i)
       sum += static_cast<double>(
           d.pdf((Vec2(static_cast<float>(i % n), static_cast<float>(i / n)) + Vec2(0.5f)) / float{n}, blend));
     EXPECT_NEAR(sum / (n * n), 1, 1e-4);
   }
-  // At nodes: ratios are those of the table, and both densities count by their weight.
+  // At the nodes, densities have the ratios of the table, and a blend weights both densities.
   const Vec2 a(0.25f, 1.0f / 3), b(1, 1.0f / 3);
   EXPECT_NEAR(d.pdf(a, blends()[0]) / d.pdf(b, blends()[0]), 3.0f / 5, 1e-5f);
   EXPECT_NEAR(d.pdf(a, blends()[2]), 0.375f * d.pdf(a, blends()[0]) + 0.625f * d.pdf(a, blends()[1]), 1e-5f);

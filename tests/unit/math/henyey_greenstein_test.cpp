@@ -11,10 +11,10 @@
 namespace lanthorn::henyey_greenstein_test {
 namespace {
 
-// Asymmetries g, for which -g is tested as well: the two functions mirror each other.
+// Asymmetries g. -g is tested as well, which gives the mirror image.
 class Peaks : public testing::TestWithParam<float> {};
 
-// Integrals over the logarithm of 1 - cos: most of a narrow peak lies where 1 - cos is below (1 - g)^2.
+// The integrals are over log(1 - cos), because most of a narrow peak lies where 1 - cos is below (1 - g)^2.
 TEST_P(Peaks, AreNormalisedAndHaveTheirMeanCosine) {
   const float g = GetParam();
   const double expected = 1 - static_cast<double>(g);
@@ -32,8 +32,8 @@ TEST_P(Peaks, AreNormalisedAndHaveTheirMeanCosine) {
   EXPECT_NEAR(mean_versine, expected, 1e-4 * expected);
 }
 
-// Half of the samples lie within the median angle. Their density is that of the direction which comes with it, up to
-// the direction's own rounding.
+// Half of the samples lie within the median angle. The density returned with a direction is that of the direction, up
+// to the direction's own rounding.
 TEST_P(Peaks, AreSampled) {
   const Direction in = normalize(Vec3(1, -2, 0.5f));
   for (const float g : {GetParam(), -GetParam()}) {

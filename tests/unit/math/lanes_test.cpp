@@ -18,7 +18,7 @@ using Floats = std::array<float, Lanes::width>;
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 constexpr Floats a{1, -2, 0.5f, 3, -0.25f, 7, 0, nan}, b{2, -2, -4, 0.125f, 8, -7, 1, 1};
 
-// A NaN is as good as any other.
+// All NaNs count as equal.
 void expect_same(const Lanes& got, const Floats& expected) {
   const Floats values = got.stored();
   for (std::size_t i = 0; i < values.size(); ++i)
@@ -41,7 +41,7 @@ TEST(Lanes, ComputeAsFloatsDo) {
   expect_same(x / y, each([](float p, float q) { return p / q; }));
   expect_same(abs(x), each([](float p, float) { return std::fabs(p); }));
   expect_same(Lanes(3.0f), each([](float, float) { return 3.0f; }));
-  // The second operand is taken where one is no number.
+  // If either operand is NaN, the result is the second.
   expect_same(min(x, y), each([](float p, float q) { return p < q ? p : q; }));
   expect_same(max(x, y), each([](float p, float q) { return p > q ? p : q; }));
 }
@@ -75,7 +75,7 @@ TEST(Lanes, VectorsInLanes) {
     EXPECT_EQ(stored.lane(i), Point(x, 2 - x, 0.5f * x));
   }
   const LaneVec3 v = stored.load(), w{1, -1, 2};
-  // Small integers and halves: no operation rounds, so that fused ones have the same result.
+  // With small integers and halves no operation rounds, so fused operations give the same result.
   const auto of_lane = [&](auto&& f) {
     Floats result;
     for (std::uint32_t i = 0; i < Lanes::width; ++i) result[i] = f(stored.lane(i));

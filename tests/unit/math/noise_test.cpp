@@ -17,7 +17,7 @@ Point random_point(HashRng& rng, float size) {
   return size * (2.0f * Vec3(x, y, z) - 1.0f);
 }
 
-// Gradient by central differences.
+// The gradient, by central differences.
 Vec3 slope(const Point& p) {
   constexpr float h = 1e-2f;
   Vec3 g;
@@ -29,7 +29,7 @@ Vec3 slope(const Point& p) {
   return g;
 }
 
-// The value of Perlin's reference implementation at a point whose gradients are the same there.
+// The value that Perlin's reference implementation returns, at a point where both have the same gradients.
 TEST(Noise, IsPerlins) { EXPECT_NEAR(perlin_noise({3.14f, 42, 7}), 0.13691995878400012, 1e-6); }
 
 TEST(Noise, IsZeroOnTheLatticeWithEdgesAsGradients) {
@@ -49,7 +49,8 @@ TEST(Noise, IsZeroOnTheLatticeWithEdgesAsGradients) {
     }
     EXPECT_EQ(zeros, 1);
   }
-  // x is absent from 6 gradients of 16, y and z from 4 and 6: at least 90 of 500 here (seven standard deviations).
+  // x is zero in 6 of 16 gradients, y in 4 and z in 6, so of 500 about 125 at least. 60 is almost seven standard
+  // deviations less.
   for (const int count : seen) EXPECT_GT(count, 60);
 }
 
@@ -57,7 +58,7 @@ TEST(Noise, HasPeriod256AndContinuousSlopesAcrossCells) {
   HashRng rng(2);
   for (int i = 0; i < 200; ++i) {
     const Point p = random_point(rng, 100);
-    // Multiples of 2^-10 survive the shift exactly.
+    // Multiples of 2^-10 are exact after the shift.
     const Point q = floor(p * 1024.0f) / 1024.0f;
     EXPECT_EQ(perlin_noise(q), perlin_noise(q + Vec3(256, -512, 256)));
     Point border = q;
@@ -72,7 +73,7 @@ TEST(Noise, HasPeriod256AndContinuousSlopesAcrossCells) {
   EXPECT_TRUE(std::isfinite(perlin_noise({1e30f, -3e38f, 1e20f})));
 }
 
-// 4e5 points in 8e6 cells: the standard error of the mean is below 5e-4.
+// With 4e5 points in 8e6 cells, the standard error of the mean is below 5e-4.
 TEST(Noise, HasMeanZeroAndStaysInRange) {
   HashRng rng(3);
   double sum = 0, squares = 0;

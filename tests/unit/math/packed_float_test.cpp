@@ -16,7 +16,7 @@ namespace {
 constexpr float infinity = std::numeric_limits<float>::infinity();
 constexpr std::uint16_t sign_bit = 0x8000, largest_code = 0x7bff, infinite_code = 0x7c00;
 
-// By the definition of IEEE 754, 3.4.
+// The value of a half float by its definition, IEEE 754, 3.4.
 float value_of(std::uint16_t half) {
   const int exponent = half >> 10 & 31, fraction = half & 1023;
   const float magnitude = exponent == 0 ? std::ldexp(static_cast<float>(fraction), -24)
@@ -24,7 +24,7 @@ float value_of(std::uint16_t half) {
   return half & sign_bit ? -magnitude : magnitude;
 }
 
-// The instructions, if this is compiled for them, and the integer arithmetic.
+// Tests both the processor's instructions, if compiled in, and the integer arithmetic.
 void expect_code(float x, std::uint16_t code) {
   ASSERT_EQ(encode_half(x), code) << x;
   ASSERT_EQ(encode_half_in_software(x), code) << x;
@@ -34,7 +34,7 @@ TEST(HalfFloat, SurvivesARoundTrip) {
   for (std::uint32_t code = 0; code <= largest_code; ++code)
     for (const std::uint32_t sign : {0u, std::uint32_t{sign_bit}}) {
       const auto half = static_cast<std::uint16_t>(sign | code);
-      const float value = value_of(half);  // of denormals and of -0, too
+      const float value = value_of(half);  // also of denormals and of -0
       ASSERT_EQ(std::bit_cast<std::uint32_t>(decode_half(half)), std::bit_cast<std::uint32_t>(value));
       ASSERT_EQ(std::bit_cast<std::uint32_t>(decode_half_in_software(half)), std::bit_cast<std::uint32_t>(value));
       expect_code(value, half);
@@ -55,7 +55,7 @@ TEST(HalfFloat, IsTheNearestAndTiesGoToEven) {
 TEST(HalfFloat, KeepsInfinityAndNan) {
   expect_code(infinity, infinite_code);
   expect_code(-infinity, sign_bit | infinite_code);
-  expect_code(65520, infinite_code);  // between 65504 and 65536: the tie goes to even, which would be 65536
+  expect_code(65520, infinite_code);  // between 65504 and 65536; the tie rounds to even, 65536, which is out of range
   expect_code(std::nextafter(65520.0f, 0.0f), largest_code);
   for (const auto encode : {encode_half, encode_half_in_software}) {
     EXPECT_TRUE(std::isnan(decode_half(encode(NAN))));
@@ -87,11 +87,11 @@ TEST(SharedExponent, IsRoundedToNearest) {
       mean_error += (decoded[c] - rgb[c]) / largest / (3.0 * count);
     }
   }
-  // Deviation 8e-4 each, of the mean 1e-6; six of these.
+  // Single errors have a standard deviation of 8e-4 and their mean one of 1e-6. The bound is six of the latter.
   EXPECT_LT(std::fabs(mean_error), 6e-6);
 }
 
-// All values whose largest component has a normalised mantissa, and the smallest ones.
+// All values whose largest component has a normalised mantissa, and the smallest values.
 TEST(SharedExponent, SurvivesARoundTrip) {
   for (std::uint32_t exponent = 0; exponent < 32; ++exponent)
     for (std::uint32_t mantissa = exponent == 0 ? 0 : 256; mantissa < 512; ++mantissa)

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Statistical tests have a false-alarm rate of 1e-4 each; keys are fixed.
+// Statistical tests have a false-alarm rate of 1e-4 each and fixed keys.
 #include "math/primary_samples.h"
 
 #include <gtest/gtest.h>
@@ -33,7 +33,7 @@ double uniform_p(const std::vector<double>& counts) {
 
 std::size_t cell_of(float x) { return static_cast<std::size_t>(x * cells); }
 
-// Probability of [a, b) + any integer under a normal density about 0.
+// Probability of [a, b) modulo 1 under a normal density with mean 0.
 double wrapped_normal(double a, double b, double sigma) {
   double sum = 0;
   for (int turn = -5; turn <= 5; ++turn)
@@ -41,8 +41,8 @@ double wrapped_normal(double a, double b, double sigma) {
   return sum;
 }
 
-// How far numbers are from where they were, around the torus, after `mutations` accepted small mutations of which the
-// group was read after the last alone: a symmetric density, which is that of as many steps. The numbers stay uniform.
+// Tests how far numbers move around the torus in `mutations` small mutations, if the group is only read after the last:
+// the distribution is that of the same number of separate steps. The numbers stay uniform.
 void expect_wrapped_normal(float sigma, int mutations) {
   constexpr int vectors = 20000;
   std::vector<double> steps(cells), places(cells), expected(cells);
@@ -104,7 +104,7 @@ TEST(PrimarySamples, NumbersTakeStepsOfTheirOwn) {
 
 TEST(PrimarySamples, SmallMutationsKeepMostSeeds) {
   constexpr int vectors = 20000;
-  for (const int mutations : {1, 5}) {  // the group is read after the last alone
+  for (const int mutations : {1, 5}) {  // the group is only read after the last
     int kept = 0;
     for (int i = 0; i < vectors; ++i) {
       PrimarySamples samples(0.01f);
@@ -138,7 +138,7 @@ TEST(PrimarySamples, RejectionRestoresEveryNumber) {
     samples.reject();
     expect_equal(8);
   }
-  // A group that was behind when the mutation that is rejected read it.
+  // A group that had steps to catch up when a mutation read it that is then rejected.
   for (PrimarySamples* s : {&samples, &untouched}) {
     s->propose(Mutation::small);
     s->accept();
@@ -169,7 +169,7 @@ TEST(PrimarySamples, LargeMutationsForgetWhatWasNotRead) {
   EXPECT_GT(uniform_p(steps), 1e-4);
 }
 
-// A group that a large mutation has drawn anew is what it is from then on, whenever it is read.
+// Once a large mutation has redrawn a group, the group keeps these values whenever it is read.
 TEST(PrimarySamples, RejectionRestoresWhatALargeMutationDrew) {
   PrimarySamples samples(1e-4f);
   samples.start(13);
@@ -182,7 +182,7 @@ TEST(PrimarySamples, RejectionRestoresWhatALargeMutationDrew) {
   samples.propose(Mutation::small);
   samples.reject();
   for (std::size_t d = 0; d < PrimarySamples::group_size; ++d) EXPECT_NEAR(samples.group(1)[d], proposed[d], 1e-3);
-  // Of two large mutations in a row the second does not propose what the first drew.
+  // After a second large mutation, the group differs from what the first one drew.
   samples.propose(Mutation::large);
   samples.accept();
   samples.propose(Mutation::large);
@@ -205,15 +205,15 @@ TEST(PrimarySamples, StartForgetsAll) {
   EXPECT_EQ(samples.seed_of(1), fresh.seed_of(1));
 }
 
-// Metropolis' rule on a density that two groups decide, the second of which is not always read: the chain, which starts
-// with that density, goes on with it.
+// Metropolis' rule on a density that depends on two groups, the second of which is not always read. Chains that start
+// with that density keep it.
 TEST(PrimarySamples, ChainsKeepTheirDensity) {
   constexpr int chains = 20000, mutations = 12;
   constexpr float largest = 5;
   std::vector<double> first(cells), other(cells), expected_first(cells), expected_other(cells);
   const auto density = [](PrimarySamples& samples) {
     if (samples.group(0)[0] < 0.5f) return 2.0f;
-    return samples.group(1)[2] < 0.5f ? 1.0f : largest;  // paths read what they need
+    return samples.group(1)[2] < 0.5f ? 1.0f : largest;  // like paths, which only read the numbers they need
   };
   for (int i = 0; i < chains; ++i) {
     PrimarySamples samples(0.2f);

@@ -13,8 +13,8 @@
 namespace lanthorn::sampler_test {
 namespace {
 
-// Every group of 16 consecutive points from a multiple of 16 has one point per sixteenth in each dimension, and per 4x4
-// cell in the first two dimensions of a group: Owen scrambling and the shuffle keep (0,m,2)-nets.
+// Each aligned run of 16 consecutive points has one point per sixteenth in each dimension, and one per 4x4 cell in the
+// first two dimensions of a group: Owen scrambling and the shuffle keep (0,m,2)-nets.
 TEST(Sampler, FirstDimensionsAreStratified) {
   for (const std::uint32_t pixel : {0u, 7u, 12345u}) {
     std::array<std::set<int>, 4> strata;
@@ -43,7 +43,7 @@ TEST(Sampler, SeekMakesDrawsAFunctionOfTheDimension) {
   }
 }
 
-// Numbers that were drawn before, or of a group's neighbour, are the same as those drawn when needed.
+// Drawing groups ahead of time, or drawing a neighbouring group, changes no numbers.
 TEST(Sampler, DrawingAheadChangesNoNumber) {
   PrimarySamples chain(0.01f);
   chain.start(5);
@@ -60,8 +60,8 @@ TEST(Sampler, DrawingAheadChangesNoNumber) {
   }
 }
 
-// Means of 1/2 and covariances of 0 between dimensions, groups and streams, within 4.5 standard errors of independent
-// draws (false alarms: < 1e-4 in all; low-discrepancy dimensions only come closer).
+// Means are 1/2, and covariances between dimensions, groups and streams are 0, within 4.5 standard errors of
+// independent draws (false alarms: < 1e-4 in all; low-discrepancy dimensions are only closer).
 TEST(Sampler, DimensionsAreUniformAndUncorrelated) {
   constexpr int n = 1 << 14, dims = 40;
   std::vector<double> mean(dims), product(dims);

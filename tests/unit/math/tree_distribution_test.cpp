@@ -40,8 +40,8 @@ TEST(TreeDistribution, DrawsByItsDensity) {
     const auto [at, pdf] = tree.sample(u);
     for (const float x : at) ASSERT_TRUE(x >= 0 && x < 1);
     ASSERT_NEAR(static_cast<double>(pdf), density_of_example(at), 1e-5);
-    mean_of_inverse += 1 / static_cast<double>(pdf);  // its mean is the volume of all
-    in_half += at[2] < 0.5f ? 1 : 0;                  // no node halves this axis
+    mean_of_inverse += 1 / static_cast<double>(pdf);  // its mean is the total volume
+    in_half += at[2] < 0.5f ? 1 : 0;                  // no node splits this axis
   }
   EXPECT_NEAR(mean_of_inverse / n, 1, 0.01);
   EXPECT_NEAR(in_half / n, 0.5, 0.005);
@@ -64,7 +64,7 @@ TEST(TreeDistribution, KnowsTheDensityOfSomeNumbers) {
   EXPECT_FLOAT_EQ(tree.pdf({any, 0.1f, any, 0.2f}), (0.25f + 2) / 16 / 0.25f);
 }
 
-// What is drawn in narrow cells still uses all of the numbers.
+// Samples in narrow cells keep the full resolution of the number they are drawn from.
 TEST(TreeDistribution, KeepsNumbersInNarrowCells) {
   TreeDistribution tree;
   std::uint32_t node = tree.add_leaf(1);

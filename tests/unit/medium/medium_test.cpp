@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Phase function and flights against integrals. Monte Carlo means: fixed seeds, bounds at 5 standard errors
+// The phase function and flights against integrals. Monte Carlo means have fixed seeds and bounds of 5 standard errors
 // (false-alarm rate below 1e-6 each).
 #include <gtest/gtest.h>
 
@@ -46,7 +46,7 @@ TEST_P(Phase, IsNormalisedWithMeanCosineG) {
   EXPECT_NEAR(mean_cosine, static_cast<double>(GetParam()), 1e-3);
 }
 
-// Moments of the cosine under sampling, against those of the density; and the density that comes with the sample.
+// Moments of the cosine of samples against those of the density, and the density returned with each sample.
 TEST_P(Phase, SamplesFollowIt) {
   const HenyeyGreenstein hg{GetParam()};
   const Direction wi = normalize(Vec3(1, -2, 0.5f));
@@ -71,7 +71,7 @@ HomogeneousMedium chromatic() {
   return m;
 }
 
-// What gets through, and what scatters before each of some distances, in every channel.
+// In every channel: how much light passes, and how much scatters before and after a given distance.
 TEST(Homogeneous, FlightsAreUnbiased) {
   const HomogeneousMedium m = chromatic();
   constexpr float length = 0.8f;
@@ -130,7 +130,7 @@ TEST(Homogeneous, EmissionIsIntegratedAlongTheRay) {
   EXPECT_NEAR(m.emission_along(0.01f, rgb).emitted[1], 3 * (1 - std::exp(-0.005)), 1e-5);
 }
 
-// A density that varies by a factor of 40 along the way, in a box that the segment enters and leaves.
+// A density that varies by a factor of 40 along the segment, in a box that the segment enters and leaves.
 DensityMedium varied() {
   DensityMedium m;
   m.sigma_a = SpectrumCurve::unbounded({0.2f, 0.5f, 1.0f});
@@ -184,7 +184,7 @@ TEST(Varying, FlightsAndTransmittanceAreUnbiased) {
   }
 }
 
-// No tentative collision may be denser than the majorant: otherwise the estimates above are biased where it matters.
+// Nowhere may the density exceed the majorant: the estimates above would be biased.
 TEST(Varying, MajorantsBound) {
   const DensityMedium m = varied();
   HashRng rng(7);
@@ -244,7 +244,7 @@ TEST(Varying, BlackBodiesEmit) {
   }
 }
 
-// One curve for all points of the segment is what the transmittance of each part is in the mean.
+// The curve, which serves all points of a segment, has the transmittance to each point as its mean.
 TEST(TransmittanceCurve, IsTransmittanceUpToEveryPoint) {
   const Segment way{{0.1f, 0.2f, 1}, {0, 0, 1}, 5};
   const Medium even = chromatic(), on_grid = varied();
@@ -267,7 +267,7 @@ TEST(TransmittanceCurve, IsTransmittanceUpToEveryPoint) {
   EXPECT_LT(by_curve[3].mean(), 0.5);
 }
 
-// MIS weights take the optical depth of the mean of the wavelengths, of flights and of ways alike.
+// MIS weights use the optical depth of the mean over wavelengths, both for flights and for whole segments.
 TEST(Homogeneous, AttenuationIsThatOfEachWavelength) {
   HomogeneousMedium m;
   m.sigma_a = SpectrumCurve::unbounded({0.1f, 0.1f, 0.4f});
@@ -295,7 +295,7 @@ TEST(Medium, KnowsWhereItScatters) {
   const float far = scattering_length(even, {}, rgb);
   EXPECT_LT(std::get<HomogeneousMedium>(even).attenuation(far, rgb).transmittance[0], 0x1p-24f);
   EXPECT_EQ(scattering_length(even, {{}, {0, 0, 1}, 2}, rgb), 2);
-  // Its box ends at z = 4.
+  // The medium's box ends at z = 4.
   EXPECT_NEAR(scattering_length(on_grid, {{0, 0, 1}, {0, 0, 1}, infinity}, rgb), 3, 1e-5f);
   EXPECT_EQ(scattering_length(on_grid, {{0, 0, 5}, {0, 0, 1}, infinity}, rgb), 0);
   EXPECT_TRUE(scattering_at(on_grid, {0, 0, 5}, rgb).is_black());

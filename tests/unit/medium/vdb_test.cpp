@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// NanoVDB files, made by NanoVDB itself.
+// Reading of NanoVDB files, which NanoVDB itself has written.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -27,7 +27,7 @@ const Point origin(1, -2, 0.5f);
 
 float value(const Vec3& index) { return 0.2f + 0.03f * index.x + 0.02f * index.y + 0.01f * index.z; }
 
-// Voxels 0 to 20 along each axis hold a linear function, which linear interpolation reproduces.
+// Voxels 0 to 20 along each axis hold a linear function, which linear interpolation must reproduce.
 std::string write_ramp(const test::TemporaryDir& folder, nanovdb::io::Codec codec) {
   const std::string file = (folder.path() / ("ramp" + std::to_string(static_cast<int>(codec)) + ".nvdb")).string();
   test::write_vdb(file, size, voxel, origin, value, codec);
@@ -67,7 +67,7 @@ TEST(Vdb, BrokenFilesAreErrors) {
   }
 }
 
-// Files of older versions have other headers, which would look like damage.
+// Files of older versions have other headers, which must not be reported as damage.
 TEST(Vdb, OtherVersionsAreNamed) {
   const test::TemporaryDir folder;
   std::ostringstream written;

@@ -52,7 +52,7 @@ TEST(LightLayers, LightOutOfMediaIsKeptOnceMore) {
   const HenyeyGreenstein phase;
   LightLayers layers(w);
   layers.add_hit(EmissionVertex{from_camera, {0, 0, 1}, Spectrum(8)}, Spectrum(8));
-  layers.add_hit(EscapeVertex{from_camera, {0, 0, 1}}, Spectrum(16));  // seen through the medium
+  layers.add_hit(EscapeVertex{from_camera, {0, 0, 1}}, Spectrum(16));  // through the medium
   layers.see(FlownSegment{from_camera, {}, 1, false, Spectrum(1), 0, {}});
   layers.add(PathClass::caustic, Spectrum(1), false);
   layers.see(SurfaceVertex{from_camera, at, {0, 0, 1}, {0, 0, 1}, true});

@@ -11,7 +11,7 @@
 namespace lanthorn::lobe_split_test {
 namespace {
 
-// The part of a metal's light, seen at right angles, that is the cache's.
+// Fraction of a metal's light, at normal incidence, that is left to the cache.
 double wide_part(float alpha) {
   const Bsdf metal = Conductor{.eta = Spectrum(0.2f), .k = Spectrum(3), .alpha_x = alpha, .alpha_y = alpha};
   test::Mean part, light;
@@ -26,7 +26,7 @@ double wide_part(float alpha) {
 }
 
 TEST(LobeSplit, FollowsTheWidthOfLobes) {
-  // Half of a lobe of half_spread_alpha, and the light of densities that diffuse surfaces have, too.
+  // Half of a lobe of half_spread_alpha, plus the light at densities that diffuse surfaces have as well.
   EXPECT_NEAR(wide_part(half_spread_alpha), 0.55, 0.02);
   EXPECT_GT(wide_part(0.3f), 0.9);
   EXPECT_LT(wide_part(0.01f), 0.1);

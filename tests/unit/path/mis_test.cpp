@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The recursive weights of bidirectional methods against their definition: the density of a technique over the sum of
-// the densities of all techniques that make the path, by products over its vertices.
+// The recursive weights of bidirectional methods against their definition: a technique's density divided by the sum
+// over all techniques that can generate the path. Here densities are computed as products over the path's vertices.
 #include "path/mis.h"
 
 #include <gtest/gtest.h>
@@ -17,21 +17,21 @@
 namespace lanthorn::mis_test {
 namespace {
 
-// A path x_0 ... x_k from a light, to be seen by a lens. Index i: at vertex x_i; `p` towards x_{i-1}, `n` towards
-// x_{i+1} (of the last one the lens).
+// A path x_0 ... x_k from a light, which the lens then sees. Index i: at vertex x_i. `p`: towards x_{i-1}. `n`: towards
+// x_{i+1} (from x_k, towards the lens).
 struct RandomPath {
   Techniques techniques;
   bool can_be_hit;
   double emission_area, emission_direction, direct_area;  // densities of the light's end
-  double lens_density;                                    // per area perpendicular to the first eye ray, at x_k
-  std::vector<double> distance2;                          // of x_i and x_{i+1}
+  double lens_density;                                    // at x_k, per area perpendicular to the first eye ray
+  std::vector<double> distance2;                          // between x_i and x_{i+1}
   std::vector<double> cos_p, cos_n;
   std::vector<double> forward, reverse;  // per solid angle: light walks from x_{i-1} to x_{i+1}, eye walks back
   std::vector<bool> delta, merges;
   std::vector<bool> in_medium;
   std::vector<double> collision;  // per metre, where walks scatter in media; 1 on surfaces
   std::vector<double> pass;       // probability of passing from x_i to x_{i+1}
-  std::vector<double> sin;        // between both segments
+  std::vector<double> sin;        // of the angle between the segments
   std::vector<double> coherence;  // of eye paths that scatter there; 1 at delta lobes
 
   int last() const { return static_cast<int>(cos_p.size()) - 1; }
@@ -75,19 +75,19 @@ RandomPath random_path(HashRng& rng) {
   return path;
 }
 
-// Number of scatterings by lobes that are not delta at x_first ... x_last.
+// Number of scatterings at x_first ... x_last by lobes that are not delta.
 int scatterings(const RandomPath& path, int first, int last) {
   int count = 0;
   for (int i = first; i <= last; ++i) count += path.delta[static_cast<unsigned>(i)] ? 0 : 1;
   return count;
 }
-// Whether eye paths are long enough to end at x_i.
+// Whether eye paths may be long enough to end at x_i.
 bool eye_path_reaches(const RandomPath& path, int i) {
   return path.techniques.goes_on || scatterings(path, i + 1, path.last()) <= (i == 0 ? 1 : 0);
 }
 
-// Density at x_i by the light walk and by the eye walk: per area, and by those of walks that end there per volume in
-// media, per area across the walk if it only comes by.
+// Density at x_i of the light walk and of the eye walk, per area. In media: per volume for walks that end there
+// (`by_`), per area perpendicular to the walk for walks that pass (`direction_by_`).
 double direction_by_light(const RandomPath& path, int i) {
   const auto u = static_cast<unsigned>(i);
   const double direction = i == 1 ? path.emission_direction : path.forward[u - 1];
@@ -115,7 +115,8 @@ float samples_of_connection(const RandomPath& path, int s) {
                     : 1;
 }
 
-// Of technique s = 0 (hit), 1 (next-event estimation), 2 ... k (connection of x_{s-1} and x_s), k + 1 (lens).
+// Density of technique s: 0 is a hit, 1 next-event estimation, 2 ... k the connection of x_{s-1} and x_s, k + 1 the
+// lens.
 double density_of_connection(const RandomPath& path, int s) {
   const int k = path.last();
   const auto is_delta = [&](int i) { return path.delta[static_cast<unsigned>(i)]; };
@@ -123,7 +124,7 @@ double density_of_connection(const RandomPath& path, int s) {
   if (s > 0 && !path.techniques.connects) return 0;
   if (s <= k && !eye_path_reaches(path, s)) return 0;
   if ((s >= 2 && is_delta(s - 1)) || (s >= 1 && s <= k && is_delta(s))) return 0;
-  // With merging alone the walk keeps what photons cannot bring.
+  // With merging alone, the walk only keeps the light that photons cannot bring.
   if (s == 0 && !path.techniques.connects)
     for (int i = 1; i <= k; ++i)
       if (!is_delta(i)) return 0;
@@ -132,7 +133,7 @@ double density_of_connection(const RandomPath& path, int s) {
   for (int i = s; i <= k; ++i) product *= by_eye(path, i);
   return product;
 }
-// Of a photon at x_m.
+// Density of merging with a photon at x_m.
 double density_of_merge(const RandomPath& path, int m) {
   if (!path.merges[static_cast<unsigned>(m)] || (m == 1 && path.techniques.connects)) return 0;
   if (!eye_path_reaches(path, m)) return 0;
@@ -142,13 +143,14 @@ double density_of_merge(const RandomPath& path, int m) {
   return product;
 }
 
-// Product of the coherences of eye vertices before x_m.
+// Product of the coherences of the eye path's vertices before x_m.
 double coherence_before(const RandomPath& path, int m) {
   double product = 1;
   for (int j = m + 1; j <= path.last(); ++j) product *= path.coherence[static_cast<unsigned>(j)];
   return product;
 }
-// Of merging at x_m in a medium by an estimator: both walks scatter there, or one's or both's rays come by.
+// Density of merging at x_m in a medium, by kind of estimator: both walks scatter there, or the ray of one or of both
+// passes by.
 enum class Kind : std::uint8_t { point, beam, photon_beam, beams };
 constexpr std::array kinds{Kind::point, Kind::beam, Kind::photon_beam, Kind::beams};
 double density_of_volume_merge(const RandomPath& path, int m, Kind kind) {
@@ -181,7 +183,7 @@ Recursion recursion(const RandomPath& path) {
   Recursion r;
   r.light.resize(static_cast<unsigned>(k) + 1);
   r.eye.resize(static_cast<unsigned>(k) + 1);
-  // The step over x_i, to which the walk has come by a flight of probability `pass`; `share`: of merging there.
+  // Scatters at x_i, which the walk has reached by a flight of probability `pass`. `share`: factor on merging there.
   const auto leave = [&](SubpathDensities& d, unsigned i, const VolumeMerging& seen, double pass, Scattering s,
                          double share) {
     if (path.delta[i]) {
@@ -252,7 +254,7 @@ float weight_of_connection(const RandomPath& path, const Recursion& r, int s) {
   };
   const auto media = [&](unsigned i) { return path.in_medium[i] ? volume_merging(path, i) : 0.0f; };
   const auto flight = [&](unsigned from, unsigned to) { return path.pass[from] * path.collision[to]; };
-  // Where no light path can make the path, the density of its start must not matter.
+  // If no light path can make this path, the density of its start must not matter.
   const auto start = [&](bool matters, double density) { return matters ? f(density) : 1e6f; };
   if (s == 0) {
     const float emission =
@@ -303,7 +305,7 @@ TEST(Mis, RecursiveWeightsAreRatiosOfDensities) {
       const double density = connections[static_cast<unsigned>(s)];
       if (density == 0) continue;
       const double weight = static_cast<double>(weight_of_connection(path, r, s));
-      // The walk's own hits have all the weight where merging alone leaves them to it.
+      // If merging alone leaves hits to the walk, they have the full weight.
       ASSERT_NEAR(weight, density / total, 1e-4) << "path " << n << " of " << k << ", technique " << s;
       sum += weight;
     }

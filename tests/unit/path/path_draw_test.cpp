@@ -40,7 +40,7 @@ TEST(ShutterPart, FewPassesAreSpreadOverTheInterval) {
   for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(static_cast<std::size_t>(4 * first[i]), i);
 }
 
-// The colour of a reflectance under D65 as the film has it after these passes, without noise.
+// The colour of a reflectance under D65 as the film has it after a number of passes, without noise.
 Rgb mean_colour(std::uint64_t seed, std::uint32_t passes, float (*reflectance)(float)) {
   Rgb sum;
   for (std::uint32_t pass = 0; pass < passes; ++pass) {
@@ -52,7 +52,7 @@ Rgb mean_colour(std::uint64_t seed, std::uint32_t passes, float (*reflectance)(f
   return sum;
 }
 
-// Jittered offsets, as paths have, are off by up to .3, .13 and .05.
+// With jittered offsets, as paths have them, errors would be up to .3, .13 and .05.
 TEST(WavelengthsOfPass, PassesSoonMeanTheirColour) {
   const auto white = [](float) { return 1.0f; };
   const auto red = [](float lambda) { return 0.1f + 0.6f / (1 + std::exp((600 - lambda) / 15)); };
@@ -70,7 +70,7 @@ TEST(WavelengthsOfPass, PassesSoonMeanTheirColour) {
     }
 }
 
-// The colours of the illuminant D65 as these passes show it: by their heroes alone, as behind dispersive glass, and by
+// The colours of illuminant D65 in these passes: from the hero wavelengths alone, as behind dispersive glass, and from
 // all wavelengths.
 struct White {
   Rgb heroes, all;
@@ -87,7 +87,7 @@ White white_of(std::uint64_t seed, std::uint32_t first, std::uint32_t passes) {
   return white;
 }
 
-// The red of light of the same power at all wavelengths.
+// The red component of light with equal power at all wavelengths.
 double red_of_white(ColorMode mode) {
   constexpr std::uint32_t many = 4096;
   double sum = 0;
@@ -98,7 +98,7 @@ double red_of_white(ColorMode mode) {
   return sum;
 }
 
-// After sixteen passes of two sets each, and after any multiple, in whatever order the sets of a block come.
+// After 32 passes, i.e. sixteen of two sets each, and after any multiple, whatever the order of a block's sets.
 TEST(WavelengthsOfPass, WhatDispersesIsWhiteAfterThirtyTwo) {
   for (std::uint64_t seed = 0; seed < 32; ++seed)
     for (const std::uint32_t block : {0u, 1u, 5u}) {
@@ -109,7 +109,7 @@ TEST(WavelengthsOfPass, WhatDispersesIsWhiteAfterThirtyTwo) {
     }
 }
 
-// A hero of four that is drawn at random leaves an error of .8 after half of a block.
+// If the hero were chosen at random among four wavelengths, the error after half a block would be .8.
 TEST(WavelengthsOfPass, WhatDispersesIsNearlyWhiteBefore) {
   for (std::uint64_t seed = 0; seed < 32; ++seed) {
     const White white = white_of(seed, 0, 16);
@@ -119,7 +119,7 @@ TEST(WavelengthsOfPass, WhatDispersesIsNearlyWhiteBefore) {
   }
 }
 
-// Eight passes have their heroes in eight eighths of the scale of wavelengths, from which `spectral` draws.
+// In eight passes, the heroes lie in eight different eighths of the scale of wavelengths from which `spectral` draws.
 TEST(WavelengthsOfPass, HeroesAreSpread) {
   std::vector<float> scale;
   for (int i = 0; i < 4096; ++i)
@@ -139,8 +139,9 @@ TEST(WavelengthsOfPass, HeroesAreSpread) {
   }
 }
 
-// The film's halves measure noise by their difference, so their colours must differ as much as their mean is wrong.
-// When halves shared a sequence, they differed by up to ten times as much. In spectral mode passes have two parts.
+// The difference between the film's halves measures noise, so their colours must differ by as much as their mean is
+// wrong. When both halves shared a sequence, they differed by up to ten times as much. In spectral mode, passes have
+// two parts.
 TEST(WavelengthsOfPass, HalvesDifferAsMuchAsTheirMeanIsWrong) {
   for (const auto& [mode, parts] : {std::pair{ColorMode::rgb, 1u}, {ColorMode::spectral, 2u}})
     for (const std::uint32_t passes : {16u, 64u}) {
@@ -161,8 +162,8 @@ TEST(WavelengthsOfPass, HalvesDifferAsMuchAsTheirMeanIsWrong) {
     }
 }
 
-// Light that moves and disperses, in 32 passes of two parts: each quarter of the shutter interval has each of the eight
-// offsets, of one half or the other, and each quarter of the heroes.
+// Moving and dispersed light in 32 passes of two parts: each quarter of the shutter interval gets each of the eight
+// offsets, from either half, and each quarter of the heroes.
 TEST(WavelengthsOfPass, ColoursDoNotFollowTime) {
   constexpr std::uint32_t parts = 2;
   std::set<std::pair<int, int>> met, heroes;

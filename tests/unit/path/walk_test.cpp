@@ -17,7 +17,7 @@ namespace {
 
 const Wavelengths rgb = Wavelengths::rgb(0.5f);
 
-// A flight, and where the vertex after it lies.
+// A flight, and the position of the vertex after it.
 struct SeenFlight {
   Segment segment;
   bool scattered = false;
@@ -27,7 +27,7 @@ struct SeenFlight {
   std::optional<Point> end;
 };
 
-// Looks at flights as well as vertices.
+// Records flights and their vertices.
 struct FlightRecorder {
   std::vector<SeenFlight>& flights;
 
@@ -45,7 +45,7 @@ struct FlightRecorder {
   void operator()(const EscapeVertex&) {}
 };
 
-// The flights of walks from z = 5 towards a ball of fog that lies on a floor.
+// The flights of walks that start at z = 5 towards a ball of fog on a floor.
 std::vector<SeenFlight> flights_through(const std::string& fog, RayCounts& counts) {
   const Scene scene = test::world(
       fog +
@@ -111,7 +111,7 @@ TEST(Walk, DoesNotKnowTheDensityOfTrackedFlights) {
   EXPECT_GT(in_fog, 200);
 }
 
-// Radiance along rays from a point, as a baker asks for it: within a white furnace, L = E / (1 - rho) everywhere.
+// Radiance along rays from a point, as baking needs it: in a white furnace, L = E / (1 - rho) everywhere.
 TEST(RadianceAlong, IsThatOfAFurnaceFromAnyPointInAnyDirection) {
   const Scene scene = test::world(
       "AreaLightSource \"diffuse\" \"rgb L\" [.5 .5 .5]\nMaterial \"diffuse\" \"rgb reflectance\" [.5 .5 .5]\n"
@@ -128,7 +128,7 @@ TEST(RadianceAlong, IsThatOfAFurnaceFromAnyPointInAnyDirection) {
     for (const Rgb& light : layers.sample(1, {}).light) sum += light;
     mean.add(static_cast<double>(sum.g));
   }
-  // Half of it comes straight from the surface, the rest is scattered.
+  // Half of it comes directly from the surface, the rest is scattered.
   EXPECT_TRUE(test::within(mean.mean(), 1, test::z_limit() * mean.error() + 1e-3));
   EXPECT_LT(mean.error(), 0.01);
 }

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// What a denoiser is told of a render, and what it makes of one.
+// The data that a render gives the denoiser, and the denoised result.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -37,7 +37,7 @@ double relative_mse(const Image& a, const std::string& layer, const Image& refer
   return sum / static_cast<double>(truth.pixels.size());
 }
 
-// Picture and noise add up to the picture of the first half's passes alone.
+// Picture plus noise equals the picture of the first half's passes.
 TEST(DenoisedRender, NoiseIsWhatTheFirstHalfDiffersBy) {
   const SharedScene scene = box();
   for (const std::string method : {"path", "vcm"}) {
@@ -59,7 +59,7 @@ TEST(DenoisedRender, NoiseIsWhatTheFirstHalfDiffersBy) {
   }
 }
 
-// Surfaces are seen by way of mirrors and glass.
+// Surfaces are recorded behind mirrors and glass.
 TEST(DenoisedRender, PositionsAreThoseOfTheFirstSurfaceThatIsNoMirror) {
   const SharedScene scene = box();
   Session session(scene, options("path", 32));

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// An edited scene is the scene that would be built from the edited description, to the last bit.
+// An edited scene equals the scene built from the edited description, bit for bit.
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -20,7 +20,7 @@ namespace {
 
 using description::DiffuseMaterial;
 
-// A floor, a textured wall, an emitting triangle, and two kinds of instances: of fixed shapes, and of moving ones.
+// A floor, a textured wall, an emitting triangle, and two kinds of instances: of static shapes and of moving ones.
 const std::string text = R"(
 Camera "perspective"
 WorldBegin
@@ -68,7 +68,7 @@ AttributeEnd
 
 SceneDescription describe() { return read_pbrt_string(text, ".", "edit.pbrt"); }
 
-// All that rays and lights can tell of two scenes is equal.
+// Two scenes are equal in everything that rays and lights can tell.
 void expect_equal(const Scene& a, const Scene& b) {
   EXPECT_EQ(a.bounds().min, b.bounds().min);
   EXPECT_EQ(a.bounds().max, b.bounds().max);
@@ -113,7 +113,7 @@ void expect_equal(const Scene& a, const Scene& b) {
   }
 }
 
-// As if the description had been edited before the scene was built.
+// The scene built from the edited description.
 SharedScene rebuilt(const SceneEdits& edits) {
   SceneDescription d = describe();
   for (const auto& [i, m] : edits.materials) d.materials.at(i) = m;
@@ -139,7 +139,7 @@ SceneEdits material_edit() {
   edits.materials[brass] = d.materials[wall];
   return edits;
 }
-// The shading frame depends on the parametrisation.
+// The shading frame depends on the surface's parametrisation.
 SceneEdits brushed_edit() {
   description::ConductorMaterial brushed;
   brushed.roughness = {{0.1f, {}}, {0.5f, {}}, true};
@@ -167,7 +167,7 @@ TEST(SceneEdit, EachEditIsLikeBuildingAnew) {
   const SharedScene scene = build_scene(describe());
   for (const auto& edits : {SceneEdits{}, material_edit(), brushed_edit(), light_edit(), instance_edit()})
     expect_equal(*edit_scene(*scene, edits), *rebuilt(edits));
-  expect_equal(*scene, *rebuilt({}));  // it is as it was
+  expect_equal(*scene, *rebuilt({}));  // the original is unchanged
 }
 
 TEST(SceneEdit, EditsOfEditsOutliveWhatTheyComeFrom) {
@@ -182,7 +182,8 @@ TEST(SceneEdit, EditsOfEditsOutliveWhatTheyComeFrom) {
   expect_equal(*scene, *rebuilt(all));
 }
 
-// A ball of fog, one light in it and one beside it: the other moves into the fog, or the fog from one to the other.
+// A ball of fog with one light inside and one beside it. Edits move the other light into the fog, or the fog from one
+// light to the other.
 TEST(SceneEdit, LightsStayInTheMediumAroundThem) {
   const SharedScene scene = build_scene(read_pbrt_string(
       "Camera \"perspective\"\nWorldBegin\nMakeNamedMedium \"fog\" \"string type\" \"homogeneous\"\n"
@@ -212,7 +213,8 @@ TEST(SceneEdit, ImagesAreNotReadAgain) {
   EXPECT_NO_THROW(edit_scene(*scene, {}));
 }
 
-// Three environments around other lights, and a medium that emits: those keep their order, and it comes last.
+// Three environments between other lights, and a medium that emits. Environments keep their order, and the medium comes
+// last.
 SceneDescription under_many_skies() {
   return read_pbrt_string(R"(
 Camera "perspective"

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Where rays meet shapes, and what is known of the surface there.
+// Ray intersections with shapes, and the geometry of the surface at the hit.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -23,7 +23,7 @@ using test::look;
 using test::random_ray;
 using test::world;
 
-// Maps a grid of a parametric surface to a triangle mesh, as text.
+// Converts a grid over a parametric surface to a triangle mesh, as scene text.
 std::string tessellated(const std::function<Vec3(float, float)>& surface, int n) {
   std::ostringstream points, indices;
   for (int i = 0; i <= n; ++i)
@@ -38,7 +38,7 @@ std::string tessellated(const std::function<Vec3(float, float)>& surface, int n)
   return "Shape \"trianglemesh\" \"point3 P\" [" + points.str() + "] \"integer indices\" [" + indices.str() + "]\n";
 }
 
-// Sheared, stretched and mirrored: nothing is special about it.
+// A transformation that shears, stretches and mirrors, with no special symmetry.
 const char* const odd_transform = "ConcatTransform [0.9 0.3 0 0  0.2 -1.3 0.1 0  0 0.4 0.7 0  0.5 -0.2 0.3 1]\n";
 
 std::string concat_transform(const Transform& t) {
@@ -105,7 +105,7 @@ TEST(SceneShapes, ExactShapesAgreeWithFineMeshesUnderAnyTransform) {
         const Ray ray = random_ray(rng, {0.3f, -0.1f, 0.2f}, 1.2f);
         const auto a = exact.intersect(ray, test::white), b = mesh.intersect(ray, test::white);
         if (a.has_value() != b.has_value()) {
-          ++disagree;  // rims: the mesh is inscribed
+          ++disagree;  // at rims, since the mesh is inscribed
           continue;
         }
         if (!a) continue;
@@ -186,7 +186,7 @@ TEST(SceneShapes, PatchHitsLieOnRayAndPatch) {
   int found = 0;
   for (int i = 0; i < 2000; ++i) {
     const Patch patch{random(), random() + DVec3(1, 0, 0), random() + DVec3(0, 1, 0), random() + DVec3(1, 1, 0)};
-    // A ray through a known point of the patch must find it.
+    // A ray through a known point of the patch must hit it.
     const double u = rng.next(), v = rng.next();
     const Point origin(rng.next() * 4 - 2, rng.next() * 4 - 2, rng.next() + 1);
     const Vec3 direction(patch.position(u, v) - DVec3(origin));
@@ -200,11 +200,11 @@ TEST(SceneShapes, PatchHitsLieOnRayAndPatch) {
     }
     found += known ? 1 : 0;
   }
-  EXPECT_GE(found, 1995);  // rays that touch the patch may go either way
+  EXPECT_GE(found, 1995);  // rays tangent to the patch may hit or miss
 }
 
-// pbrt-v4's rule for the outside, by shape, ReverseOrientation and mirroring: triangles and patches are in world space
-// when it flips them, so that a mirror alone changes nothing; quadrics are flipped in object space.
+// The outside of surfaces is as in pbrt-v4, for each shape, with ReverseOrientation and mirroring. pbrt flips triangles
+// and patches in world space, so that mirroring alone changes nothing, and quadrics in object space.
 TEST(SceneOrientation, FollowsPbrt) {
   const char* const triangle =
       "Shape \"trianglemesh\" \"point3 P\" [-9 -9 0 9 -9 0 0 9 0] \"integer indices\" [0 1 2]\n";
@@ -231,7 +231,7 @@ TEST(SceneOrientation, FollowsPbrt) {
   const char* const ribbon =
       "Shape \"curve\" \"string type\" \"ribbon\" \"point3 P\" [-9 0 0 -3 0 0 3 0 0 9 0 0] \"float width\" 8 \"normal "
       "N\" [0 0 -1 0 0 -1]\n";
-  // Curves are as pbrt-v4's only in that a flat one faces the viewer: there tubes are flat and mirrors turn them.
+  // Curves follow pbrt-v4 only in that flat ones face the viewer: in pbrt-v4 tubes are flat, and mirroring turns them.
   const std::array<Case, 12> cases{{{triangle, 1, -1, 1, -1},
                                     {cylinder, 1, -1, -1, 1},
                                     {half_sphere, 1, -1, -1, 1},
@@ -297,7 +297,7 @@ TEST(SceneInstances, AreTheSameAsBakedShapes) {
       "Shape \"curve\" \"string type\" \"ribbon\" \"point3 P\" [1 -1 0 0.3 0 0.5 -0.3 0 0.5 -1 1 0.5] \"normal N\" [0 "
       "0 1 "
       "0.5 0 1] \"float width\" 0.5\n";
-  // No mirror: quadrics would differ by pbrt's rule.
+  // No mirroring: pbrt's rule would flip quadrics.
   const std::string transform = "ConcatTransform [0.9 0.3 0 0  0.2 1.3 0.1 0  0 0.4 0.7 0  3 -2 1 1]\n";
   const Scene baked = world(transform + shapes);
   const Scene placed = world("ObjectBegin \"o\"\n" + shapes + "ObjectEnd\n" + transform + "ObjectInstance \"o\"\n");
@@ -307,7 +307,7 @@ TEST(SceneInstances, AreTheSameAsBakedShapes) {
     const Ray ray = random_ray(rng, {3, -2, 1}, 1.5f);
     const auto a = baked.intersect(ray, test::white), b = placed.intersect(ray, test::white);
     EXPECT_EQ(placed.visible(ray), !b);
-    if (a.has_value() != b.has_value()) continue;  // a ray on a rim
+    if (a.has_value() != b.has_value()) continue;  // a ray that grazes a rim
     if (!a || length_squared(a->position - b->position) > 1e-6f) continue;
     ++hits;
     EXPECT_GT(dot(a->normal, b->normal), 0.99999f);
@@ -318,7 +318,7 @@ TEST(SceneInstances, AreTheSameAsBakedShapes) {
   EXPECT_GT(hits, 800);
 }
 
-// What a ray of a time sees is what it would see of the scene standing still at that time.
+// A ray at a given time sees the same as in a static scene of that time.
 TEST(SceneMotion, EqualsStillScenesAtEveryTime) {
   const AnimatedTransform path(rotate(20, {0, 1, 0}) * scale({1, 1.2f, 0.8f}),
                                translate({0.5f, 0.3f, -0.2f}) * rotate(130, {1, 1, 0}) * scale({0.7f, 1, 1.1f}), 0, 1);
@@ -380,8 +380,8 @@ TEST(SceneMotion, MotionAgreesWithAnimatedTransform) {
   }
 }
 
-// A closed torus: no ray from inside gets out, not even if aimed at its edges. Embree's test of rays that are aimed at
-// a vertex itself can miss all triangles around it, which is left a few of a thousand; no random ray is that exact.
+// A closed torus: no ray from inside gets out, even if aimed at an edge. If a ray is aimed exactly at a vertex,
+// Embree's test can miss all triangles around it. A few in a thousand are tolerated; random rays are never that exact.
 TEST(SceneRobustness, ClosedMeshesAreWatertight) {
   constexpr int n = 48;
   const auto torus = [](int i, int j) {
@@ -420,8 +420,8 @@ TEST(SceneRobustness, ClosedMeshesAreWatertight) {
   }
 }
 
-// Rays that leave a convex body outwards from its surface must not find it again, and rays into it must, at all scales
-// and far from the origin.
+// Rays that leave the surface of a convex body outwards must not hit it again, and rays into it must, at all scales and
+// far from the origin.
 struct Body {
   const char* name;
   std::string directives;
@@ -458,7 +458,7 @@ TEST(SceneRobustness, RaysDoNotFindTheSurfaceTheyLeave) {
         place.precision(9);
         place << "Translate " << centre.x << ' ' << centre.y << ' ' << centre.z << "\nScale " << size << ' ' << size
               << ' ' << size << "\nRotate 29 1 2 3\n";
-        // The instance is placed; other shapes are baked.
+        // The transformation is the instance's; for other shapes it is applied to their vertices.
         std::string text = body.directives;
         const std::size_t instance = text.find("ObjectInstance");
         text.insert(instance == std::string::npos ? 0 : instance, place.str());
@@ -479,11 +479,11 @@ TEST(SceneRobustness, RaysDoNotFindTheSurfaceTheyLeave) {
         }
         EXPECT_GT(hits, 500);
         EXPECT_EQ(again, 0);
-        EXPECT_LE(lost, far > 100 ? 8 : 2);  // within an error bound of an edge
+        EXPECT_LE(lost, far > 100 ? 8 : 2);  // rays within the error bound of an edge
       }
 }
 
-// Of `rays` rays at points of `scene` that `target` picks, those that find the surface again after leaving it.
+// Sends `rays` rays to points of `scene` given by `target`. Returns how many hit the surface again after leaving it.
 template <class Target>
 int found_again(const Scene& scene, HashRng& rng, int rays, float distance, Target&& target) {
   int again = 0;
@@ -523,7 +523,7 @@ TEST(SceneRobustness, RaysLeaveFlattenedInstancesFarAway) {
     }
 }
 
-// Near a corner at the origin the position is exact, but not the plane that the other corners span.
+// Near a corner at the origin, the position is exact, but the plane through the other corners is not.
 TEST(SceneRobustness, RaysLeaveLargeThinTrianglesNearACorner) {
   HashRng rng(10);
   for (const float thin : {1.0f, 0.01f, 1e-4f})
@@ -560,7 +560,7 @@ TEST(SceneRobustness, OffsetsAreRoundingErrorsNotScales) {
     ASSERT_TRUE(at);
     EXPECT_LT(std::sqrt(length_squared(offset_origin(*at, at->normal) - at->position)), 1e-5f * size);
   }
-  // A large axis-aligned floor is exact.
+  // Points on a large axis-aligned floor are exact.
   const Scene floor = world("Shape \"bilinearmesh\" \"point3 P\" [-1e4 0 1e4  1e4 0 1e4  -1e4 0 -1e4  1e4 0 -1e4]\n");
   const auto at = look(floor, {123.4f, 5, -77}, {0.3f, -1, 0.2f});
   ASSERT_TRUE(at);
@@ -568,14 +568,14 @@ TEST(SceneRobustness, OffsetsAreRoundingErrorsNotScales) {
   EXPECT_FALSE(floor.intersect(spawn_ray(*at, normalize(Vec3(1, 1e-4f, 0))), test::white));
 }
 
-// Up to the distance that is warned of, rays meet shapes of all kinds, placed or not.
+// Up to the distance from which on a warning is given, rays hit shapes of all kinds, with and without an instance.
 TEST(SceneRobustness, WhatIsTooFarIsWarnedOf) {
   const std::vector<std::string> shapes{
       "Shape \"sphere\"", "Shape \"disk\"", "Shape \"bilinearmesh\" \"point3 P\" [-1 -1 0  1 -1 0  -1 1 0  1 1 0]",
       "Shape \"bilinearmesh\" \"point3 P\" [-1 -1 0  1 -1 0.1  -1 1 0  1 1 0]",
       "Shape \"curve\" \"point3 P\" [-1 0 0  0 0 0  0 0 0  1 0 0] \"float width\" 0.1"};
   struct Placed {
-    std::string before, after;  // the scale
+    std::string before, after;  // scene text before and after the scale
   };
   for (const std::string& shape : shapes)
     for (const auto& [before, after] :

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Lights as the scene builds them: their scales, and that surfaces and emitters agree.
+// The lights that a scene builds: their scales, and that surfaces and emitters agree.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -47,10 +47,10 @@ const std::array<const char*, 11> shapes{
 const std::array<std::string, 4> places{"", "ReverseOrientation\n", "Scale -1 2 1\n",
                                         "ConcatTransform [0.9 0.3 0 0  0.2 -1.3 0.1 0  0 0.4 0.7 0  3 -2 1 1]\n"};
 
-// Of so many points of a mesh's triangles, rounding may put one across an edge, on the neighbouring triangle.
+// Of this many points on a mesh's triangles, rounding may move one across an edge, to the neighbouring triangle.
 constexpr std::size_t most_at_edges = 1000;
 
-// A point that a light emits from must be found by a ray from its front, as a point of that light with that normal.
+// A ray from the front must find each point from which a light emits, as a point of that light with the same normal.
 TEST(SceneLights, EmittersAreTheSurfacesThatRaysFind) {
   for (const char* shape : shapes)
     for (const std::string& place : places) {
@@ -80,8 +80,8 @@ TEST(SceneLights, EmittersAreTheSurfacesThatRaysFind) {
     }
 }
 
-// What textures make of a point must not depend on whether it was drawn or met by a ray: all shapes' parametrisations,
-// in the world and in instances.
+// A texture must give the same result whether a point was sampled or hit by a ray, for the parametrisation of each
+// shape, in the world and in instances.
 TEST(SceneLights, TexturedEmissionIsWhatRaysSee) {
   const std::string lamp =
       "Texture \"l\" \"spectrum\" \"bilerp\" \"rgb v00\" [1 2 3] \"rgb v10\" [5 1 2] \"rgb v01\" [2 7 1] \"rgb v11\" "
@@ -108,7 +108,7 @@ TEST(SceneLights, TexturedEmissionIsWhatRaysSee) {
             ASSERT_TRUE(emission);
             const Ray ray{emission->origin + 1e-3f * emission->normal, -emission->normal};
             const auto at = scene.intersect(ray, white);
-            // Rays pass the holes, and may meet the surface elsewhere.
+            // Rays pass through holes and may hit the surface elsewhere.
             if (!at || length_squared(at->position - emission->origin) > 1e-6f) continue;
             ++met;
             ASSERT_TRUE(at->light);
@@ -128,7 +128,8 @@ TEST(SceneLights, TexturedEmissionIsWhatRaysSee) {
 }
 
 TEST(SceneLights, PatternsDecideThePower) {
-  // Half of the area passes all rays; a mesh's power is shared by brightness, so that all triangles have one scale.
+  // Half of the area lets all rays pass. A mesh's power is distributed by brightness, so that all its triangles have
+  // the same scale.
   const std::string step =
       "Texture \"a\" \"float\" \"checkerboard\" \"float uscale\" 8 \"float vscale\" 8 \"float tex1\" 1 \"float tex2\" "
       "0\n";
@@ -151,7 +152,7 @@ TEST(SceneLights, PatternsDecideThePower) {
               emitted(graded.lights()[1], right, {0, 0, 1}, white)[0], 1e-5f);
 }
 
-// Of many primitives each is sampled at few points.
+// With many primitives, each is sampled at only a few points.
 TEST(SceneLights, PatternsOfManyPrimitivesDecideTheirPower) {
   constexpr int side = 200;
   std::string points, uvs, triangles;
@@ -175,8 +176,8 @@ TEST(SceneLights, PatternsOfManyPrimitivesDecideTheirPower) {
   EXPECT_NEAR(total / (static_cast<double>(pi) * side * side), 1, 0.01);
 }
 
-// A screen of which a quarter is lit: most points must come from there, in one piece, as triangles and
-// with texture coordinates of its own.
+// A screen of which a quarter is lit. Most points must be there, whether the screen is one piece, triangles, or has its
+// own texture coordinates.
 TEST(SceneLights, PointsAreDrawnWhereScreensAreBright) {
   const std::string screen =
       "Texture \"lit\" \"spectrum\" \"checkerboard\" \"float uscale\" 4 \"float vscale\" 4 \"rgb tex1\" [0 0 9] "
@@ -223,7 +224,7 @@ TEST(SceneLights, AlphaZeroMakesInvisibleLamps) {
   EXPECT_NEAR(sample->radiance[0], 3, 1e-5f);
 }
 
-// A light is the same whether it is described as two triangles, in any order of their corners, or as one patch.
+// A light is the same described as one patch or as two triangles, in any order of their corners.
 TEST(SceneLights, TwoTrianglesAreOneParallelogram) {
   const auto lamp = [](const std::string& shape) {
     return world("AreaLightSource \"diffuse\" \"rgb L\" [1 2 3]\n" + shape);
@@ -251,7 +252,7 @@ TEST(SceneLights, TwoTrianglesAreOneParallelogram) {
   }
 }
 
-// What `power` says of a mesh is meant for each of its triangles.
+// The parameter `power` of a mesh applies to each of its triangles.
 TEST(SceneLights, APairOfTrianglesHasThePowerOfBoth) {
   const Scene scene = world(
       "AreaLightSource \"diffuse\" \"rgb L\" [1 1 1] \"float power\" 5\nShape \"trianglemesh\" \"integer indices\" "
@@ -295,14 +296,15 @@ TEST(SceneLights, CurvesGiveOffTheLightOfTheirArea) {
   EXPECT_NEAR(total_power(white_lamp + straight(width + ribbon)), std::numbers::pi * 0.1 * length, 1e-4);
   const std::string both = white_lamp + "\"bool twosided\" true";
   EXPECT_NEAR(total_power(both + straight(width + ribbon)), 2 * std::numbers::pi * 0.1 * length, 1e-4);
-  // Stretched by the transformation, circles become ellipses; here the tube is only scaled.
+  // A transformation that stretches would make circles ellipses. Here the tube is only scaled.
   EXPECT_NEAR(total_power("Scale 2 2 2 " + white_lamp + straight(width + tube)), 4 * std::numbers::pi * of_tube, 2e-3);
-  // A bend's chords are shorter than its arc: half a ring (of four-thirds handles, to 0.03 %), by Pappus's theorem.
+  // The chords of a bend are shorter than its arc. The expected value for this half ring (handles of 4/3, within 0.03
+  // %) is by Pappus's theorem.
   const std::string handle = std::to_string(4.0 / 3);
   const std::string bend = "\nShape \"curve\" \"point3 P\" [1 0 0  1 " + handle + " 0  -1 " + handle + " 0  -1 0 0]";
   EXPECT_NEAR(total_power(white_lamp + bend + width + tube) / (std::numbers::pi * std::numbers::pi * of_tube / length),
               1, 0.015);
-  // The power is that of a directive, however many triangles it is: at the same radiance all along.
+  // `power` applies to one directive however many triangles it makes. All of them have the same radiance.
   const std::string lit = white_lamp + "\"float power\" 7";
   EXPECT_NEAR(total_power(lit + straight(tapered + tube)), 7, 1e-4);
   EXPECT_NEAR(total_power(lit + straight(tapered + tube) + straight(tapered + tube)), 14, 1e-3);
@@ -331,7 +333,7 @@ TEST(SceneLights, ScalesFollowPbrt) {
   expect_rgb(
       colour(only_light<PointLight>("LightSource \"point\" \"rgb I\" [0.6 0.5 0.4] \"float scale\" 2\n").intensity),
       {1.2f, 1, 0.8f});
-  // Power multiplies what luminance 1 would need: 4 pi W for 1 W/sr.
+  // `power` scales the light from luminance 1, which has 4 pi W at 1 W/sr.
   expect_rgb(
       colour(only_light<PointLight>("LightSource \"point\" \"rgb I\" [1 2 3] \"float power\" 12.5663706\n").intensity),
       {1, 2, 3});
@@ -360,7 +362,7 @@ TEST(SceneLights, ScalesFollowPbrt) {
   EXPECT_NEAR(lamp.largest_radiance(), 7 / (2 * pi * 16 * pi), 0.02f);
 }
 
-// The film's range follows what lights without extent are near to, however large the world is.
+// The film's range depends on the distance of surfaces to point-like lights, not on the size of the world.
 TEST(SceneLights, TheLargestRadianceIsThatOfTheNearestSurface) {
   const auto largest_of = [](const std::string& light, const std::string& height, const std::string& size) {
     const std::string corners = "-" + size + " 0 -" + size + "  " + size + " 0 -" + size + "  " + size + " 0 " + size +
@@ -374,7 +376,7 @@ TEST(SceneLights, TheLargestRadianceIsThatOfTheNearestSurface) {
     EXPECT_NEAR(largest_of(light, "10", "1e5") / largest_of(light, "10", "1e3"), 1, 1e-3) << light;
     EXPECT_NEAR(largest_of(light, "10", "1e5") / largest_of(light, "20", "1e5"), 4, 1e-2) << light;
   }
-  // One that touches something does not push the range beyond what the landscape's other end needs.
+  // A light that touches a surface increases the range only up to what the far end of the landscape needs.
   const float far = largest_of(point, "10", "1e3") * sqr(10 / 1.4142136e5f);
   EXPECT_LT(largest_of(point, "1e-9", "1e5") / far, std::exp2(33));
 }
@@ -419,7 +421,7 @@ TEST(SceneLights, ImagesAreSquareOrPanoramasAndUpright) {
   EXPECT_THROW(load("LightSource \"projection\" \"string filename\" \"broken.pfm\"\n"), Error);
   EXPECT_THROW(load("Scale 1 0 1 LightSource \"infinite\" \"string filename\" \"sky.pfm\"\n"), Error);
 
-  // pbrt-v4 gives light space of goniometric lights y up: the image's z axis is the light's y axis.
+  // In pbrt-v4, the space of goniometric lights has y up: the image's z axis is the light's y axis.
   const Scene lamps = load(
       "Translate 1 2 3 LightSource \"goniometric\" \"string filename\" \"sky.pfm\" \"rgb I\" [2 2 2] \"float power\" "
       "5\n"
@@ -476,11 +478,11 @@ TEST(SceneLights, MayNotBeSoBrightThatNumbersOverflow) {
                      "Shape \"curve\" \"float width\" 1e-8 \"point3 P\" [0 0 0 1 0 0 1 1 0 0 1 0]\n" +
                      weak),
             "test scene:5:1: " + bright);
-  // A medium without end is no light.
+  // An infinite medium is not a light.
   EXPECT_EQ(error_of("MakeNamedMedium \"m\" \"string type\" \"homogeneous\" \"rgb Le\" [2e25 0 0]\n"
                      "MediumInterface \"\" \"m\" Shape \"sphere\"\n"),
             "test scene:4:1: " + bright);
-  // A point light is as bright as what it lights.
+  // The brightness of a point light is that of the surfaces it lights.
   const std::string near = "LightSource \"point\" \"rgb I\" [1e24 0 0]\n";
   EXPECT_EQ(error_of(near + weak), "no error");
   EXPECT_EQ(error_of(weak + near + "Translate 0 0 .2 Shape \"disk\" \"float radius\" 10\n"),

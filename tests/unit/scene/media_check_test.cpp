@@ -16,7 +16,7 @@ const std::string fog = "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\"
 const std::string in_fog = "MediumInterface \"fog\" \"fog\"\n";
 const std::string floor_of_fog = "Shape \"bilinearmesh\" \"point3 P\" [-1 -1 1  1 -1 1  -1 -1 -1  1 -1 -1]\n";
 
-// A ball of fog, and in it what `in_it` says. `prefix` comes before the ball's shape.
+// A ball of fog that contains the shapes and lights of `in_it`. `prefix` comes before the ball's shape.
 std::string ball(const std::string& in_it = "", const std::string& prefix = "") {
   return fog + "AttributeBegin MediumInterface \"fog\" \"\" Material \"interface\"\n" + prefix +
          "Shape \"sphere\" \"float radius\" 2\nAttributeEnd\n" + in_it;
@@ -33,12 +33,12 @@ std::string warning_of(const std::string& directives, const std::string& head = 
 TEST(MediaCheck, FindsNothingWhereMediaFit) {
   const std::string light = "LightSource \"point\" \"point3 from\" [0 1 0]\n";
   EXPECT_EQ(warning_of(ball()), "none");
-  EXPECT_EQ(warning_of(ball("", "ReverseOrientation Scale -1 1 1\n")), "none");  // as pbrt-v4 turns quadrics
+  EXPECT_EQ(warning_of(ball("", "ReverseOrientation Scale -1 1 1\n")), "none");  // pbrt-v4 flips mirrored quadrics
   EXPECT_EQ(warning_of(ball(in_fog + light + floor_of_fog)), "none");
   EXPECT_EQ(warning_of(ball(in_fog + "AreaLightSource \"diffuse\"\nShape \"sphere\" \"float radius\" 0.3\n")), "none");
   EXPECT_EQ(warning_of(ball(floor_of_fog + "LightSource \"point\" \"point3 from\" [0 1 4]\n")), "none");
   EXPECT_EQ(warning_of(ball(floor_of_fog + "LightSource \"infinite\"\nLightSource \"distant\"\n")), "none");
-  // A dense ball in the fog, bounded by glass.
+  // A dense ball in the fog, with a boundary of glass.
   EXPECT_EQ(warning_of(ball("MakeNamedMedium \"ink\" \"string type\" \"homogeneous\" MediumInterface \"ink\" \"fog\" "
                             "Material \"dielectric\" Shape \"sphere\"\n")),
             "none");

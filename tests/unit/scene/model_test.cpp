@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The triangles of a scene lie where rays meet its surfaces, and face the same way.
+// A scene's triangles are where rays hit its surfaces, and face the same way.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -15,7 +15,7 @@ SharedScene scene_of(const std::string& text) {
   return build_scene(read_pbrt_string("Camera \"perspective\"\nWorldBegin\n" + text, ".", "model.pbrt"));
 }
 
-// A ray onto the middle of each triangle from outside meets the scene within `tolerance` of it, from outside.
+// For each triangle, a ray from outside towards its centroid hits the scene within `tolerance` of it, on the outside.
 void expect_on_surface(const Scene& scene, float tolerance) {
   const SceneModel model = model_of(scene);
   std::size_t checked = 0;
@@ -27,7 +27,7 @@ void expect_on_surface(const Scene& scene, float tolerance) {
       for (const auto& triangle : mesh.triangles) {
         const auto corner = [&](std::size_t i) { return instance.to_world.point(mesh.positions.at(triangle[i])); };
         const Vec3 scaled = glm::cross(corner(1) - corner(0), corner(2) - corner(0));
-        if (length_squared(scaled) < 1e-12f) continue;  // at the poles
+        if (length_squared(scaled) < 1e-12f) continue;  // degenerate, at the poles
         const Normal outside = glm::normalize(instance.to_world.swaps_handedness() ? -scaled : scaled);
         const Point middle = (corner(0) + corner(1) + corner(2)) / 3.0f;
         const auto hit = scene.intersect({middle + 0.05f * outside, -outside, 0.1f, 0}, Wavelengths::rgb(0.5f));

@@ -18,7 +18,7 @@ bool contains(const Bounds& box, const Point& p) {
   return true;
 }
 
-// Six matte spheres and one of glass, in a row, in very many places.
+// A row of six matte spheres and one of glass, at a large number of places.
 TEST(Obstacles, CoverGroupsInManyPlaces) {
   constexpr int places = 60'000, columns = 200;
   std::string text = "LightSource \"infinite\"\nObjectBegin \"row\"\n";

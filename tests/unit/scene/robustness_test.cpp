@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Scenes at the end of single precision: what cannot be shown is left out with a warning, and no ray that Embree does
-// not take gets there (Debian's Embree ends the process then).
+// Scenes at the limits of single precision. What cannot be represented is left out with a warning, and no ray that
+// Embree cannot handle reaches it (Debian's build of Embree would abort).
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -30,7 +30,7 @@ std::string instance(const std::string& transform) {
   return "AttributeBegin\n" + transform + "\nObjectInstance \"o\"\nAttributeEnd\n";
 }
 
-// The only warning that says that something is left out.
+// The warnings that say that something is left out, one per line.
 std::string left_out(const Scene& scene) {
   std::string found;
   for (const description::Warning& w : scene.warnings())
@@ -51,7 +51,8 @@ TEST(Robustness, InstancesTooSmallToMapRaysAreLeftOutAndCounted) {
 }
 
 TEST(Robustness, SmallInstancesAreMetFromAnywhere) {
-  // Embree maps rays in single precision: from afar into small spaces their origins would be too large.
+  // Embree transforms rays in single precision: from far away, their origins in the space of small instances would
+  // overflow.
   for (const float scale : {1e-3f, 1e-6f, 1e-9f, 1e-12f, 1e-15f, 1e-17f}) {
     std::ostringstream text;
     text << "Scale " << scale << ' ' << scale << ' ' << scale;
@@ -128,7 +129,7 @@ TEST(Robustness, RaysThatAreNotValidHitNothingAndNoLightArrivesAlongThem) {
     EXPECT_FALSE(scene.intersect(invalid[i], test::white)) << i;
     EXPECT_FALSE(scene.visible(invalid[i])) << i;
   }
-  // Not useful, but taken.
+  // Accepted, although useless.
   for (const Ray& ray : {Ray{from, {0, 0, 0}, infinity, 0}, Ray{from, forward, -1, 0}, Ray{from, {0, 0, 1e-42f}, 1, 0}})
     (void)scene.intersect(ray, test::white);
 }
@@ -144,7 +145,7 @@ TEST(Robustness, NormalsOfAnyLengthAreNormalised) {
   }
 }
 
-// Tracking takes a step for each mean free path of the densest part, wherever the flight goes.
+// Tracking takes one step per mean free path of the densest part, for the whole length of a flight.
 TEST(Robustness, MediaOfTooManyMeanFreePathsAreRefused) {
   const auto load = [](const std::string& transform, const std::string& parameters) {
     return world(transform + "\nMakeNamedMedium \"m\" " + parameters + "\n");
@@ -159,7 +160,7 @@ TEST(Robustness, MediaOfTooManyMeanFreePathsAreRefused) {
   EXPECT_NO_THROW(load("", uniform("[1 1 1e5]")));
   EXPECT_NO_THROW(load("Scale 1000 1000 1000", uniform("[1 1 1]")));
   EXPECT_NO_THROW(load("", colours + "\"float scale\" 1e4"));
-  EXPECT_NO_THROW(load("", "\"string type\" \"homogeneous\" \"rgb sigma_a\" [1 1 1e30]"));  // takes no steps
+  EXPECT_NO_THROW(load("", "\"string type\" \"homogeneous\" \"rgb sigma_a\" [1 1 1e30]"));  // has no steps
   EXPECT_THROW(load("", uniform("[1 1 4294967296]")), Error);
   EXPECT_THROW(load("", uniform("[1 1 1]") + "\"float scale\" 1e7"), Error);
   EXPECT_THROW(load("Scale 1 1e9 1", uniform("[1 1 1]")), Error);

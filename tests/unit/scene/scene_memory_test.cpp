@@ -16,7 +16,7 @@
 namespace lanthorn::scene_memory_test {
 namespace {
 
-// A height field of 2 · 150² triangles.
+// A height field with 2 · 150² triangles.
 description::TriangleMesh field(bool has_normals) {
   constexpr std::uint32_t n = 150;
   description::TriangleMesh mesh;
@@ -86,8 +86,8 @@ TEST(SceneMemory, ImagesOfTexturesByTheirHeaders) {
     image.filename = (folder.path() / name).string();
     scene.spectrum_textures.push_back({image, {}});
   }
-  EXPECT_EQ(expected_texture_memory(scene), 30u * 20 * 3);  // once, and the missing one counts nothing
-  scene.access.texture_memory = std::uint64_t{1} << 50;     // which is not there, but the image is small
+  EXPECT_EQ(expected_texture_memory(scene), 30u * 20 * 3);  // counted once; the missing file counts 0
+  scene.access.texture_memory = std::uint64_t{1} << 50;     // not available, but the image is small
   require_scene_memory(scene);
   scene.access.texture_memory.reset();
   require_scene_memory(scene);

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Shadow rays end at the lamp: nothing before it is missed, and no lamp shadows itself, whatever its size and place.
+// Shadow rays end exactly at the lamp: they miss no occluder in front of it, and no lamp shadows itself, at any size
+// and position.
 #include <gtest/gtest.h>
 
 #include <fmt/format.h>
@@ -17,9 +18,9 @@ namespace {
 
 struct Lamp {
   const char* name;
-  const char* shape;  // of a size of about 1, about the origin
+  const char* shape;  // about 1 in size, centred at the origin
   bool two_sided = true;
-  float least_cosine = 0;  // curved lamps hide parts of themselves from flatter directions
+  float least_cosine = 0;  // below this, a curved lamp may hide parts of itself
 };
 
 const std::vector<Lamp> lamps = {
@@ -36,10 +37,10 @@ const std::vector<Lamp> lamps = {
     {"tube", R"(Shape "cylinder" "float radius" .2 "float zmin" -.5 "float zmax" .5)", false},
 };
 
-// The share of shadow rays from places in all directions and at many distances that the lamp itself blocks.
+// Shadow rays from points in all directions and at many distances, and how many of them the lamp itself blocks.
 struct Shadows {
   int rays = 0, blocked = 0;
-  float largest_error = 0;  // of drawn points, in sizes of the lamp plus the distance of its middle from the origin
+  float largest_error = 0;  // of sampled points, relative to the lamp's size plus its middle's distance from the origin
 };
 
 Shadows shadows_of(const Lamp& lamp, float size, const Point& middle, bool is_instance) {
@@ -58,7 +59,7 @@ Shadows shadows_of(const Lamp& lamp, float size, const Point& middle, bool is_in
       const auto light = static_cast<std::size_t>(rng.next() * static_cast<float>(scene.lights().size()));
       const auto l = sample_direct(scene.lights()[light], from, rng.next2(), test::white);
       if (!l || std::fabs(dot(l->wi, l->normal)) < lamp.least_cosine) continue;
-      // Places that float coordinates cannot tell from a place on the lamp.
+      // Points that single precision cannot distinguish from a point on the lamp.
       if (l->distance < 100 * (l->position_error + 0x1p-23f * max_component(abs(from)))) continue;
       ++result.rays;
       const Ray ray = segment_to({l->position, l->normal, l->position_error}, from, l->wi, 0);
@@ -76,14 +77,14 @@ TEST_P(ShadowRays, NoLampShadowsItself) {
     for (const float away : {0.0f, 10.0f, 1e4f})
       for (const bool is_instance : {false, true}) {
         const Point middle(away, .3f * away, -.7f * away);
-        if (is_instance && size < 1e-6f * away) continue;  // its map is singular in single precision
+        if (is_instance && size < 1e-6f * away) continue;  // its transform is singular in single precision
         const Shadows s = shadows_of(GetParam(), size, middle, is_instance);
         const std::string where = fmt::format("size {}, {} m away{}", size, away, is_instance ? ", an instance" : "");
         if (size >= 1e-4f * away) {
           EXPECT_GT(s.rays, 500) << where;
         }
         EXPECT_EQ(s.blocked, 0) << where << ", of " << s.rays;
-        // What lies before a lamp is seen from some steps of single precision on.
+        // An occluder a few rounding errors in front of a lamp is seen.
         EXPECT_LT(s.largest_error, is_instance ? 1e-3f : 2e-4f) << where;
       }
 }
@@ -96,7 +97,7 @@ INSTANTIATE_TEST_SUITE_P(Lamps, ShadowRays, testing::ValuesIn(lamps), [](const a
 
 TEST(ShadowRays, EndAtPointsInSpaceExactly) {
   const Scene scene = test::world(R"(Shape "disk" "float radius" 10)");
-  // A plate .1 mm before the end of a way of 1 km.
+  // A plate .1 mm before the end of a ray of 1 km.
   const Ray ray = segment_to({Point(0, 0, -1e-4f)}, {0, 0, 1000}, {0, 0, -1}, 0);
   EXPECT_FALSE(scene.visible(ray));
   EXPECT_TRUE(scene.visible(segment_to({Point(0, 0, 1e-4f)}, {0, 0, 1000}, {0, 0, -1}, 0)));

@@ -27,7 +27,7 @@ std::string patch_at(float height, float side = 1) {
          patch + "AttributeEnd\n";
 }
 
-// The share of rays that pass at this angle of incidence.
+// Fraction of rays that pass at an angle of incidence with this cosine.
 double passing(const Scene& scene, double cos) {
   const auto c = static_cast<float>(cos);
   const Direction direction(std::sqrt(1 - c * c), 0, c);
@@ -52,7 +52,7 @@ TEST(WindowGlass, LetsRaysPassStraightAndReflectsTheRest) {
     EXPECT_EQ(replace_window_glass(description), 1u);
     const Scene scene(std::move(description));
     for (const float cos : {1.0f, 0.7f, 0.4f}) {
-      // A slab is met twice; what is reflected between its faces is found by walks, not by shadow rays.
+      // Rays cross two faces of a slab. Light reflected between them is left to walks, not to shadow rays.
       const double face = static_cast<double>(fresnel_dielectric(cos, 1.5f).reflectance);
       const double expected =
           c.thin ? 1 - static_cast<double>(thin_reflectance({1.5f}, cos)[0]) : (1 - face) * (1 - face);
@@ -67,7 +67,7 @@ TEST(WindowGlass, KnowsTwoFacesOfOneSheet) {
   EXPECT_EQ(replace_window_glass(window), 2u);
   const double face = static_cast<double>(fresnel_dielectric(0.7f, 1.5f).reflectance);
   EXPECT_NEAR(passing(Scene(std::move(window)), 0.7), (1 - face) * (1 - face), 0.015);
-  // Too far apart; of different size; in one plane; of different glass.
+  // Not a window: too far apart, different sizes, both in one plane, different glass.
   for (const std::string& others :
        {patch_at(0) + patch_at(0.5f), patch_at(0) + patch_at(0.004f, 0.8f), patch_at(0) + patch_at(0),
         patch_at(0) + "Material \"dielectric\" \"float eta\" 1.6\n" + patch_at(0.004f)}) {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Hair: what rays meet is what the Bézier formula says, and nothing meets itself.
+// Hair: ray hits agree with the Bézier formula, and no hair intersects itself.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -31,7 +31,7 @@ struct OnCurve {
   double radius = 0;
 };
 OnCurve on_bent(double u) {
-  // de Casteljau, so that it is not the formula that the renderer uses.
+  // De Casteljau's algorithm, because the renderer uses another formula.
   const auto mix = [&](const DVec3& a, const DVec3& b) { return a + u * (b - a); };
   const DVec3 a = mix(bent[0], bent[1]), b = mix(bent[1], bent[2]), c = mix(bent[2], bent[3]);
   const DVec3 d = mix(a, b), e = mix(b, c);
@@ -58,14 +58,14 @@ TEST(Curves, TubesAreWhereTheFormulaSays) {
     EXPECT_LT(glm::length(DVec3(at->position) - target), 2e-5) << u;
     EXPECT_GT(glm::dot(DVec3(at->normal), out), 0.99);
     EXPECT_NEAR(at->uv.x, u, 1e-4);
-    // v: distance of the surface point from the axis as seen along the ray.
+    // v: distance of the surface point from the axis, as seen along the ray.
     const DVec3 across = glm::normalize(glm::cross(towards, c.tangent));
     EXPECT_NEAR(at->uv.y, 0.5 + 0.5 * glm::dot(out, across), 2e-3);
     EXPECT_FALSE(scene.visible({Point(target - 0.5 * towards), Direction(towards), infinity, 0}));
   }
 }
 
-// The normal is that of the surface, also where the radius changes: against differences of positions.
+// Normals are those of the surface even where the radius changes. Expected values are differences of positions.
 TEST(Curves, TubesNormalsArePerpendicularToTheSurface) {
   description::Curves curves;
   curves.kind = description::CurveKind::cylinder;
@@ -99,7 +99,7 @@ TEST(Curves, FlatOnesFaceEveryRay) {
     const DVec3 target = c.centre + y * c.radius * across;
     const auto at = look(scene, Point(target - 0.5 * towards), Vec3(towards));
     ASSERT_TRUE(at) << u << ' ' << y;
-    EXPECT_LT(glm::length(DVec3(at->position) - target), 0.15 * c.radius);  // 16 quads stand for the curve
+    EXPECT_LT(glm::length(DVec3(at->position) - target), 0.15 * c.radius);  // the curve is drawn as 16 quads
     EXPECT_NEAR(at->uv.x, u, 0.01);
     EXPECT_NEAR(at->uv.y, 0.5 + 0.5 * y, 0.03);
     EXPECT_NEAR(glm::dot(DVec3(at->normal), c.tangent), 0, 0.01);
@@ -115,7 +115,7 @@ TEST(Curves, RibbonsTurnWithTheirNormals) {
   for (int i = 0; i < 2000; ++i) {
     const double u = 0.02 + 0.96 * rng.next();
     const OnCurve c = on_bent(u);
-    const DVec3 given(0, -std::sin(u * std::numbers::pi / 4), std::cos(u * std::numbers::pi / 4));  // an even turn
+    const DVec3 given(0, -std::sin(u * std::numbers::pi / 4), std::cos(u * std::numbers::pi / 4));  // even turn
     const DVec3 across = glm::normalize(glm::cross(given, c.tangent));
     const DVec3 normal = glm::cross(c.tangent, across);
     const double y = 1.9 * (rng.next() - 0.5);
@@ -126,15 +126,15 @@ TEST(Curves, RibbonsTurnWithTheirNormals) {
     EXPECT_GT(glm::dot(DVec3(at->normal), normal), 0.99);
     EXPECT_NEAR(at->uv.x, u, 0.01);
     EXPECT_NEAR(at->uv.y, 0.5 + 0.5 * y, 0.03);
-    // From behind the side that the normals call outside stays the same.
+    // From behind, the normal still points to the side that the file's normals choose.
     const auto behind = look(scene, Point(target - 0.5 * normal), Vec3(normal));
     ASSERT_TRUE(behind);
     EXPECT_GT(glm::dot(DVec3(behind->normal), normal), 0.99);
   }
 }
 
-// A straight hair is convex: what leaves it outwards never meets it again, at any scale and place. What enters a tube
-// meets its other side.
+// A straight hair is convex: a ray that leaves it outwards never hits it again, at any scale and position. A ray that
+// enters a tube hits its other side.
 TEST(Curves, NothingMeetsItself) {
   const std::string straight = "\"point3 P\" [-1 0 0 -0.3 0.21 0 0.4 0.42 0 1.1 0.63 0] \"float width\" 0.02\n";
   for (const char* place : {"", "Scale 0.001 0.001 0.001\n", "Translate 30 -20 50\n", "Scale 100 100 100\n",
@@ -151,7 +151,7 @@ TEST(Curves, NothingMeetsItself) {
         const Point middle = box.centre() + (x - 0.5f) * box.extent() * Vec3(1, 1, 0) * (place[0] == 'C' ? 0.0f : 1.0f);
         const Point from = middle + std::sqrt(length_squared(box.extent())) * sample_uniform_sphere(rng.next2());
         const auto at = look(scene, from, middle - from);
-        if (!at || (type == "cylinder" && dot(at->normal, middle - from) > 0)) continue;  // in by an open end
+        if (!at || (type == "cylinder" && dot(at->normal, middle - from) > 0)) continue;  // through an open end
         ++hits;
         const Vec3 facing = dot(at->normal, middle - from) < 0 ? at->normal : -at->normal;
         Direction out = sample_uniform_sphere(rng.next2());
@@ -161,7 +161,7 @@ TEST(Curves, NothingMeetsItself) {
       }
       EXPECT_GT(hits, 500);
       EXPECT_EQ(again, 0) << "of " << hits;
-      // Rays along the axis may leave by the open ends; flat hairs have no inside.
+      // Rays along the axis may leave through the open ends. Flat hairs have no inside.
       if (type == "cylinder")
         EXPECT_GT(through, hits * 97 / 100);
       else
@@ -208,7 +208,7 @@ TEST(Curves, AlphaHoldsOnEveryKind) {
         EXPECT_EQ(look(checked, target - towards, towards).has_value(), u < 0.5) << u;
       }
     }
-    // A tube has two walls. Within 5 standard deviations: false-alarm rate below 1e-6.
+    // A tube has two walls. Tolerance of 5 standard deviations: false-alarm rate below 1e-6.
     const double expected = type == "cylinder" ? 0.75 : 0.5;
     EXPECT_NEAR(seen / static_cast<double>(rays), expected, 5 * 0.5 / std::sqrt(static_cast<double>(rays)));
   }
@@ -220,7 +220,7 @@ description::Curves read_curve(const std::string& parameters) {
   return std::get<description::Curves>(scene.shapes.at(0).geometry);
 }
 
-// Every basis and degree is the cubic Bézier curve that its own formula gives.
+// Curves of every basis and degree equal the Bézier curve computed from that basis' own formula.
 TEST(PbrtCurves, BasesAreConverted) {
   const std::string points = "\"point3 P\" [0 0 0  1 2 0  2 -1 1  4 0 2  5 5 3]";
   const std::array<DVec3, 5> p{{{0, 0, 0}, {1, 2, 0}, {2, -1, 1}, {4, 0, 2}, {5, 5, 3}}};
@@ -290,7 +290,7 @@ TEST(PbrtCurves, HairsThatBelongTogetherBecomeOneShape) {
   EXPECT_EQ(curves.points[3], glm::vec4(-5, 0, 0, 1));
 }
 
-// The scenes that users can look at are read without a warning, into what they are made of.
+// The example scenes are read without a warning, into the expected shapes.
 TEST(PbrtCurves, ScenesOfShapesAreRead) {
   const std::string folder = LANTHORN_SOURCE_DIR "/tests/scenes/";
   const Scene curves(read_scene(folder + "curves.pbrt"));

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Displaced meshes: fine enough, without cracks, where the height says.
+// Displaced meshes have edges that are short enough, no cracks, and the given height.
 #include "shape/displacement.h"
 
 #include <gtest/gtest.h>
@@ -41,7 +41,7 @@ TEST(Displacement, SplitsUntilNoEdgeIsTooLong) {
     area += 0.5 * std::sqrt(static_cast<double>(length_squared(n)));
   }
   EXPECT_NEAR(area, 1, 1e-5);
-  // No cracks: an edge inside belongs to two triangles, and vertices in one place are one.
+  // No cracks: each inner edge belongs to two triangles, and no two vertices have the same position.
   for (const auto& [edge, count] : edges) {
     const Point middle = 0.5f * (mesh.positions[edge.first] + mesh.positions[edge.second]);
     const bool border = middle.x == 0 || middle.x == 1 || middle.y == 0 || middle.y == 1;
@@ -88,7 +88,7 @@ TEST(Displacement, OfPlyMeshesInScenes) {
   EXPECT_GT(scene.statistics().triangles, 200u);
 }
 
-// Far from the origin, the middle of an edge is rounded to one of its ends, or both sides of it in the world are.
+// Far from the origin, an edge's midpoint is rounded to one of its ends, in object space or in world space.
 TEST(Displacement, RefusesEdgesShorterThanSinglePrecisionKnows) {
   const auto flat = [](const TexturePoint&) { return 0.0f; };
   const SourceLocation here{"t.pbrt", 3, 1};
@@ -107,7 +107,7 @@ TEST(Displacement, RefusesEdgesShorterThanSinglePrecisionKnows) {
             "no error");
 }
 
-// Refused before the first is made.
+// Refused before the first triangle is made.
 TEST(Displacement, RefusesTooManyTrianglesInAll) {
   const test::TemporaryDir dir;
   dir.write("a.ply",

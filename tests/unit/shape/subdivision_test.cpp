@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Loop subdivision against what is known of its limit.
+// Loop subdivision against known properties of its limit surface.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -54,8 +54,8 @@ TEST(LoopSubdivision, OctahedronsVerticesGoHalfWay) {
   }
 }
 
-// Subdividing does not change the limit: masks, rules and tangents belong together. Valences 3 to 6 and all kinds of
-// boundary vertices.
+// Subdivision does not change the limit surface, so masks, rules and tangents are consistent. The meshes have valences
+// 3 to 6 and all kinds of boundary vertices.
 TEST(LoopSubdivision, LimitsDoNotDependOnTheLevel) {
   TriangleMesh solid = octahedron(), sheet = grid(4), tetrahedron;
   tetrahedron.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
@@ -87,7 +87,7 @@ TEST(LoopSubdivision, BoundariesAreCubicSplines) {
   shake(control);
   const TriangleMesh mesh = loop_subdivide(control, 1);
   const auto p = [&](int i) { return control.positions[static_cast<std::size_t>(i)]; };
-  // The spline between the boundary's vertices 2 and 3 at its middle.
+  // The spline at the midpoint between the boundary's vertices 2 and 3.
   const Point expected = (p(1) + 23.0f * p(2) + 23.0f * p(3) + p(4)) / 48.0f;
   float nearest = infinity;
   for (const Point& q : mesh.positions) nearest = std::min(nearest, distance_squared(q, expected));
@@ -95,7 +95,7 @@ TEST(LoopSubdivision, BoundariesAreCubicSplines) {
   EXPECT_LT(distance_squared(mesh.positions[3], (p(2) + 4.0f * p(3) + p(4)) / 6.0f), 1e-12f);
 }
 
-// A plane stays plane, with even steps where all valences are 6.
+// A plane stays a plane, with even spacing where all valences are 6.
 TEST(LoopSubdivision, ReproducesPlanes) {
   const TriangleMesh mesh = loop_subdivide(grid(5), 2);
   for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
@@ -106,7 +106,7 @@ TEST(LoopSubdivision, ReproducesPlanes) {
 }
 
 TEST(LoopSubdivision, SurvivesWhatIsNoSurface) {
-  TriangleMesh book;  // three pages on one edge, a triangle without area, two turned against each other, one alone
+  TriangleMesh book;  // three pages on one edge, a degenerate triangle, two of opposite winding, a single one
   HashRng rng(2);
   for (int i = 0; i < 12; ++i) book.positions.emplace_back(rng.next(), rng.next(), rng.next());
   book.triangles = {{0, 1, 2}, {0, 1, 3}, {0, 1, 4}, {5, 5, 6}, {5, 6, 7}, {5, 6, 8}, {9, 10, 11}};

@@ -32,7 +32,7 @@ DenseSpectrum tabulate(Value&& value) {
   for (std::size_t i = 0; i < s.values.size(); ++i) s.values[i] = value(nm_of(i));
   return s;
 }
-/// Linear RGB of light in a colour space, by quadrature at every nanometre.
+/// Linear RGB of light in a colour space, by quadrature at intervals of 1 nm.
 Rgb seen(const DenseSpectrum& light, ColorSpace space = ColorSpace::srgb) {
   return to_float(inverse(rgb_to_xyz(space)) * to_xyz(light));
 }
@@ -141,8 +141,8 @@ TEST(Wavelengths, FourAreStratified) {
   for (unsigned i = 0; i < 4; ++i) EXPECT_NEAR(w.lambda[i], Wavelengths::spectral(shifted[i]).lambda[0], 1e-3f);
 }
 
-// How much the four wavelengths of a path tint it. Found: .0164 (blue of 2856 K); under a density like the eye's
-// response .42.
+// How much the four wavelengths of a path tint white light. Measured: .0164 (blue of 2856 K); .42 with a density like
+// the eye's response.
 TEST(Wavelengths, FourShowWhiteLightNearlyWhite) {
   constexpr int count = 1000;
   for (const DenseSpectrum& light : {illuminant_d65, blackbody(2856), blackbody(5000)}) {
@@ -238,7 +238,7 @@ TEST(Upsampling, TableRoundTripsDarkColours) {
 }
 
 TEST(Upsampling, OtherSpacesRoundTripInsideRec709) {
-  // Colours that a smooth reflectance can have: those inside Rec.709, expressed in each space.
+  // Colours that a smooth reflectance can have: those inside Rec.709, converted to each space.
   HashRng rng(2);
   for (const ColorSpace space : all_spaces) {
     const Matrix3 m = inverse(rgb_to_xyz(space)) * rgb_to_xyz(ColorSpace::srgb);
@@ -382,7 +382,7 @@ TEST(NamedSpectra, GlassesHaveTheirCatalogueIndices) {
   for (const Catalogue& glass : catalogue) {
     const DenseSpectrum* eta = named_spectrum(glass.name);
     ASSERT_NE(eta, nullptr) << glass.name;
-    const auto at = [&](double nm) {  // the spectral lines lie between nanometres
+    const auto at = [&](double nm) {  // the spectral lines lie between whole nanometres
       const auto i = static_cast<std::size_t>(nm - double{lambda_min});
       const double t = nm - double{lambda_min} - static_cast<double>(i);
       return (1 - t) * double{eta->values[i]} + t * double{eta->values[i + 1]};
@@ -437,7 +437,7 @@ TEST(NamedSpectra, MetalsInRgbModeResembleSpectralOnes) {
       return static_cast<float>(reflectance(double{n}, double{absorption}));
     };
     const Rgb rgb{channel(eta.rgb.r, k.rgb.r), channel(eta.rgb.g, k.rgb.g), channel(eta.rgb.b, k.rgb.b)};
-    // Gold's measured colour lies outside Rec.709 (red 1.02), which no RGB reflectance can be.
+    // Gold's measured colour lies outside Rec.709 (red 1.02), so no RGB reflectance can reach it.
     const Rgb inside{std::min(1.0f, spectral.r), std::min(1.0f, spectral.g), std::min(1.0f, spectral.b)};
     EXPECT_LT(max_difference(rgb, inside), 0.05f)
         << name << ": rgb " << rgb.r << ' ' << rgb.g << ' ' << rgb.b << ", spectral " << spectral.r << ' ' << spectral.g
@@ -445,7 +445,7 @@ TEST(NamedSpectra, MetalsInRgbModeResembleSpectralOnes) {
   }
 }
 
-// The light that is balanced for becomes white, and keeps its luminance.
+// The light that the balance is for becomes white, and keeps its luminance.
 TEST(WhiteBalance, MakesItsLightWhite) {
   const auto colour_of = [](const DenseSpectrum& light) {
     SpectrumCurve curve = SpectrumCurve::tabulated_light(&light);
@@ -465,11 +465,11 @@ TEST(WhiteBalance, MakesItsLightWhite) {
     EXPECT_NEAR(white.g, 1, c.tolerance) << c.kelvin;
     EXPECT_NEAR(white.b, 1, c.tolerance) << c.kelvin;
   }
-  // Warmer light than the balance's stays warm.
+  // Light warmer than the balance's stays warm.
   const Rgb warm = white_balance(2856, ColorSpace::srgb) * colour_of(candle);
   EXPECT_GT(warm.r, 1.1f);
   EXPECT_LT(warm.b, 0.8f);
-  // Both formulas of daylight meet at 7000 K.
+  // The two formulas for daylight agree at 7000 K.
   const RgbMatrix below = white_balance(6995, ColorSpace::srgb), above = white_balance(7005, ColorSpace::srgb);
   for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(below.rows[i].r, above.rows[i].r, 1e-3f);
 }

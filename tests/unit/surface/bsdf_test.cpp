@@ -104,7 +104,7 @@ void expect_near(const Spectrum& a, const Spectrum& b, float relative, const std
 TEST(Fresnel, DielectricHasItsKnownValues) {
   EXPECT_NEAR(fresnel_dielectric(1, 1.5f).reflectance, 0.04f, 1e-6f);
   EXPECT_NEAR(fresnel_dielectric(1, 1 / 1.5f).reflectance, 0.04f, 1e-6f);
-  // At Brewster's angle only the perpendicular part is reflected: ((1 - eta^2) / (1 + eta^2))^2 / 2.
+  // At Brewster's angle only the perpendicular component is reflected: ((1 - eta^2) / (1 + eta^2))^2 / 2.
   const float brewster = std::cos(std::atan(1.5f));
   EXPECT_NEAR(fresnel_dielectric(brewster, 1.5f).reflectance, 0.5f * sqr((1 - 2.25f) / (1 + 2.25f)), 1e-6f);
   EXPECT_EQ(fresnel_dielectric(0.5f, 1 / 1.5f).reflectance, 1);  // 60 degrees lies beyond the critical angle, 41.8
@@ -123,7 +123,7 @@ TEST(Fresnel, ConductorMatchesComplexArithmetic) {
       EXPECT_NEAR(r[i], 0.5 * (perpendicular + parallel), 2e-5) << cos;
     }
   }
-  // The unused component of RGB mode stays black, without NaN.
+  // The component that RGB mode does not use stays black and is never NaN.
   const Spectrum rgb = fresnel_conductor(1, Spectrum(0.2f, 0.4f, 1.4f, 0), Spectrum(4, 2.4f, 1.6f, 0));
   EXPECT_TRUE(is_finite(rgb));
   EXPECT_EQ(rgb[3], 0);
@@ -222,7 +222,8 @@ TEST(Bsdf, EvalAndPdfTogetherAreThoseOfEach) {
     }
 }
 
-// Sampling, both densities and f belong together, for both walks, and nothing is under the plane.
+// Sampling, both densities and f are consistent for eye and light paths, and a metal scatters nothing below the
+// geometric plane.
 TEST(Bent, IsOneFunctionOfEyeAndLight) {
   const Normal plane = at_angles(25, 40);
   HashRng rng(6);
@@ -246,7 +247,7 @@ TEST(Bent, IsOneFunctionOfEyeAndLight) {
       const float reverse = pdf(bsdf, s->wo, wi, other);
       EXPECT_NEAR(pdf_reverse(bsdf, wi, s->wo, transport), reverse, 1e-5f * reverse);
       const BsdfValues all = eval_and_pdfs(bsdf, wi, s->wo, transport);
-      if (f.is_black()) continue;  // from behind the shading normal
+      if (f.is_black()) continue;  // behind the shading normal
       EXPECT_NEAR(all.pdf, s->pdf, 5e-3f * s->pdf);
       EXPECT_NEAR(all.pdf_reverse, reverse, 1e-5f * reverse);
       if (!is_metal) continue;
@@ -363,7 +364,7 @@ TEST(ThinDielectric, SumsTheReflectionsBetweenItsFaces) {
   expect_near(albedo(ThinDielectric{.tint = colour}, i), Spectrum(reflected) + (1 - reflected) * colour, 1e-5f, "tint");
 }
 
-// From either side, and also where white light is meant.
+// For light from either side, in spectral and in RGB mode.
 TEST(Dielectric, AFilmReflectsAndTheRestPasses) {
   for (const Wavelengths& w : {Wavelengths::spectral(0.2f), Wavelengths::rgb(0.5f)}) {
     const Dielectric glass{.eta = 1.5f, .tint = colour, .film = {1.8f, 500, w}};
@@ -398,7 +399,7 @@ TEST(Coated, TwoSegmentsHaveAClosedForm) {
               eval(metal, inside_i, inside_o, Transport::radiance) * through, 1e-4f, "metal base, from below");
 }
 
-// Whatever the probabilities of sampling are.
+// Lobe weights follow the albedo, not the probabilities with which lobes are sampled.
 TEST(Coated, ClearCoatsHaveTheirLobesByAlbedo) {
   for (const CoatPassage* passage : {&smooth_coat, &rough_coat})
     for (const Vec3& wi : directions()) {

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// A toy closure, of which each part can be left out: without any one of them it is no closure, and could not become one
-// of those in `Bsdf`.
+// A toy closure with the optional members. If one of them were missing, it would not satisfy the concept, and could not
+// become an alternative of `Bsdf`.
 #include <gtest/gtest.h>
 
 #include <type_traits>

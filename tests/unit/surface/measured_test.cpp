@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// A table made from a GGX conductor must behave as the conductor that it was made from.
+// A table made from a GGX conductor must behave like that conductor.
 #include "surface/measured.h"
 
 #include <gtest/gtest.h>
@@ -30,13 +30,13 @@ Conductor gold_of(const MeasuredConductor& c) {
   return {Spectrum(0.143f, 0.374f, 1.442f, 0), Spectrum(3.98f, 2.39f, 1.60f, 0), c.alpha_x, c.alpha_y};
 }
 
-/// Mean difference from the conductor over directions that the conductor draws, as a share of its value.
+/// Mean relative difference from the conductor, over directions sampled from the conductor.
 double mean_difference(const Bsdf& measured, const Bsdf& conductor, int component) {
   HashRng rng(1);
   double sum = 0;
   int count = 0;
   for (int i = 0; i < 4000; ++i) {
-    // As far as the measurement goes, 1.5 radians, with some way to the horizon.
+    // The measurement reaches 1.5 radians; this keeps some distance from the horizon.
     Vec3 wi = sample_cosine_hemisphere(rng.next2());
     if (wi.z < 0.2f) continue;
     if (i % 2 == 1) wi = -wi;
@@ -87,7 +87,7 @@ TEST(Measured, SpectraAreThoseOfTheWavelengths) {
       EXPECT_LT(mean_difference(Measured{&brdf, w}, conductor, component), 0.03)
           << w.lambda[static_cast<unsigned>(component)];
   }
-  // In RGB mode, its mean under the response of Rec.709: that of the reflectance at each wavelength.
+  // In RGB mode, the value is the mean of the reflectance at each wavelength, weighted by the response of Rec.709.
   const Vec3 wi = at_angles(30, 0), wo = at_angles(25, 170);
   Rgb mean{};
   for (std::size_t i = 0; i < c.wavelengths.size(); ++i) {
@@ -100,7 +100,7 @@ TEST(Measured, SpectraAreThoseOfTheWavelengths) {
   EXPECT_NEAR(found[2], mean.b, 0.03f * mean.b);
   EXPECT_EQ(found[3], 0);
   EXPECT_GT(found[0], 1.5f * found[2]);
-  // Colours without spectra are given some.
+  // Data that only have RGB values are upsampled to spectra.
   const MeasuredData coloured = measure({.indices = gold});
   const MeasuredBrdf colours(coloured);
   const Wavelengths red{.mode = ColorMode::spectral, .lambda = {650, 640, 420, 430}, .pdf = {1, 1, 1, 1}};
@@ -135,7 +135,7 @@ TEST(Measured, LightPathsSeeTheSameSurface) {
     asymmetry += static_cast<double>(std::fabs(turned / there - 1));
     ++count;
   }
-  // What was measured is reciprocal, so the table is, up to its resolution.
+  // The measured conductor is reciprocal, so the table is too, up to its resolution.
   ASSERT_GT(count, 50);
   EXPECT_LT(asymmetry / count, 0.05);
 }

@@ -31,8 +31,8 @@ std::array<double, 3> under_white(float cosine, const SpectrumCurve& eta, const 
   return sum;
 }
 
-// A metal in RGB has the colour of its spectrum under white light, at every angle. Gold's red is more than a channel
-// can reflect: it stays nearly 1 at grazing angles, where the spectrum's dips by 1.5 %.
+// A metal in RGB mode has the colour of its spectrum under white light, at every angle. Gold's red exceeds what a
+// channel can reflect: it stays nearly 1 at grazing angles, where the spectrum's red dips by 1.5 %.
 TEST(MetalRgb, ReflectsLikeItsSpectrum) {
   for (const char* const metal : {"Ag", "Al", "Au", "Cu", "CuZn"}) {
     const auto curve = [&](const char* quantity) {

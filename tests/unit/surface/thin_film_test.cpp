@@ -21,7 +21,7 @@ const Wavelengths spectral = Wavelengths::spectral(0.3f);
 const Wavelengths rgb = Wavelengths::rgb(0.5f);
 const std::array<float, 5> cosines{1, 0.8f, 0.45f, 0.2f, 0.02f};
 
-// Amplitudes at an interface from index a to index b, for the cosines of the two rays.
+// Amplitudes at an interface from index a to index b, given the cosines of the two rays.
 struct Amplitudes {
   double r, t;
 };
@@ -32,7 +32,7 @@ Amplitudes parallel(double a, double b, double cos_a, double cos_b) {
   return {(b * cos_a - a * cos_b) / (b * cos_a + a * cos_b), 2 * a * cos_a / (b * cos_a + a * cos_b)};
 }
 
-// The light reflected at once, after one way to and fro in the film, after two, ... added up with their phases.
+// The light reflected by the film's top, after one round trip in the film, after two, ..., summed with phases.
 double sum_of_reflections(double cos_i, double film, double base, double phase, auto interface) {
   const double sin2 = 1 - cos_i * cos_i;
   const double cos_film = std::sqrt(1 - sin2 / (film * film)), cos_base = std::sqrt(1 - sin2 / (base * base));
@@ -75,7 +75,7 @@ TEST(ThinFilm, WithoutThicknessTheSurfaceReflectsAsItIs) {
   EXPECT_FALSE(ThinFilm(1.3f, 0, rgb));
 }
 
-// A quarter of a wavelength of index sqrt(n) on index n: the two reflections are equal and opposite.
+// A quarter-wavelength film of index sqrt(n) on index n: its two reflections have equal magnitude and opposite sign.
 TEST(ThinFilm, ACoatingOfAQuarterWavelengthRemovesTheReflection) {
   const float index = std::sqrt(1.5f);
   const ThinFilm film(index, spectral.lambda[1] / (4 * index), spectral);

@@ -39,7 +39,7 @@ using description::Wrap;
 
 constexpr std::uint64_t mebi = std::uint64_t{1} << 20;
 
-// Damages all that is in nameless files of this process below the folder: the tiles.
+// Damages the tiles: all unlinked files that this process has open in the folder.
 int damage_nameless_files(const std::filesystem::path& folder) {
   int damaged = 0;
   for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd")) {
@@ -56,7 +56,7 @@ int damage_nameless_files(const std::filesystem::path& folder) {
 
 class TextureCaches : public ::testing::Test {
  protected:
-  // Numbers in [0,1), of which 8-bit files keep 256 values.
+  // Values in [0,1), of which 8-bit files keep 256 levels.
   std::string write(const std::string& name, int width, int height, int channels, OIIO::TypeDesc type,
                     float least_alpha = 0) {
     std::vector<float> texels(static_cast<std::size_t>(width * height * channels));
@@ -73,7 +73,7 @@ class TextureCaches : public ::testing::Test {
     EXPECT_TRUE(output->close());
     return path;
   }
-  // A checkerboard of single texels, 0 and 255.
+  // A checkerboard of single texels with values 0 and 255.
   std::string write_checkerboard(const std::string& name, int width, int height) {
     const std::string path = (folder_.path() / name).string();
     std::ofstream file(path, std::ios::binary);
@@ -90,7 +90,7 @@ class TextureCaches : public ::testing::Test {
   FileAccess access_;
 };
 
-// Level 1 needs four million texels; these have as many.
+// Level 1 exists from four million texels on; these images have as many.
 TEST_F(TextureCaches, CachedTexelsAreThoseInMemory) {
   struct Case {
     std::string file;
@@ -142,13 +142,13 @@ TEST(TextureLevels, HaveHalfOfTheRowsAndColumnsRoundedUp) {
     if (level == 1) std::memcpy(&last, row + 33 * sizeof last, sizeof last);
   });
   std::vector<float> row(67, 1.0f);
-  row.back() = 5;  // its column alone makes the last texels of level 1
+  row.back() = 5;  // level 1's last texels come from this column alone
   for (int y = 0; y < format.height; ++y) maker.add(reinterpret_cast<const std::byte*>(row.data()));
   EXPECT_EQ(rows, std::vector<int>({34, 17, 9, 5, 3, 2, 1, 1}));
   EXPECT_EQ(last, 5);
 }
 
-// In linear values: rounded to the nearest, .5 would be the sRGB texel of 188, too bright by .6 %.
+// The mean of linear values is kept. Rounding .5 to the nearest sRGB texel, 188, would be .6 % too bright.
 TEST(TextureLevels, KeepTheMeanOfACheckerboard) {
   TextureFormat format{128, 64, 3, true, {}};
   for (unsigned i = 0; i < 256; ++i) format.decode[i] = linear_from_srgb(static_cast<float>(i) / 255.0f);
@@ -167,8 +167,8 @@ TEST(TextureLevels, KeepTheMeanOfACheckerboard) {
   }
   for (int level = 0; level < levels; ++level) {
     const int texels = 3 * level_size(format.width, level) * level_size(format.height, level);
-    // Steps are .0060 there: rounding at random has a standard deviation of at most .0030, at this level and at those
-    // before it, which have 4, 16, ... times as many texels.
+    // Texel values are .0060 apart there, so random rounding has a standard deviation of at most .0030, at this level
+    // and at the ones before it, which have 4, 16, ... times as many texels.
     const double deviation = .003 * std::sqrt(4.0 / 3 / texels);
     EXPECT_NEAR(sums[static_cast<std::size_t>(level)] / texels, .5, 6 * deviation) << level;
   }
@@ -204,14 +204,14 @@ TEST(TextureMemory, KeepsSmallImagesAndAllIfTheyFit) {
   ASSERT_NE(little.cache(), nullptr);
   EXPECT_EQ(little.cache()->bytes(), 57 * mebi);
   EXPECT_EQ(least.plan(needs), Cached({true, true, true, true}));
-  EXPECT_EQ(enough.plan({{mebi, 0}}), Cached({true}));  // of later images, when the memory is full
+  EXPECT_EQ(enough.plan({{mebi, 0}}), Cached({true}));  // an image that is read later, when the memory is full
   const std::vector<TextureImage::Need> huge{{std::uint64_t{1} << 60, std::uint64_t{1} << 60}};
   const std::string problem = test::error_text([&] { TextureMemory(mebi).plan(huge); });
   EXPECT_TRUE(problem.starts_with("the textures take 1.0 EiB of memory, but --texture-memory allows 1.0 MiB"))
       << problem;
 }
 
-// A floor that reaches far, with a fine checkerboard.
+// A floor that extends far away, with a fine checkerboard.
 std::string floor_of(const std::string& image) {
   return "LightSource \"infinite\" \"float scale\" 1\nTexture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"" +
          image +
@@ -253,7 +253,7 @@ TEST_F(TextureCaches, ThePictureIsTheSameForAnyBoundAndAnyThreads) {
 
 TEST_F(TextureCaches, ARenderEndsWithTheNameOfADamagedTile) {
   const std::string image = write_checkerboard("c.ppm", 512, 512);
-  const SharedScene scene = build_scene(described(image, 0));  // where `path` looks at no texture before the first pass
+  const SharedScene scene = build_scene(described(image, 0));  // `path` reads no texture before the first pass
   RenderOptions options;
   options.integrator = "path";
   Session session(scene, options);
@@ -262,7 +262,7 @@ TEST_F(TextureCaches, ARenderEndsWithTheNameOfADamagedTile) {
   EXPECT_NE(problem.find("image \"" + image + "\": a tile of it in the temporary file"), std::string::npos) << problem;
 }
 
-// What a ray sees of the floor: its reflectance over random points around one place.
+// Reflectance of the floor as rays see it, over random points around one place.
 struct Seen {
   double mean = 0, variance = 0;
 };
@@ -284,19 +284,19 @@ Seen seen(const Scene& scene, float distance, float spread) {
 }
 
 TEST_F(TextureCaches, FootprintsAverageAFineCheckerboardFarAway) {
-  // Texels of 12.5 m / 4096 = 3 mm by 12 mm.
+  // Texels measure 12.5 m / 4096 = 3 mm by 12 mm.
   const std::string image = write_checkerboard("c.ppm", 4096, 1024);
   const SharedScene scene = build_scene(described(image, 1024 * mebi));
   const Seen full = seen(*scene, 40, 0);
   EXPECT_NEAR(full.mean, .5, .03);
   EXPECT_GT(full.variance, .02);
-  // Seven texels, of which fewer than four pairs lie side by side.
+  // The footprint is seven texels, too small for level 1: fewer than four pairs lie side by side.
   EXPECT_DOUBLE_EQ(seen(*scene, 40, 7.5f * .0122f / 40).variance, full.variance);
-  // Eight texels: level 1.
+  // The footprint is eight texels: level 1.
   const Seen far = seen(*scene, 40, 8.5f * .0122f / 40);
   EXPECT_LT(far.variance, .02 * full.variance);
   EXPECT_NEAR(far.mean, .5, .003);
-  // The footprint grows with the distance.
+  // The footprint grows with distance.
   EXPECT_DOUBLE_EQ(seen(*scene, 4, 8.5f * .0122f / 40).variance, full.variance);
 }
 

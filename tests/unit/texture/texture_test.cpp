@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Textures on their own, without a surface: mappings against points computed by hand, procedural textures against
-// their definitions, images at their borders and when they are read.
+// Textures without a surface: mappings are tested against points computed by hand, procedural textures against their
+// definitions, and images at their borders and while being read.
 #include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@
 namespace lanthorn::texture_test {
 namespace {
 
-// The textures of a text, by the order of their definition.
+// The textures of a scene text, in order of definition.
 struct Textures {
   SceneDescription description;
   SpectrumStore spectra;
@@ -54,7 +54,7 @@ Point random_point(HashRng& rng, float size) {
   return size * (2.0f * Vec3(x, y, z) - 1.0f);
 }
 
-// s and t of a mapping: bilinear textures that return them.
+// s and t of a mapping, by bilinear textures that return them.
 Vec2 mapped(const std::string& mapping, const TexturePoint& at, const std::string& before = "") {
   Textures textures(before + "Texture \"s\" \"float\" \"bilerp\" \"float v01\" 0 \"float v10\" 1 \"string mapping\" " +
                     mapping + "\nTexture \"t\" \"float\" \"bilerp\" \"string mapping\" " + mapping);
@@ -122,13 +122,13 @@ TEST(ProceduralTextures, DirectionMixFollowsTheGeometricNormal) {
   Textures t("Rotate 90 1 0 0\n" +
              texture("directionmix", "\"float tex1\" 2 \"float tex2\" 6 \"vector3 dir\" [0 3 0]"));
   const auto value = [&](const Normal& n) { return t.value(TexturePoint{Point(0), n, Vec2(0)}); };
-  EXPECT_NEAR(value({0, 0, 1}), 2, 1e-5f);  // y of the texture's space
+  EXPECT_NEAR(value({0, 0, 1}), 2, 1e-5f);  // y in texture space
   EXPECT_NEAR(value({0, 0, -1}), 2, 1e-5f);
   EXPECT_NEAR(value({1, 0, 0}), 6, 1e-5f);
   EXPECT_NEAR(value({0.8f, 0, 0.6f}), 0.6f * 2 + 0.4f * 6, 1e-5f);
 }
 
-// pbrt gives "outside" to the dots.
+// In pbrt, the dots take the value "outside".
 TEST(ProceduralTextures, DotsLieInTheCellsThatNoiseChooses) {
   Textures t(texture("dots", "\"float outside\" 1 \"float inside\" 0"));
   constexpr int cells = 40, steps = 30;
@@ -147,7 +147,7 @@ TEST(ProceduralTextures, DotsLieInTheCellsThatNoiseChooses) {
     EXPECT_EQ(inside > 0, perlin_noise({cell + 0.5f, 0.5f}) > 0);
     if (inside == 0) continue;
     ++with_dot;
-    // A whole disk, within its cell.
+    // A complete disk, inside its cell.
     EXPECT_NEAR(static_cast<double>(inside) / (steps * steps), 3.14159 * 0.35 * 0.35, 0.02);
     EXPECT_NEAR(high.x - low.x, 0.7f, 0.08f);
     EXPECT_NEAR(high.y - low.y, 0.7f, 0.08f);
@@ -180,7 +180,7 @@ TEST(ProceduralTextures, MarbleIsASplineThroughVeins) {
   };
   expect_rgb(at_phase(0), 0.87, 0.87, 0.9);
   expect_rgb(at_phase(1), 0.87, 0.87, 0.9);
-  // In the middle of the last of six segments, by (1 3 3 1) / 8.
+  // At the midpoint of the last of six segments, weighted by (1 3 3 1) / 8.
   const float middle = 11.0f / 12;
   expect_rgb(at_phase(middle), 1.5 * (0.58 + 3 * 0.58 + 3 * 0.2 + 0.58) / 8, 1.5 * (5 * 0.58 + 3 * 0.2) / 8,
              1.5 * (5 * 0.6 + 3 * 0.33) / 8);
@@ -213,7 +213,7 @@ TEST(ProceduralTextures, Nest) {
   }
 }
 
-// Each of its balls shows more than one colour, and nothing is replaced.
+// Each ball of the scene shows more than one colour, and no texture is replaced.
 TEST(ProceduralTextures, OfTheTestSceneVary) {
   const Scene scene(read_scene(LANTHORN_SOURCE_DIR "/tests/scenes/textures.pbrt"));
   EXPECT_TRUE(scene.warnings().empty());
@@ -248,7 +248,7 @@ class ImageTextures : public ::testing::Test {
   test::TemporaryDir folder;
 };
 
-// Clamped along s and mirrored along t: texels 0 1 over 2 3.
+// Clamped along s and mirrored along t. The texels are 0 1 above 2 3.
 TEST_F(ImageTextures, AxesWrapByThemselves) {
   const std::string path = write("w.exr", 2, 2, 1, {0, 1, 2, 3});
   const TextureImage image(path, FileAccess{}, {{description::Encoding::linear, 1, ColorSpace::srgb}}, {});
@@ -256,13 +256,13 @@ TEST_F(ImageTextures, AxesWrapByThemselves) {
     return image.scalar({s, t}, {description::Wrap::clamp, description::Wrap::mirror}, description::ImageFilter::point);
   };
   EXPECT_EQ(at(0.25f, 0.75f), 0);
-  EXPECT_EQ(at(1.25f, 0.75f), 1);  // not 0, as if it were repeated
+  EXPECT_EQ(at(1.25f, 0.75f), 1);  // 0 if it were repeated
   EXPECT_EQ(at(-0.25f, 0.25f), 2);
-  EXPECT_EQ(at(0.25f, 1.25f), 0);  // mirrored, not 2
+  EXPECT_EQ(at(0.25f, 1.25f), 0);  // 2 if it were not mirrored
   EXPECT_EQ(at(0.25f, -0.75f), 0);
 }
 
-// Beyond an edge lies the texel of the same edge, mirrored about its middle.
+// Beyond an edge, lookups return texels of the same edge, mirrored about its midpoint.
 TEST_F(ImageTextures, OctahedralSphereFoldsAtItsEdges) {
   std::vector<float> texels(16);
   for (std::size_t i = 0; i < 16; ++i) texels[i] = static_cast<float>(i);
@@ -280,13 +280,14 @@ TEST_F(ImageTextures, OctahedralSphereFoldsAtItsEdges) {
     EXPECT_EQ(at_texel(4, i), 4 * (3 - i) + 3);
     EXPECT_EQ(at_texel(i, -1), 3 - i);
     EXPECT_EQ(at_texel(i, 4), 12 + 3 - i);
-    EXPECT_EQ(at_texel(i + 8, 1), at_texel(i, 1));  // of period two squares
+    EXPECT_EQ(at_texel(i + 8, 1), at_texel(i, 1));  // the period is two squares
     EXPECT_EQ(at_texel(i, 2 - 8), at_texel(i, 2));
   }
   EXPECT_EQ(at_texel(-1, -1), 15);
 }
 
-// Textures that name the one before once (chain) or twice (doubling), from t0 to t<last>. Line i + 2 defines texture i.
+// Textures t0 to t<last>, each of which refers to the previous one once (chain) or twice (doubling). Line i + 2 defines
+// texture i.
 std::string chain(const std::string& kind, const std::string& inputs, int last, const std::string& type) {
   std::string text = "Texture \"t0\" \"" + type + "\" \"bilerp\"\n";
   for (int i = 1; i <= last; ++i) {
@@ -301,7 +302,7 @@ std::string chain(const std::string& kind, const std::string& inputs, int last, 
   return text;
 }
 
-// Compiles the last texture first, which compiles the others.
+// Compiles the last texture, which compiles the others in turn.
 std::string error_of_last(const std::string& text) {
   const SceneDescription description = read_pbrt_string("WorldBegin\n" + text, ".", "t.pbrt");
   SpectrumStore spectra;

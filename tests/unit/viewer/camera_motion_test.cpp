@@ -17,14 +17,14 @@ void expect_near(const Vec3& a, const Vec3& b, float tolerance = 1e-5f) {
   for (int i = 0; i < 3; ++i) EXPECT_NEAR(a[i], b[i], tolerance) << "component " << i;
 }
 
-// At (0, 1, 5), looking at (0, 1, 0), level; as pbrt's LookAt makes it, and mirrored as glTF's reader makes it.
+// A level camera at (0, 1, 5) that looks at (0, 1, 0): as pbrt's LookAt makes it, or mirrored as glTF's reader does.
 CameraPose pose(bool mirrored) {
   Transform to_world = look_at({0, 1, 5}, {0, 1, 0}, {0, 1, 0}).inverted();
   if (mirrored) to_world = to_world * scale({-1, 1, 1});
   return pose_of(to_world, 5);
 }
 
-/// Where on the screen a point lies: x to the right, y down, both over its depth.
+/// Screen position of a point, relative to its depth: x to the right, y down.
 Vec2 on_screen(const CameraPose& pose, const Point& p) {
   const Vec3 local = pose.camera_to_world.inverse * glm::vec4(p, 1.0f);
   return {local.x / local.z, -local.y / local.z};
@@ -33,7 +33,7 @@ Vec2 on_screen(const CameraPose& pose, const Point& p) {
 class CameraMotion : public testing::TestWithParam<bool> {};
 INSTANTIATE_TEST_SUITE_P(Handedness, CameraMotion, testing::Values(false, true));
 
-// A ring is seen through, and yet turns around its middle.
+// The pivot is the middle of the subject even if nothing is visible there, as in a ring.
 TEST(FramingPose, TurnsAroundTheMiddleOfTheSubject) {
   ViewDescription description;
   description::Camera& camera = description.camera;
@@ -54,7 +54,7 @@ TEST_P(CameraMotion, OrbitKeepsThePivotTheDistanceAndTheHorizon) {
   EXPECT_NEAR(std::sqrt(distance_squared(eye_of(after), Point(0, 1, 0))), 5, 1e-5f);
   EXPECT_NEAR(dot(right_of(after), Vec3(0, 1, 0)), 0, 1e-6f);
   EXPECT_EQ(after.camera_to_world.swaps_handedness(), before.camera_to_world.swaps_handedness());
-  // Down with the hand: over the scene, by as many degrees.
+  // Moving the pointer down raises the camera, by as many degrees.
   EXPECT_NEAR(eye_of(after).y - 1, 5 * std::sin(to_radians(21)), 1e-4f);
 }
 

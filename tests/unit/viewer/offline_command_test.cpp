@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The render that shows offline what the window shows.
+// The `render` command line that reproduces the window's content.
 #include "viewer/offline_command.h"
 
 #include <gtest/gtest.h>
@@ -57,7 +57,7 @@ TEST(OfflineRender, IsDenoisedAsThePictureIs) {
   EXPECT_TRUE(offline_render(picture, {}).denoises);
 }
 
-// What the viewer was started with decides the picture, too.
+// The viewer's own command line also affects the picture.
 TEST(OfflineRender, HasWhatTheViewerWasStartedWith) {
   ViewerOptions options;
   options.method = "probppm";
@@ -117,7 +117,7 @@ TEST(OfflineRender, HasTheExposureOfThePanel) {
   EXPECT_TRUE(offline_render(picture, {}).measures_exposure);
 }
 
-// Strengths with which the viewer starts are edits: they are saved with the scene.
+// Light strengths given at the start count as edits: they are saved with the scene.
 TEST(OfflineRender, StrengthsAtTheStartAreEdits) {
   const SharedScene scene = build_scene(read_pbrt_string(R"(Camera "perspective"
 WorldBegin

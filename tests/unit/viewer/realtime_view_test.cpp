@@ -17,8 +17,8 @@ FrameReport with_eye_paths(double milliseconds) {
   return report;
 }
 
-// A block of 1 m that is seen from 4 m, on planes of 4 m and 4 km under a lamp: the photons' radius and the ambient
-// light fit what is seen.
+// A block of 1 m seen from a distance of 4 m, on planes of 4 m and 4 km, under a lamp: the photon radius and the
+// ambient light fit what is in view.
 TEST(RealtimeSettings, FitWhatIsSeenOfALargeScene) {
   const auto settings = [](const std::string& half) {
     const Scene scene = test::scene_from_text(R"(
@@ -39,7 +39,7 @@ Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-1 0 -1  1 0 -1
   EXPECT_GT(number(large, "ambient"), number(small, "ambient") / 100);
 }
 
-// Coloured noise of dispersive glass does not begin a picture.
+// A picture does not start with the coloured noise of dispersive glass.
 TEST(FrameSettings, FirstFramesAreWithoutDispersion) {
   const Scene scene = test::scene_from_text("WorldBegin\nShape \"sphere\"\n");
   const View view = make_view(scene.description().view);
@@ -48,8 +48,8 @@ TEST(FrameSettings, FirstFramesAreWithoutDispersion) {
   EXPECT_TRUE(frame_settings(settings, view, 100).disperses);
 }
 
-// A processor that takes 900 ms for a path in each pixel: the spacing is found in a frame, stays, and goes back when
-// few pixels need paths.
+// On a processor that takes 900 ms for one path in each pixel, the spacing is found within a frame, stays, and shrinks
+// when few pixels need paths.
 TEST(EyePathSpacing, FitsTheTimeOfAFrame) {
   EyePathSpacing spacing;
   EXPECT_EQ(spacing.pixels(), 1);
@@ -67,7 +67,7 @@ TEST(EyePathSpacing, FitsTheTimeOfAFrame) {
   EXPECT_EQ(spacing.pixels(), 8);
 }
 
-// A driver that takes 500 ms for a frame in full, of which 20 ms do not depend on the number of pixels.
+// A driver that takes 500 ms for a full frame, of which 20 ms do not depend on the number of pixels.
 TEST(MovingResolution, IsThatOfTenFramesASecondAtLeast) {
   MovingResolution resolution;
   EXPECT_EQ(resolution.share(), 1);

@@ -20,7 +20,7 @@
 namespace lanthorn::scene_hands_test {
 namespace {
 
-// A wall with a lamp in it at z = 0, a ball (an instance) before it, a point light, a spot, a sun.
+// A wall at z = 0 with a lamp in it, a ball (an instance) in front of it, a point light, a spot light and a sun.
 constexpr const char* text = R"(LookAt 0 0 8  0 0 0  0 1 0
 Camera "perspective" "float fov" [40]
 Film "rgb" "integer xresolution" [200] "integer yresolution" [100]
@@ -56,8 +56,8 @@ TEST(Picking, ATriangleIsHitFromBothSidesAndMissedBesideIt) {
   EXPECT_FALSE(hit_triangle({0.2f, 0.2f, 3}, {0, 0, 1}, a, b, c)) << "behind the origin";
 }
 
-// Two corners as far apart as rounding puts those at the pole of a sphere: the ray through the pole meets it nowhere
-// else.
+// Two corners that differ only by rounding, as at a sphere's pole: the ray through the pole must not hit the triangle
+// anywhere else.
 TEST(Picking, TrianglesWithoutAreaAreNotHit) {
   const Point pole(-1, -1, 2.5f);
   for (int i = 0; i < 64; ++i) {
@@ -88,7 +88,7 @@ TEST(Picking, FindsWallLampAndBall) {
   EXPECT_FALSE(picker.pick({Point(0, 0, 8), Direction(0, 0, 1)}));
 }
 
-// Three nodes of a glTF file: two with one mesh, and one with a mesh of its own.
+// Three nodes of a glTF file: two share a mesh, one has its own.
 TEST(EditedScene, EveryNodeOfAFileCanBeMoved) {
   test::GltfWriter file;
   file.mesh(test::corners, {0, 1, 2});
@@ -214,7 +214,7 @@ TEST(SavedScene, RefusesEditsOfOtherFiles) {
   EXPECT_THROW(edited_pbrt(text, description_of(*original), pose, edits), Error);
 }
 
-/// A hand over the scene, 200 x 100 pixels.
+/// A pointer over a picture of the scene, 200 x 100 pixels.
 struct Hand {
   EditedScene scene{scene_of(text)};
   Picker picker{*scene.scene()};
@@ -224,7 +224,7 @@ struct Hand {
 
   Vec2 pixel_of(const Point& p) const { return view.camera.connect(p, Vec2(0.5f), 0)->raster; }
   Interaction::Change act(const Input& input) { return interaction.apply(input, view, picker, scene, panel); }
-  /// Presses the left button there, moves by `way`, lets go.
+  /// Presses the left button at a pixel, moves the pointer by `way`, and releases the button.
   Interaction::Change drag(const Vec2& from, const Vec2& way) {
     Input input;
     input.inside = input.left = input.pressed = true;
@@ -256,7 +256,7 @@ TEST(Interaction, ClicksSelectAndDragsOrbit) {
   EXPECT_FALSE(change.scene);
 }
 
-// Between two slow frames the pointer comes from afar, and a button is pressed.
+// Between two slow frames, the pointer moves far and then a button is pressed.
 TEST(Interaction, AClickIsAClickHoweverFarThePointerCame) {
   Hand hand;
   const Vec2 lamp = hand.pixel_of({1.5f, -0.5f, 0.1f});
@@ -274,7 +274,8 @@ TEST(Interaction, AClickIsAClickHoweverFarThePointerCame) {
   EXPECT_EQ(hand.panel.selected_light, 3u);
 }
 
-// Pressed over a thing, and moved on before the frame: it is dragged from where the button was pressed.
+// The button is pressed over an object, and the pointer moves on before the next frame: the drag starts where the
+// button was pressed.
 TEST(Interaction, ADragBeginsWhereTheButtonWasPressed) {
   Hand hand;
   const Vec2 at = hand.pixel_of({2, 1, 1}), way(40, -20);

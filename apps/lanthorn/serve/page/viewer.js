@@ -4,7 +4,7 @@
 const byId = (id) => document.getElementById(id);
 const canvas = byId('picture'), stage = byId('stage'), context = canvas.getContext('2d', {alpha: false});
 
-// What is shown: the last frame {about, halves}, how it is shown, and the camera as the page moves it.
+// State of the display: the last frame {about, halves}, how it is shown, and the camera as this page moves it.
 let frame = null, layer = 'color', display = {exposure: 0, curve: 'none', auto: false}, camera = null, upward = null;
 let lights = {}, moving = false, frameTimes = [];
 
@@ -24,7 +24,7 @@ const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
 const length = (a) => Math.hypot(...a);
 const unit = (a) => scale(a, 1 / length(a));
-/// Rodrigues' formula.
+/// Rotation by Rodrigues' formula.
 function rotate(v, axis, angle) {
   const c = Math.cos(angle), s = Math.sin(angle);
   return add(add(scale(v, c), scale(cross(axis, v), s)), scale(axis, dot(axis, v) * (1 - c)));
@@ -32,8 +32,8 @@ function rotate(v, axis, angle) {
 
 // Display
 
-/// A linear value as a display value from 0 to 255: as `lanthorn render --exposure E --view-transform none|filmic`
-/// writes it.
+/// Converts a linear value to a display value from 0 to 255, as `lanthorn render --exposure E --view-transform
+/// none|filmic` does.
 function displayed(value, gain, filmic) {
   let x = Math.min(value * gain, 1e4);
   if (!(x > 0)) return 0;
@@ -43,7 +43,7 @@ function displayed(value, gain, filmic) {
 }
 
 let table = new Uint8Array(65536), tableKey = '';
-/// `range`: of a layer of one channel, else null. Where nothing was seen (0), it is black.
+/// `range`: for layers of one channel, else null. Pixels without a surface (0) are black.
 function makeTable(exposure, filmic, isVector, range) {
   const key = `${exposure} ${filmic} ${isVector} ${range?.black} ${range?.white}`;
   if (key === tableKey) return;
@@ -53,7 +53,7 @@ function makeTable(exposure, filmic, isVector, range) {
   for (let bits = 0; bits < 65536; bits++) table[bits] = displayed(shown(numbers[bits]), gain, filmic);
 }
 
-/// AgX, as in src/film/display.h: the sigmoid of 4096 places between 10 stops below middle grey and 6.5 above.
+/// AgX, as in src/film/display.h: the sigmoid at 4096 points from 10 stops below middle grey to 6.5 above.
 const agxSigmoid = Float32Array.from({length: 4096}, (_, i) => {
   const x = i / 4095, pivot = 10 / 16.5, power = x < pivot ? 3 : 3.25, end = 2 * (x < pivot ? pivot : 1 - pivot);
   const size = (((2 * end) ** power - 1) * end ** -power) ** (-1 / power), t = 2 * Math.abs(x - pivot) / size;
@@ -79,14 +79,14 @@ function drawAgx(pixels, halves, count, gain) {
   }
 }
 
-/// Directions have no curve, and layers of one channel no colours that AgX could change.
+/// Normals get no curve, and layers of one channel have no colours that AgX could change.
 function curveOfFrame() {
   if (frame.about.layer === 'normal') return 'none';
   return display.curve === 'agx' && frame.range ? 'none' : display.curve;
 }
 
-/// The values of a layer of one channel that are black and white: nothing and the largest value. Of depth far and near,
-/// where 98 % of what is seen lies between them.
+/// The values of a one-channel layer that are shown black and white: 0 and the largest value. For depth: far and near,
+/// chosen so that 98 % of the visible surfaces lie in between.
 function rangeOf(about, halves) {
   if (about.channels.length > 1) return null;
   const step = Math.max(1, Math.floor(halves.length / 20000)), values = [];
@@ -125,7 +125,7 @@ function draw() {
   fit();
 }
 
-/// The largest size in the stage; coarse pictures are as large as fine ones.
+/// Scales the canvas to the stage; coarse pictures are shown as large as fine ones.
 function fit() {
   if (!frame) return;
   const style = getComputedStyle(stage), padding = parseFloat(style.paddingLeft) * 2;
@@ -184,7 +184,7 @@ function receive(next) {
   showProgress(about);
 }
 
-/// Others may steer, too: what they did is taken over. A picture from before this page's last edit says nothing new.
+/// Adopts edits that other pages have made. A picture from before this page's last edit contains nothing new.
 function takeChanges(about) {
   if (isSending || about.revision < knownRevision) return;
   camera = about.camera;
@@ -275,7 +275,7 @@ function showProgress(about) {
   else showState('rendering', `${passes}, ${time(about.seconds)}`);
   byId('problem').hidden = !about.problem;
   if (byId('problem').textContent !== about.problem) byId('problem').textContent = about.problem;
-  byId('pause').textContent = about.paused ? 'Go on' : 'Pause';
+  byId('pause').textContent = about.paused ? 'Resume' : 'Pause';
   byId('pause').disabled = about.finished;
   for (const id of ['method', 'width', 'height']) byId(id).disabled = false;
   for (const id of ['limitation', 'remark']) {
@@ -308,7 +308,7 @@ function showProgress(about) {
   canvas.setAttribute('aria-label', `${byId('title').textContent}: layer ${about.layer}, ${about.coarse ? 'coarse' : passes}`);
 }
 
-// Edits: one on its way at a time; what comes meanwhile is joined and goes next.
+// Edits: one request at a time; edits made meanwhile are combined into the next.
 
 let pending = null, isSending = false, knownRevision = 0;
 async function edit(change) {
@@ -332,7 +332,7 @@ async function edit(change) {
 }
 
 let restTimer = 0;
-/// Sends the camera; `moving` until nothing has come for a moment.
+/// Sends the camera; `moving` stays set until no edit has followed for a moment.
 function moveCamera(next, goesOn) {
   camera = next;
   moving = true;
@@ -353,7 +353,7 @@ function axes() {
   return {forward, right, up: unit(sub(camera.up, scale(forward, dot(camera.up, forward))))};
 }
 
-/// Turns around the target, `x` and `y` in radians, so that the scene follows the pointer.
+/// Orbits around the target by `x` and `y`, in radians, so that the scene follows the pointer.
 function turn(x, y) {
   if (!camera) return null;
   const {right, up} = axes(), from = sub(camera.eye, camera.target), least = 0.02;
@@ -363,7 +363,7 @@ function turn(x, y) {
   const both = (v) => rotate(isSteep ? v : rotate(v, right, pitch), upward, yaw);
   return {...camera, eye: add(camera.target, both(from)), up: both(up)};
 }
-/// Moves sideways by pixels of the screen.
+/// Moves the camera sideways by pixels of the screen.
 function shift(x, y) {
   if (!camera) return null;
   const {right, up} = axes(), distance = length(sub(camera.target, camera.eye));
@@ -381,7 +381,7 @@ const home = () => edit({home: true, camera: undefined, lens: undefined, lights:
 // Pointers
 
 const pointers = new Map(), radiansPerPixel = 0.0065;
-let pointer = null;  // over the picture, in the window
+let pointer = null;  // position over the picture, in the window
 const middle = () => scale([...pointers.values()].reduce(add), 1 / pointers.size);
 const spread = () => pointers.size < 2 ? 0 : length(sub(...pointers.values()));
 
@@ -420,7 +420,7 @@ canvas.addEventListener('wheel', (event) => {
   steer(approach(Math.exp(Math.max(-240, Math.min(240, event.deltaY * lines)) * 0.0016)));
 }, {passive: false});
 
-/// The linear values under the pointer, of the picture that is there now. Places are those of the full picture.
+/// Shows the linear values under the pointer in the current picture. Positions are pixels of the full picture.
 function readOut() {
   const box = canvas.getBoundingClientRect();
   const share = pointer && frame && box.width > 0 ? [(pointer[0] - box.left) / box.width, (pointer[1] - box.top) / box.height] : [-1, -1];
@@ -496,7 +496,7 @@ byId('command').addEventListener('focus', (event) => event.target.select());
 byId('copy').addEventListener('click', async () => {
   try {
     await navigator.clipboard.writeText(byId('command').value);
-  } catch {  // only pages on this machine or with encryption may use the clipboard
+  } catch {  // browsers allow the clipboard only on this machine or with encryption
     byId('command').select();
     document.execCommand('copy');
   }
@@ -536,7 +536,7 @@ function pick(now) {
   byId('focus-pick').setAttribute('aria-pressed', now);
   if (!now) return;
   canvas.focus({preventScroll: true});
-  say('Click a point of the picture to focus on it');
+  say('Click a point in the picture to focus on it');
 }
 function focusAt(event) {
   const box = canvas.getBoundingClientRect(), full = frame.about.full_size;
@@ -554,13 +554,13 @@ function onNumber(id, change) {
     if (event.target.value !== '') change(Number(event.target.value));
   });
 }
-/// A camera that frames its subject by itself would move with its field of view.
+/// Sends the camera's position along with the field of view: a camera that frames its subject would move with it.
 onNumber('fov', (fov) => {
   const {eye, target, up} = camera;
   edit({lens: {fov}, ...frame.about.lens.frames_subject && {camera: {eye, target, up}}});
 });
 onNumber('focus', (focus) => edit({lens: {focus, focus_at: undefined}}));
-byId('aperture').replaceChildren(new Option('Off: all is sharp', 'off'),
+byId('aperture').replaceChildren(new Option('Off: everything is sharp', 'off'),
     ...[1.4, 2, 2.8, 4, 5.6, 8, 11, 16, 22, 32].map((f) => new Option(`f/${f}`, `${f}`)));
 byId('aperture').addEventListener('change', ({target: {value}}) => edit({lens: {aperture: value === 'off' ? value : Number(value)}}));
 byId('focus-middle').addEventListener('click', () => edit({lens: {focus: 'auto', focus_at: undefined}}));
@@ -568,7 +568,7 @@ byId('focus-pick').addEventListener('click', () => pick(!isPicking));
 
 // Environment
 
-let environment = null, listedSource = null;  // the one whose lights are listed
+let environment = null, listedSource = null;  // source whose lights are listed
 function changeEnvironment(change, isMoving) {
   if (!environment) return;
   environment = {...environment, ...change};
@@ -581,7 +581,7 @@ for (const [event, isMoving] of [['input', true], ['change', false]]) {
   byId('environment-scale').addEventListener(event, ({target}) => changeEnvironment({scale: factorOf(Number(target.value))}, isMoving));
 }
 
-// Lights: sliders in stops; the lowest is off.
+// Lights: sliders in stops; the lowest position is off.
 
 const darkest = -6;
 let sliders = {};
@@ -625,7 +625,7 @@ function showLights(known) {
   lights = {};
   const none = document.createElement('p');
   none.className = 'note';
-  none.textContent = 'No lights that can be dimmed';
+  none.textContent = 'No lights to dim';
   byId('light-list').replaceChildren(...known.length > 0 ? known.map(lightRow) : [none]);
 }
 /// Another environment is another light.
@@ -640,7 +640,7 @@ byId('lights-reset').addEventListener('click', () => {
   edit({lights: {}, moving: false});
 });
 
-// Method and size: a refused one goes back to what the picture has.
+// Method and size: if the server rejects a value, it reverts to that of the picture.
 
 byId('method').addEventListener('change', (event) => edit({method: event.target.value}));
 for (const id of ['width', 'height'])

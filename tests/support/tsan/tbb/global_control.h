@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Limits of the number of threads, apart from TBB's own: Embree, which has one thread in builds for ThreadSanitizer,
-// sets TBB's to one for the whole program.
+// Limits the number of threads independently of TBB: Embree, which has one thread in builds for ThreadSanitizer, sets
+// TBB's limit to one for the whole program.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@
 
 namespace tbb {
 
-/// While it lives, loops have at most `limit` threads.
+/// During its lifetime, loops use at most `limit` threads.
 class global_control {
  public:
   enum parameter { max_allowed_parallelism };

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Stands before TBB's headers in builds for ThreadSanitizer, and does by plain threads what parallel.h asks of TBB.
-// Debian's TBB is not compiled for ThreadSanitizer, which therefore cannot see in which order TBB runs tasks, and would
-// report races that are none. Loops within loops run on one thread.
+// Replaces TBB's headers in builds for ThreadSanitizer and implements with plain threads what parallel.h needs.
+// Debian's TBB is not compiled for ThreadSanitizer, which therefore cannot see the order in which TBB runs tasks and
+// would report false races. Nested loops run on one thread.
 #pragma once
 
 #include <algorithm>
@@ -24,7 +24,7 @@ struct task_group_context {
 
 inline thread_local bool is_in_loop = false;
 
-/// The numbers are drawn without an order between the threads, which would hide races.
+/// Indices are taken without synchronisation between the threads, which would hide races.
 template <class Index, class Body>
 void parallel_for(Index begin, Index end, const Body& body, task_group_context& /*of all threads the same*/) {
   std::atomic<Index> next{begin};
