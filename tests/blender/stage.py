@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The Lanthorn authors
 # SPDX-License-Identifier: Apache-2.0
-"""What scripts in headless Blender share: scenes from nothing, renders by both engines, pictures as arrays."""
+"""Shared by the scripts in headless Blender: makes scenes, renders them with either engine, and returns pictures as
+arrays."""
 import math
 import os
 import sys
@@ -103,8 +104,8 @@ def add_light(kind, energy, location=(0, 0, 0), rotation=(0, 0, 0), **members):
 
 
 def render(engine, **settings):
-    """The picture of the scene: an array (height, width, 4) of linear values, rows from the top. `settings`: of
-    `scene.cycles` or `scene.lanthorn`."""
+    """Renders the scene. Returns an array (height, width, 4) of linear values, rows from the top. `settings` are
+    attributes of `scene.cycles` or `scene.lanthorn`."""
     scene = bpy.context.scene
     scene.render.engine = engine
     group = scene.cycles if engine == "CYCLES" else scene.lanthorn
@@ -130,7 +131,7 @@ def read_picture(path):
 
 
 def save_png(path, *pictures, exposure=1.0):
-    """Pictures side by side, in sRGB."""
+    """Saves pictures side by side, in sRGB."""
     row = numpy.concatenate([p[:, :, :3] for p in pictures], axis=1) * exposure
     row = numpy.clip(row, 0, 1)
     row = numpy.where(row <= 0.0031308, row * 12.92, 1.055 * row ** (1 / 2.4) - 0.055)

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The Lanthorn authors
 # SPDX-License-Identifier: Apache-2.0
-"""Each kind of lamp on a diffuse plane: the mean of Lanthorn's picture and of Cycles' differ by less than 2 %, and so
-do the means of its quarters."""
+"""Each kind of lamp on a diffuse plane: the mean of Lanthorn's picture differs from that of Cycles by less than 2 %,
+and the means of lit blocks by less than 4 %."""
 import math
 import os
 import sys
@@ -29,7 +29,7 @@ class LightTest(unittest.TestCase):
         stage.add_plane(size=8)
 
     def compare(self, name, tolerance=TOLERANCE, samples=256):
-        # A light path of one scattering: nothing else differs.
+        # Single scattering only, so that the engines differ in nothing but the light.
         cycles = stage.render("CYCLES", samples=samples, max_bounces=0)
         ours = stage.render("LANTHORN", method="path", max_depth=1, noise=0, seconds=0, passes=256)
         ratio = ours[:, :, :3].mean() / cycles[:, :, :3].mean()
@@ -48,7 +48,7 @@ class LightTest(unittest.TestCase):
         self.compare("point-0")
 
     def test_point(self):
-        # Outside of the picture: our camera sees lamps, that of Cycles does not.
+        # Outside the picture, because our camera sees lamps and that of Cycles does not.
         stage.add_light("POINT", 100, (2.5, 0.4, 1), shadow_soft_size=0.25, color=(1, 0.5, 0.2))
         self.compare("point")
 
@@ -86,7 +86,7 @@ class LightTest(unittest.TestCase):
         image = bpy.data.images.new("sky", 64, 32, float_buffer=True)
         y, x = numpy.mgrid[0:32, 0:64]
         pixels = numpy.ones((32, 64, 4), dtype=numpy.float32)
-        # Bright in one direction, so that a picture that is turned or mirrored shows.
+        # Bright in one direction, so that a rotated or mirrored picture is noticed.
         pixels[:, :, 0] = numpy.exp(-((x - 14) ** 2 + (y - 22) ** 2) / 30) * 20
         pixels[:, :, 1] = numpy.where(x > 40, 1.0, 0.1)
         pixels[:, :, 2] = 0.2
@@ -99,7 +99,7 @@ class LightTest(unittest.TestCase):
         background = next(n for n in nodes if n.type == "BACKGROUND")
         background.inputs["Strength"].default_value = 0.7
         links.new(texture.outputs[0], background.inputs["Color"])
-        # A tent, which tells directions.
+        # A faceted object, whose sides face different directions.
         stage.add_ball(radius=0.6, location=(0, 0, 0.3), material=stage.diffuse(), is_smooth=False)
         self.compare("world-texture")
 

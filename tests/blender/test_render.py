@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The Lanthorn authors
 # SPDX-License-Identifier: Apache-2.0
-"""Final renders: a glass that throws a caustic, passes, border, cameras, instances, animation, errors."""
+"""Final renders: a caustic of glass, passes, border, cameras, instances, animation, errors."""
 import math
 import os
 import sys
@@ -35,12 +35,12 @@ class RenderTest(unittest.TestCase):
             stage.save_png(os.path.join(FOLDER, "glass-ball.png"), cycles, ours, exposure=1)
         print("means: cycles", cycles[:, :, :3].mean(), "lanthorn", ours[:, :, :3].mean())
         self.assertTrue(numpy.isfinite(ours).all())
-        # The light that the ball gathers on the floor is several times as bright as the floor around it.
+        # The caustic of the ball is several times as bright as the floor around it.
         self.assertGreater(numpy.quantile(ours[:, :, 1], 0.998), 3 * numpy.median(ours[:, :, 1]))
 
 
     def compare_blocks(self, name, tolerance=0.03, blocks=6, **settings):
-        """Means of blocks of the pictures of both engines."""
+        """Compares the means of blocks between the pictures of both engines."""
         cycles = stage.render("CYCLES", samples=64, max_bounces=0)
         ours = stage.render("LANTHORN", method="path", max_depth=1, noise=0, seconds=0, passes=64, **settings)
         self.assertEqual(cycles.shape, ours.shape)
@@ -55,7 +55,7 @@ class RenderTest(unittest.TestCase):
         return cycles, ours
 
     def blocks_in_the_sky(self):
-        """Cubes of several colours: what turns, mirrors or shifts a picture shows."""
+        """Cubes of several colours, so that a rotated, mirrored or shifted picture is noticed."""
         scene = stage.empty_scene(96, 60)
         scene.world.color = (0.8, 0.8, 0.8)
         stage.add_plane(size=6)
@@ -108,7 +108,7 @@ class RenderTest(unittest.TestCase):
         self.compare_blocks("instances")
 
     def render_pass(self, engine, name):
-        """A pass as the picture, by the compositor."""
+        """Makes the compositor show a pass as the picture."""
         scene = bpy.context.scene
         scene.render.engine, scene.use_nodes = engine, True
         nodes, links = scene.node_tree.nodes, scene.node_tree.links

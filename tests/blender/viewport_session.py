@@ -1,9 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The Lanthorn authors
 # SPDX-License-Identifier: Apache-2.0
-"""A session in Blender's window, under Xvfb: the rendered viewport refines, follows a lamp and a colour, and ends.
+"""A session in Blender's window, under Xvfb: the rendered viewport refines, follows changes of a lamp and of a colour, and
+ends.
 
 Usage: xvfb-run -a blender --factory-startup --python viewport_session.py -- FOLDER
-Leaves screenshots in the folder, and the times of first pictures on standard output.
+Saves screenshots in the folder and prints the times until the first pictures.
 """
 import os
 import subprocess

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Balls of radius 1, 3 apart along x, which the engines light by the maps: as a list, and as a binary glTF file.
+// Balls of radius 1, 3 apart along x, which the engines light with the maps: as a list, and as a binary glTF file.
 
 export const balls = [
   {name: 'white metal', color: [1, 1, 1], metallic: 1, roughness: 0.5},
@@ -9,7 +9,7 @@ export const balls = [
   {name: 'rough gold', color: [0.9, 0.6, 0.3], metallic: 1, roughness: 1},
   {name: 'white plastic', color: [1, 1, 1], metallic: 0, roughness: 0.5}];
 
-/// Pictures of a ball are this many pixels wide and high; `places` are pixels of them, from the lower left.
+/// Width and height of a ball's picture in pixels; `places` are pixels in it, counted from the lower left.
 export const across = 257;
 export const places = [[128, 128], [190, 150], [70, 190], [120, 60]];
 export function normalAt([column, row]) {
@@ -29,7 +29,7 @@ function sphere() {
   return {positions: new Float32Array(positions), indices: new Uint16Array(indices)};
 }
 
-/// The balls as .glb: the places of a unit sphere's vertices are their normals.
+/// The balls as .glb. Vertex positions of a unit sphere are also its normals.
 export function ballsAsGlb() {
   const {positions, indices} = sphere(), count = positions.length / 3;
   const json = {

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 // Usage: node check_maps.mjs LANTHORN [SCREENSHOT-FOLDER]
-// Bakes environments and has three.js and Filament light balls by the files in headless Chromium. Exit code 77 if the packages
+// Bakes environments and has three.js and Filament light balls with the files in headless Chromium. Exit code 77 if the packages
 // or the browser are missing: the test is skipped.
 import {execFileSync} from 'node:child_process';
 import {existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync} from 'node:fs';
@@ -21,7 +21,7 @@ const browserPath = ['/usr/bin/chromium', '/usr/bin/chromium-browser'].find(exis
 if (!browserPath) skip('no chromium (scripts/install-packages browser)');
 const playwright = await import('playwright-core').catch(() => skip('no playwright-core (npm ci in tests/browser)'));
 
-// `sky` has a sun of 1e5 in one texel, `soft` one that 8 bits of Filament's pictures can show the surroundings of.
+// `sky` has a sun of 1e5 in one texel. That of `soft` is weak enough for Filament's 8-bit pictures to show its surroundings.
 const sky = skyOfAxes(1e5), soft = skyOfAxes(3e3), white = uniformSky([1, 1, 1]);
 const folder = mkdtempSync(join(tmpdir(), 'lanthorn-maps-'));
 function bake(name, environment, ...options) {
@@ -66,7 +66,7 @@ async function runPage(name, request) {
   return result;
 }
 
-// Pixels of a ball against their truth, in shares of the truth and of the brightest of the ball.
+// Compares pixels of a ball with the truth. Tolerances: `share` of the truth plus `rounding` of the ball's brightest value.
 function expectNear(name, found, truth, share, rounding = 0) {
   const brightest = Math.max(...truth.flat());
   const worst = Math.max(...truth.flat().map((t, i) => Math.abs(found.flat()[i] - t) / (share * t + rounding * brightest)));
@@ -91,7 +91,7 @@ async function checkThree() {
 }
 
 async function checkFilament() {
-  // Luminance of a radiance of 1, so that the brightest pixel of a ball is not clipped.
+  // Pixel values of radiance 1, chosen so that the brightest pixel of a ball is not clipped.
   const truth = truthOf('filament', soft), ofSky = 0.45, ofFurnace = 0.8, ofBalls = truth.map((ball) => 0.95 / Math.max(...ball.flat()));
   const filament = await runPage('filament', {balls, places, ofSky, intensities: {white: balls.map(() => ofFurnace), soft: ofBalls}});
   filament.colours.forEach((seen, i) => expect(colours[i].every((c, k) => Math.abs(seen[k] / 255 - ofSky * c) < 1 / 255), `Filament: sky along axis ${i} is ${seen}`));

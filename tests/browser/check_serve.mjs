@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 // Usage: node check_serve.mjs LANTHORN SCENE [SCREENSHOT-FOLDER]
-// Opens the page of lanthorn serve in headless Chromium and uses it as people do. Exit code 77 if the browser or playwright-core
+// Opens the page of lanthorn serve in headless Chromium and uses it like a person. Exit code 77 if the browser or playwright-core
 // is missing: the test is skipped.
 import {spawn} from 'node:child_process';
 import {existsSync, mkdtempSync, readFileSync, rmSync} from 'node:fs';
@@ -45,7 +45,7 @@ page.on('console', (message) => {
 
 const text = (id) => page.locator(`#${id}`).textContent();
 const shot = async (name) => screenshots && page.screenshot({path: join(screenshots, `${name}.png`)});
-/// Mean of the canvas' red, green and blue.
+/// Mean red, green and blue of the canvas.
 const mean = () => page.evaluate(() => {
   const canvas = document.getElementById('picture'), sums = [0, 0, 0];
   const {data} = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
@@ -121,7 +121,7 @@ async function useControls() {
   await page.waitForFunction(() => !document.getElementById('command').value.includes('--light'));
 }
 
-// Pictures of the old light, which come while an edit is on its way, do not take it back.
+// Pictures with the old light that arrive while an edit is being sent do not undo the edit.
 async function editOnSlowLine() {
   const light = page.locator('#light-list input').first(), frames = [];
   let isSlow = false;
@@ -233,7 +233,7 @@ async function changeEnvironment() {
   expect(true, 'the file’s own environment comes back');
 }
 
-/// Noise of the canvas: the mean difference of pixels beside each other.
+/// Noise of the canvas: the mean difference between neighbouring pixels.
 const roughness = () => page.evaluate(() => {
   const canvas = document.getElementById('picture'), {data} = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
   let sum = 0;

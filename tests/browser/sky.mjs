@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The environments of the test, and the integrals over them by summing over all of their texels.
+// The environments of the test, and integrals over them as sums over all texels.
 
 /// A colour for each axis: +X -X +Y -Y +Z -Z.
 export const colours = [[2, 0.2, 0.2], [0.2, 2, 2], [0.2, 2, 0.2], [2, 0.2, 2], [0.2, 0.2, 2], [2, 2, 0.2]];
 
-/// The axes' colours in sixths of the sphere, and a sun of one texel.
+/// One colour for each sixth of the sphere, around each axis, and a sun of one texel.
 export function skyOfAxes(sun) {
   return sky((d, x, row) => {
     if (x === 165 && row === 40) return [sun, sun, sun];
@@ -30,14 +30,14 @@ function sky(radiance) {
 
 export function pfm({width, height, texels}) {
   const pixels = new Float32Array(3 * width * height);
-  // PFM has rows from the bottom.
+  // PFM stores rows from the bottom.
   texels.forEach(({rgb}, i) => pixels.set(rgb, 3 * ((height - 1 - Math.floor(i / width)) * width + i % width)));
   return Buffer.concat([Buffer.from(`PF\n${width} ${height}\n-1.0\n`), Buffer.from(pixels.buffer)]);
 }
 
 const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 
-/// Mean of the environment, weighted by a kernel of the cosine with the direction.
+/// Mean of the environment, weighted by a function of the cosine with `direction`.
 function mean({texels}, direction, kernel) {
   const sum = [0, 0, 0];
   let weight = 0;
@@ -51,7 +51,7 @@ function mean({texels}, direction, kernel) {
 
 export const irradiance = (environment, n) => mean(environment, n, (cos) => Math.max(cos, 0));
 
-/// Irradiance/pi by the bands 0 to 2: of the clamped cosine these are 1/4 + c/2 + 5/32 (3 c^2 - 1) (Ramamoorthi & Hanrahan 2001).
+/// Irradiance/pi from bands 0 to 2. The bands of the clamped cosine are 1/4 + c/2 + 5/32 (3 c^2 - 1) (Ramamoorthi & Hanrahan 2001).
 export const irradianceOfOrder2 = (environment, n) => mean(environment, n, (c) => 0.25 + c / 2 + 5 / 32 * (3 * c * c - 1));
 
 /// The GGX lobe at n = v = r, weighted by the cosine (Karis 2013).
@@ -75,17 +75,17 @@ export function brdf(cosV, alpha) {
   return {scale, bias};
 }
 
-/// Levels of the maps, less one.
+/// Number of levels of the maps minus one.
 const lastLevel = 4;
 
-/// What an engine makes of a ball {color, metallic, roughness} that is seen along -z, where its normal is n: `three` and `filament`,
-/// or `split sum` by the lines of docs/methods/ibl.md. `pixel` is a pixel's width.
+/// Radiance that an engine shows of a ball {color, metallic, roughness} seen along -z, where its normal is n. Engines: `three`,
+/// `filament`, and `split sum`, the code in docs/methods/ibl.md. `pixel` is the width of a pixel.
 export function shade(engine, environment, ball, n, pixel) {
-  // three.js adds what the normal turns from pixel to pixel. The last of the 16 rows of its table have their centre at 15.5/16.
+  // three.js adds the change of the normal between pixels to the roughness. The last of its table's 16 rows is centred at 15.5/16.
   const turn = engine === 'three' ? pixel * Math.max(1, Math.abs(n[0]) / n[2], Math.abs(n[1]) / n[2]) : 0;
   const roughness = Math.min(ball.roughness + turn, 1), splitSum = engine === 'split sum';
   const {scale, bias} = brdf(n[2], engine === 'three' ? Math.min(roughness, 15.5 / 16) ** 2 : roughness ** 2);
-  // Both engines turn the direction of reflection of rough surfaces towards the normal (Lagarde & de Rousiers 2014, 4.9.3).
+  // On rough surfaces, both engines turn the reflected direction towards the normal (Lagarde & de Rousiers 2014, 4.9.3).
   const bend = splitSum ? 0 : roughness ** 4;
   const r = [2 * n[2] * n[0], 2 * n[2] * n[1], 2 * n[2] * n[2] - 1].map((x, c) => x + bend * (n[c] - x));
   const ofLevel = (i) => lobe(environment, r.map((x) => x / Math.hypot(...r)), (splitSum ? i / lastLevel : 1 - Math.sqrt(1 - i / lastLevel)) ** 2);

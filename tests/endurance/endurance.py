@@ -3,17 +3,17 @@
 # SPDX-License-Identifier: Apache-2.0
 """Usage: endurance.py PROGRAM [--kills N] [--signals N] [--disks N] [--seed S] [--keep]
 
-Ends renders at random moments and in every way, and checks what they promise:
+Interrupts renders at random moments, in three ways, and checks what the documentation promises:
 
-  kills    SIGKILL at a random moment. Every file with its final name is whole, the last checkpoint goes on to the same
-           bytes as a render that nobody disturbed, and the next render leaves no temporary file.
+  kills    SIGKILL at a random moment. Every file with its final name is complete, resuming the last checkpoint gives
+           the same bytes as an undisturbed render, and the next render leaves no temporary file.
   signals  a random signal, up to three times. Signals that ask a program to end save what was rendered and end with
-           exit code 0 (a third one ends it at once); all others leave whole files, as a kill does.
-  disks    a disk that fills up at a random byte (a small tmpfs, for which it needs root) or a limit on the size of a
-           file. The program says so, exits with 2, leaves nothing partial there, and what it rescues goes on to the
-           same bytes.
+           exit code 0 (a third one ends it at once). After all others, files are complete, as after a kill.
+  disks    a disk that fills up at a random byte (a small tmpfs, which needs root), or a limit on the size of a file.
+           The program reports it, exits with 2, leaves no partial file there, and resuming the state that it saves
+           elsewhere gives the same bytes.
 
-Prints one line for each kind, keeps the folder of what failed, and ends with exit code 1 if anything did. By hand: it
+Prints one line for each way, keeps the folders of failures, and exits with 1 if there are any. Not run by ctest: it
 takes minutes.
 """
 import argparse
@@ -47,7 +47,7 @@ def check(condition: bool, what: str) -> None:
 
 
 class Trial:
-    """A folder with a render in it that is disturbed, and the bytes that it must arrive at in the end."""
+    """A folder for a render that is disturbed, and the bytes that it must have in the end."""
 
     references: dict[str, bytes] = {}
     seconds: dict[str, float] = {}  # that the undisturbed render takes
@@ -85,7 +85,7 @@ class Trial:
         return process.returncode, self.said()
 
     def reference(self) -> bytes:
-        """The picture of all passes, rendered in one go."""
+        """The picture of all passes, rendered without interruption."""
         if self.method not in Trial.references:
             start = time.monotonic()
             code, err = self.finish(self.start(["reference.exr"], []))
@@ -103,9 +103,9 @@ class Trial:
         check(run.returncode == 0, f"{path.name} is damaged: {run.stderr.decode(errors='replace')}")
 
     def check_goes_on(self, state: Path | None) -> None:
-        """A new render, from `state` if there is one, arrives at the reference and clears temporary files away."""
+        """A new render, resuming `state` if there is one, gives the reference and deletes temporary files."""
         more = ["--resume", str(state)] if state else []
-        # --force: states on disk of a disturbed render may have more passes than the one that is gone on from.
+        # --force: other states of the disturbed render may have more passes than the one that is resumed.
         code, err = self.finish(self.start(["a.exr", "a.state"], more + ["--force"]))
         check(code == 0, f"going on ends with {code}: {err}")
         check((self.work / "a.exr").read_bytes() == self.reference(), "going on gives other bytes")
@@ -125,7 +125,7 @@ class Trial:
 
 
 def disturb(process: subprocess.Popen, signals: list[signal.Signals], span: float, rng: random.Random) -> None:
-    """Sends the signals at random moments of `span` seconds; those after the first soon after each other."""
+    """Sends the first signal at a random moment within `span` seconds, and the others shortly afterwards."""
     for number, each in enumerate(signals):
         time.sleep(rng.uniform(0, span if number == 0 else 0.1))
         if process.poll() is not None:
@@ -155,7 +155,7 @@ def signal_trial(trial: Trial, rng: random.Random) -> None:
     names = " ".join(s.name for s in signals)
     nothing_yet = code == 2 and "nothing to save" in err
     if asked and times < 3:
-        # A signal that comes before the program listens to any ends it as the system does.
+        # Before the program handles signals, a signal terminates it.
         before = code < 0 and not any(trial.work.iterdir())
         check(code == 0 or nothing_yet or before, f"{names}: ends with {code}: {err}")
     if code == 0:

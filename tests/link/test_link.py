@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Usage: test_link.py PROGRAM [unittest's arguments]
 
-`lanthorn link` as another program sees it: scenes part by part, pictures, what is wrong, and the end of either side.
+Tests `lanthorn link` from the view of another program: scenes sent in parts, pictures, errors, and the end of either process.
 """
 import array
 import importlib.util
@@ -33,7 +33,7 @@ def square(**members):
 
 
 def scene(sky=1.0, reflectance=0.5):
-    """In a sky of radiance 1, the square has the radiance of its reflectance, everywhere."""
+    """Under a sky of radiance 1, the square's radiance equals its reflectance everywhere."""
     return {"camera": {"type": "perspective", "fov": 60, "camera_to_world": DOWN}, "film": {"width": 16, "height": 12},
             "materials": {"white": {"type": "diffuse", "reflectance": reflectance}},
             "objects": {"square": {"shapes": [square()]}},
@@ -49,7 +49,7 @@ def mean(answer, channel="R"):
 
 
 def last_picture(client, after=0, revision=0, layers=("color",)):
-    """Of the phase finished, and of this revision or a later one."""
+    """Waits for the finished picture of this revision or of a later one."""
     picture = None
     end = time.monotonic() + 60
     while time.monotonic() < end:
@@ -64,7 +64,7 @@ def last_picture(client, after=0, revision=0, layers=("color",)):
 
 
 def is_gone(pid):
-    """Waits until a process of another parent is gone, or nothing but a zombie."""
+    """Waits until a process with another parent has ended or is a zombie."""
     for _ in range(100):
         try:
             with open(f"/proc/{pid}/stat") as stat:
@@ -108,7 +108,7 @@ class LinkTest(unittest.TestCase):
         flat = scene()
         shape = flat["objects"]["square"]["shapes"][0]
         shape["positions"] = array.array("f", sum(shape["positions"], []))
-        # The client's arrays of the standard library have one dimension: the message is written by hand.
+        # Arrays of the standard library have one dimension, so this message is made by hand.
         packer = link._Packer()
         packed = packer.pack(flat)
         packed["objects"]["square"]["shapes"][0]["positions"]["shape"] = [4, 3]
@@ -131,7 +131,7 @@ class LinkTest(unittest.TestCase):
             picture = last_picture(self.client, revision=revision)
             self.assertAlmostEqual(mean(picture), expected, delta=0.03)
         self.assertEqual(picture["pixels"].shape[:2], (8, 8))
-        # A part that is gone is gone: the camera sees the sky.
+        # A removed part is no longer rendered: the camera sees the sky.
         revision = self.client.request("update", remove={"instances": ["first"]})["revision"]
         self.assertAlmostEqual(mean(last_picture(self.client, revision=revision)), 1, delta=0.01)
 
@@ -163,7 +163,7 @@ class LinkTest(unittest.TestCase):
         mixed["objects"]["square"]["shapes"][0]["material"] = "a"
         self.start(mixed)
         self.assertAlmostEqual(mean(last_picture(self.client)), 0.25, delta=0.03)
-        # Another mix leads to another order of the materials.
+        # A different mix changes the order of the materials.
         change = {"materials": {"a": {"type": "mix", "materials": ["black", "white"], "amount": 0.8}}}
         revision = self.client.request("update", set=change)["revision"]
         self.assertAlmostEqual(mean(last_picture(self.client, revision=revision)), 0.4, delta=0.03)
@@ -210,7 +210,7 @@ class LinkTest(unittest.TestCase):
         self.assert_refused("did you mean start?", "strat")
         self.assert_refused("passes: expected a whole number", "start", options={"passes": "all"})
         self.assertAlmostEqual(mean(last_picture(self.client)), 0.5, delta=0.03)
-        # Nothing of what was refused is left.
+        # Refused changes leave no trace.
         revision = self.client.request("update", set={"film": {"width": 10, "height": 10}})["revision"]
         self.assertAlmostEqual(mean(last_picture(self.client, revision=revision)), 0.5, delta=0.03)
 

@@ -3,16 +3,16 @@
 # SPDX-License-Identifier: Apache-2.0
 #
 # Usage: tests/packages/clean_roots.sh FOLDER [ROOT...]
-# Installs what scripts/release has made in FOLDER as users would, in roots of Debian that have nothing else, and uses it:
+# Installs the packages that scripts/release has made in FOLDER as users would, each in a minimal Debian, and uses them:
 #   debian     the Debian packages, in Debian 12
-#   bookworm, trixie, ...   the archive, in that Debian (default: debian bookworm trixie)
-# Says the seconds of each step. build/roots keeps the roots as debootstrap makes them. Exits with 77, which ctest shows as
-# skipped, without root or debootstrap. Packages come from the mirror that debootstrap has as its default.
+#   bookworm, trixie, ...   the archive, in that version of Debian (default: debian bookworm trixie)
+# Prints the seconds of each step. build/roots keeps the file systems that debootstrap makes, from its default mirror. Exits
+# with 77, which ctest shows as skipped, if not run by root or if debootstrap is missing.
 set -euo pipefail
 case "${1:-}" in -h | --help) sed -n '/^# Usage/,/^[^#]/s/^# //p' "$0"; exit 0 ;; esac
 [ "$(id -u)" = 0 ] || { echo "SKIPPED, NOT TESTED: only root can change roots" >&2; exit 77; }
 command -v debootstrap >/dev/null || { echo "SKIPPED, NOT TESTED: no debootstrap (scripts/install-packages package)" >&2; exit 77; }
-# What is mounted here is gone with this process.
+# Mounts of this namespace vanish when this process ends.
 [ "${in_namespace:-}" ] || exec env in_namespace=1 unshare --mount --pid --fork --kill-child "$0" "$@"
 
 source=$(realpath "$(dirname "$0")/../..")
@@ -28,7 +28,7 @@ clean() {
 trap clean EXIT
 fail() { echo "clean_roots: $*" >&2; exit 1; }
 
-# step NAME COMMAND...: runs it quietly, says its seconds, shows its output if it fails.
+# step NAME COMMAND...: runs the command, prints its seconds, and shows its output only if it fails.
 step() {
   local name=$1 begin=$EPOCHREALTIME
   shift
@@ -43,7 +43,7 @@ bootstrap() { # SUITE
   rm -rf "$work/new"
 }
 
-# new_root SUITE NAME: sets root.
+# new_root SUITE NAME: unpacks a root file system and sets `root` to its folder.
 new_root() {
   root=$work/$2
   echo "$2 ($1)"
@@ -53,7 +53,7 @@ new_root() {
   mount -t proc proc "$root/proc"
   mount --rbind /dev "$root/dev"
   cat >"$root/root/view.sh" <<'VIEW'
-# The window opens on a screen of Xvfb, and its key p saves a picture.
+# Opens the window on an Xvfb display. The key p saves a picture.
 set -e
 cd /root
 mkfifo display
@@ -69,14 +69,14 @@ wait $viewer
 VIEW
 }
 
-# inside COMMAND...: as in a shell that someone has just opened.
+# inside COMMAND...: runs it in the root, with the environment of a fresh shell.
 inside() {
   chroot "$root" env -i HOME=/root LANG=C.UTF-8 PATH=/usr/local/bin:/usr/bin:/bin:/usr/sbin:/sbin DEBIAN_FRONTEND=noninteractive "$@"
 }
 
 install() { inside apt-get -qq install --yes --no-install-recommends "$@"; }
 
-# use PROGRAM SCENES: pictures by PROGRAM. OpenImageIO is needed by the second one, whose scene has textures.
+# use PROGRAM SCENES: renders with PROGRAM. The second scene has textures, so it needs OpenImageIO.
 use() {
   local program=$1 scenes=$2
   step "$program render ring.pbrt -o ring.png" inside "$program" render "$scenes/ring.pbrt" -r 320x240 -p 8 -o /root/ring.png
@@ -84,7 +84,7 @@ use() {
   [ "$(head -c 4 "$root/root/ring.png" | tail -c 3)" = PNG ] || fail "ring.png is no PNG"
   step "$program info --machine" inside "$program" info --machine
   grep compiled "$work/log"
-  # The C library's sines differ between distributions in the last bit.
+  # Sines of the C library differ in the last bit between distributions.
   [ -e "$work/heart.exr" ] || cp "$root/root/heart.exr" "$work"
   cp "$work/heart.exr" "$root/root/first.exr"
   step "the picture of the first root" inside "$program" compare /root/heart.exr /root/first.exr --max-mse 1e-12

@@ -3,9 +3,9 @@
 # SPDX-License-Identifier: Apache-2.0
 #
 # Usage: tests/packages/levels.sh FOLDER
-# The archive that scripts/release has made in FOLDER: the dynamic linker takes the library of the instruction set that is
-# asked for, and pictures by the libraries for x86-64-v2, v3 and v4 (as far as this processor has them) agree: Welch's test
-# of `lanthorn compare`, whose false alarms of 1 % three sets of seeds bring down to 1e-6.
+# Tests the archive that scripts/release has made in FOLDER. The dynamic linker must take the library for the given instruction
+# set, and the libraries for x86-64-v2, v3 and v4 (as far as this processor supports them) must render the same, by Welch's
+# test of `lanthorn compare`. This test only fails if three sets of seeds do, which lowers false alarms from 1 % to 1e-6.
 set -euo pipefail
 packages=$(realpath -m "${1:?folder of packages}")
 archive=$(echo "$packages"/lanthorn-*-linux-x86_64.tar.zst)
@@ -17,7 +17,7 @@ tar --zstd --extract --strip-components=1 --file "$archive"
 linker=/lib64/ld-linux-x86-64.so.2
 scenes=share/lanthorn/scenes
 
-# The level that is not in a folder of its own is what remains.
+# The library of the lowest level is used if no other one may be.
 lanthorn_for() { "$linker" --glibc-hwcaps-mask "$1" bin/lanthorn "${@:2}"; }
 mapfile -t levels < <("$linker" --help | sed -n 's/^  \(x86-64-v[0-9]\) (supported, searched).*/\1/p')
 for level in "${levels[@]}"; do
@@ -27,7 +27,7 @@ done
 echo "The dynamic linker takes ${levels[0]} of ${levels[*]}."
 
 runs=4
-# renders LEVEL SCENE METHOD SET: pictures LEVEL-1.exr ... of seeds that no other level or set has.
+# renders LEVEL SCENE METHOD SET: renders LEVEL-1.exr ... with seeds that no other level or set uses.
 renders() {
   for run in $(seq $runs); do
     seed=$((1000 * $4 + 100 * ${1#x86-64-v} + run))

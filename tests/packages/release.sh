@@ -3,7 +3,8 @@
 # SPDX-License-Identifier: Apache-2.0
 #
 # Usage: tests/packages/release.sh FOLDER
-# Makes the packages that the tests beside it try. Exits with 77, which ctest shows as skipped, where scripts/release cannot.
+# Makes the packages for the other tests in this folder. Exits with 77, which ctest shows as skipped, if a program that
+# scripts/release needs is missing.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 for tool in lintian patchelf zstd; do

@@ -3,9 +3,9 @@
 # SPDX-License-Identifier: Apache-2.0
 #
 # Usage: tests/packages/reproducible.sh FOLDER
-# Builds the packages that scripts/release has made in FOLDER again, from a clone of the same commit in another, at
-# another time, without ccache: the bytes must be the same. Names the files that differ, and where diffoscope is installed,
-# in what.
+# Builds the packages that scripts/release has made in FOLDER a second time, from a clone of the same commit in another
+# folder, without ccache: the bytes must be the same. Lists the files that differ and, if diffoscope is installed, the
+# differences.
 set -euo pipefail
 source=$(realpath "$(dirname "$0")/../..")
 packages=$(realpath -m "${1:?folder of packages}")

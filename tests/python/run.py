@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The Lanthorn authors
 # SPDX-License-Identifier: Apache-2.0
-"""Runs tests of the Python module: run.py TEST.py. Exit code 77: a package that they need is missing."""
+"""Runs a test of the Python module: run.py TEST.py. Exit code 77 if a package that it needs is missing."""
 
 import importlib.util
 import pathlib

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The Lanthorn authors
 # SPDX-License-Identifier: Apache-2.0
-"""The examples of docs/python.md run, in the order of the page, in one folder."""
+"""Runs the examples of docs/python.md in the page's order, in one folder."""
 
 import os
 import pathlib
@@ -14,7 +14,7 @@ SOURCE = pathlib.Path(__file__).resolve().parents[2]
 
 
 def examples(page):
-    """Blocks between ```python and ```, with their lines in the file."""
+    """Yields the blocks between ```python and ```, each with the number of the line before it."""
     block, start = None, 0
     for number, line in enumerate(page.read_text().splitlines(), start=1):
         if block is None and line.strip() == "```python":
@@ -35,13 +35,13 @@ class Docs(unittest.TestCase):
                 shutil.copy(SOURCE / "scenes" / file, folder)
             os.chdir(folder)
             try:
-                # Small pictures: the page's are for people.
+                # Small pictures, to save time.
                 names = {}
                 count = 0
                 original = lanthorn.load_file
                 lanthorn.load_file = lambda *a, **k: original(*a, **k).edit(film={"width": 32, "height": 24})
                 for line, text in examples(page):
-                    # The line numbers of errors are those of the page.
+                    # Errors show the page's line numbers.
                     exec(compile("\n" * line + text, str(page), "exec"), names)
                     count += 1
             finally:

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The Lanthorn authors
 # SPDX-License-Identifier: Apache-2.0
-"""The Python module, through what users see of it: python3 test_lanthorn.py, with the module on PYTHONPATH."""
+"""Tests the Python module through its public interface: python3 test_lanthorn.py, with the module on PYTHONPATH."""
 
 import os
 import pathlib
@@ -23,7 +23,7 @@ SMALL = {"resolution": (32, 32), "passes": 2, "integrator": "path"}
 
 
 def furnace(albedo=0.5, light=0.5):
-    """The inside of a sphere that emits and scatters: L = light / (1 - albedo) everywhere, in all directions."""
+    """The inside of a sphere that emits and reflects: L = light / (1 - albedo) everywhere, in all directions."""
     return {
         "camera": {"type": "perspective", "fov": 60},
         "film": {"width": 16, "height": 16},
@@ -59,7 +59,7 @@ class Loading(unittest.TestCase):
                 check=True,
             )
             program = lanthorn.load_image(path)
-        # The program's files have the layers of noise, too.
+        # The program's files have noise layers as well.
         columns = [program.channels.index(channel) for channel in picture.channels]
         np.testing.assert_array_equal(picture.array, program.array[..., columns])
 
@@ -108,7 +108,7 @@ class Loading(unittest.TestCase):
         )
 
     def test_files_of_every_kind_of_entry_go_round(self):
-        """Each member of each material, light, texture ... that a scene has is written and read again."""
+        """All members of all materials, lights, textures ... of a scene survive being written and read."""
         for name in ("materials", "lights", "textures", "media", "shapes", "emitters", "realistic-camera"):
             with self.subTest(name):
                 data = lanthorn.load_file(SOURCE / f"tests/scenes/{name}.pbrt").description
@@ -208,7 +208,7 @@ class Sessions(unittest.TestCase):
         np.testing.assert_array_equal(session.picture().array, lanthorn.render(self.scene, **SMALL).array)
 
     def test_threads_change_nothing(self):
-        # By itself, as the limit holds for the whole process, until it has ended well.
+        # In a process of its own, because the limit holds for the whole process; it must end without an error.
         script = (
             "import lanthorn, sys\nlanthorn.set_threads(1)\n"
             f"picture = lanthorn.render(lanthorn.load_file({str(CORNELL)!r}), resolution=(32, 32), passes=2, integrator='path')\n"
@@ -372,7 +372,7 @@ class Light(unittest.TestCase):
         radiance = lanthorn.radiance_along(scene, [[0.3, -0.2, 0.1]], directions, samples=64)
         self.assertEqual(radiance.shape, (256, 3))
         np.testing.assert_allclose(radiance.mean(), 1, atol=0.03)
-        # Along one ray with no scattering at all, it is the light's own.
+        # Without any reflection, radiance along a ray is the emitted radiance.
         dark = lanthorn.load_dict(furnace(albedo=0, light=0.25))
         np.testing.assert_allclose(lanthorn.radiance_along(dark, [[0, 0, 0]], [[0, 3, 0]], samples=1), [[0.25] * 3], rtol=1e-5)
         with self.assertRaisesRegex(lanthorn.Error, "ray 1"):
@@ -399,7 +399,7 @@ class Light(unittest.TestCase):
         samples = metal.sample(up, generator.random((20000, 3)))
         scattered = np.linalg.norm(samples["wo"], axis=1) > 0
         albedo = samples["weight"][scattered].sum(0) / len(scattered)
-        # The same integral over uniform directions of the hemisphere.
+        # The same integral, by uniform sampling of the hemisphere.
         z, phi = generator.random(200000), 2 * np.pi * generator.random(200000)
         r = np.sqrt(1 - z * z)
         wo = np.stack([r * np.cos(phi), r * np.sin(phi), z], 1)
@@ -445,7 +445,7 @@ class Light(unittest.TestCase):
         options = {"resolution": (40, 40), "passes": 3}
         own = lanthorn.render(scene, integrator="direct", **options)
         path = lanthorn.render(scene, integrator="path", **options)
-        # RGB of lights is a spectrum of the same colour to a per cent.
+        # A light's RGB becomes a spectrum of the same colour, within 1 %.
         np.testing.assert_allclose(own["color"].mean((0, 1)), path["color"].mean((0, 1)), rtol=0.02)
 
         lanthorn.add_integrator("noise", Noise())

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The Lanthorn authors
 # SPDX-License-Identifier: Apache-2.0
-"""Every public name has a docstring and stands in the stub, and the stub has no others."""
+"""Every public name has a docstring and is in the stub, and the stub has no other names."""
 
 import ast
 import pathlib
@@ -15,7 +15,7 @@ PLAIN = {"__version__", "Error", "DIRECT", "CAUSTIC", "INDIRECT"}
 
 
 def stub_names(body):
-    """{name: node} of a module's or a class's body."""
+    """Returns {name: node} for the body of a module or a class."""
     names = {}
     for node in body:
         if isinstance(node, (ast.FunctionDef, ast.ClassDef)):
@@ -43,7 +43,7 @@ class Stub(unittest.TestCase):
             own = public(vars(getattr(lanthorn, name)))
             if "def __init__" not in ast.unparse(node):
                 own.discard("__init__")  # pybind11 has one that raises
-            # Attributes of objects alone have no place in the class.
+            # Attributes that only instances have are not in vars() of the class.
             alone = {n for n, m in stub_names(node.body).items() if isinstance(m, ast.AnnAssign) and n not in own}
             self.assertEqual(own, set(stub_names(node.body)) - alone, name)
 

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The Lanthorn authors
 # SPDX-License-Identifier: Apache-2.0
-"""The scripts of docs/tutorial, small, and what each of them shows."""
+"""Runs the scripts of docs/tutorial at a small size and checks what each of them shows."""
 
 import importlib
 import os
@@ -47,16 +47,16 @@ class Tutorial(unittest.TestCase):
 
     def test_photons(self):
         irradiance, power = self.run_script("photons")
-        # What falls outside of the grid is little.
+        # Little light falls outside the grid.
         landed = irradiance.sum((0, 1)) * (3 / 40) ** 2
         self.assertTrue((landed <= power * 1.001).all() and (landed > 0.5 * power).all())
 
     def test_ppm_convergence(self):
         slopes = self.run_script("ppm_convergence")
-        # (alpha - 1) / 2, from which the rates of noise and bias follow.
+        # (alpha - 1) / 2, which determines the rates of noise and bias.
         self.assertAlmostEqual(slopes["radius"], -1 / 6, delta=0.005)
-        # What so few passes measure varies with the seed: path, -1 in the limit, gave -0.85, -0.99 and -1.03, and probppm,
-        # -2/3 in the limit, -0.74, -0.89 and -1.05.
+        # With so few passes, slopes vary with the seed: path (-1 in the limit) gave -0.85, -0.99 and -1.03, and probppm
+        # (-2/3 in the limit) -0.74, -0.89 and -1.05.
         self.assertAlmostEqual(slopes["path"], -1, delta=0.5)
         self.assertLess(slopes["probppm"], -0.2)
 
@@ -68,7 +68,7 @@ class Tutorial(unittest.TestCase):
 
     def test_environment(self):
         environment, maps = self.run_script("environment")
-        # Light is kept: the mean of the irradiance over pi is that of the environment over the sphere.
+        # Energy is conserved: the mean of irradiance/pi equals the mean of the environment over the sphere.
         height = environment.height
         weight = np.sin(np.pi * (np.arange(height) + 0.5) / height)[:, None, None]
         mean = (environment["color"] * weight).sum((0, 1)) / (weight.sum() * environment.width)

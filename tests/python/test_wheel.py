@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The Lanthorn authors
 # SPDX-License-Identifier: Apache-2.0
-"""pip install . into an empty environment, without a network; by night, because it compiles the library."""
+"""Runs pip install . in an empty environment without network access. Nightly, because it compiles the library."""
 
 import os
 import pathlib
@@ -25,7 +25,7 @@ class Wheel(unittest.TestCase):
             environment = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
             subprocess.run([python, "-m", "pip", "install", "--no-index", SOURCE], check=True, env=environment)
             scene = SOURCE / "tests/scenes/lamps-with-images.pbrt"  # images need lanthorn-openimageio.so
-            # Wheels have no links: one copy of the library, by the name that the module asks for.
+            # Wheels cannot hold links, so there is one copy of the library, under the name that the module loads.
             libraries = sorted(file.name for file in (pathlib.Path(folder) / "lib").rglob("liblanthorn*"))
             self.assertEqual(libraries, [f"liblanthorn.so.{self.version().rsplit('.', 1)[0]}"])
             script = (

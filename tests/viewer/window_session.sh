@@ -3,9 +3,9 @@
 # SPDX-License-Identifier: Apache-2.0
 #
 # Usage: tests/viewer/window_session.sh LANTHORN [SCREENSHOT_FOLDER]
-# A session at the window of `lanthorn view` on a screen of Xvfb, by the hands of xdotool: opens, orbits, drags a light,
-# switches methods (direct, ambient, ispm, voxelcones and an offline one), saves. Exits with 77, which ctest shows as skipped, where Xvfb or xdotool are missing. Screenshots
-# need ImageMagick's import.
+# A session in the window of `lanthorn view` on an Xvfb display, operated by xdotool: opens, orbits, drags a light, switches
+# methods (direct, ambient, ispm, voxelcones and an offline one), saves. Exits with 77, which ctest shows as skipped, if Xvfb
+# or xdotool is missing. Screenshots need ImageMagick's import.
 set -euo pipefail
 program=$(realpath "$1")
 shots=${2:+$(realpath "$2")}
@@ -40,7 +40,7 @@ await() {
   done
   fail "not within two minutes: $what"
 }
-# Sleeps for about so many frames; `frame_seconds` is measured below.
+# Sleeps for about the given number of frames; `frame_seconds` is measured below.
 frame_seconds=0.3
 frames() { sleep "$(awk -v n="${1:-3}" -v t="$frame_seconds" 'BEGIN { print n * t }')"; }
 
@@ -69,7 +69,7 @@ AttributeBegin
 AttributeEnd
 SCENE
 
-# A free display: Xvfb says which.
+# Xvfb chooses a free display and tells its number.
 exec 3<>display
 Xvfb -displayfd 3 -screen 0 1000x900x24 -nolisten tcp >xvfb.log 2>&1 &
 screen_pid=$!
@@ -83,7 +83,7 @@ await "a window" xdotool search --onlyvisible --name "Lanthorn: room.pbrt"
 window=$(xdotool search --onlyvisible --name "Lanthorn: room.pbrt" | head -1)
 xdotool windowfocus "$window" || true
 eval "$(xdotool getwindowgeometry --shell "$window")"
-# The picture is left of the panel of 330 pixels, as large as fits and centred.
+# The picture is centred in the area left of the panel (330 pixels wide) and fills it as far as possible.
 area=$((WIDTH - 330))
 size=$(awk -v w="$area" -v h="$HEIGHT" 'BEGIN { a = w / 320; b = h / 180; print a < b ? a : b }')
 pixel() { # x y in the picture: x y on the screen
@@ -114,7 +114,7 @@ begin=$(date +%s%N)
 save_png 2
 frame_seconds=$(awk -v a="$begin" -v b="$(date +%s%N)" 'BEGIN { t = (b - a) / 3e9; print t < 0.1 ? 0.1 : t }')
 shot 1-start
-# A click selects the ball, although the pointer comes from afar between two frames; the camera stays.
+# A click selects the ball even if the pointer comes from far away between two frames. The camera stays.
 mse() { "$program" compare "$1" "$2" | awk '$1 == "MSE" { print $2 }'; }
 xdotool mousemove $(pixel 20 20)
 frames 3
@@ -130,7 +130,7 @@ shot 2-orbit
 differ room-2.png room-3.png "the camera did not orbit"
 xdotool key r
 frames
-# The light at (0, 1.6, 0.2) is seen at this pixel of the camera of the file.
+# The file's camera shows the light at (0, 1.6, 0.2) at this pixel.
 light=$(awk 'BEGIN { t = 3.1415926536 * 34 / 360; t = sin(t) / cos(t); print int(160), int(90 - 90 * 0.6 / (4.0 * t)) }')
 set -- $light
 drag 1 "$1" "$2" $(($1 + 60)) $(($2 + 30))
@@ -169,7 +169,7 @@ frames 6
 save_png 10
 shot 8-offline
 differ room-9.png room-10.png "the offline method is not there"
-# Noise makes files large.
+# Noisy pictures make large files.
 size_becomes() { # smaller|larger than 3/4 of the noisy picture
   for _ in $(seq 30); do
     sleep 1
@@ -196,7 +196,7 @@ viewer_pid=
 grep -q '"photons_per_bounce"' report.json || fail "no report"
 [ ! -s viewer.log ] || fail "the viewer said something"
 grep -q '"method": "ispm"' report.json || fail "the last method was not ispm"
-# What was saved is what was shown: the same scene again, without a window, is as bright up to noise.
+# The saved scene is the one shown: rendered again without a window, it is equally bright up to noise.
 check_brightness() { # picture of the window, method
   "$program" view room-view-1.pbrt --headless -i "$2" -p 8 -n 5000 -o again.png
   local ratio
