@@ -275,7 +275,7 @@ function showProgress(about) {
   else showState('rendering', `${passes}, ${time(about.seconds)}`);
   byId('problem').hidden = !about.problem;
   if (byId('problem').textContent !== about.problem) byId('problem').textContent = about.problem;
-  byId('pause').textContent = about.paused ? 'Go on' : 'Pause';
+  byId('pause').textContent = about.paused ? 'Resume' : 'Pause';
   byId('pause').disabled = about.finished;
   for (const id of ['method', 'width', 'height']) byId(id).disabled = false;
   for (const id of ['limitation', 'remark']) {
@@ -536,7 +536,7 @@ function pick(now) {
   byId('focus-pick').setAttribute('aria-pressed', now);
   if (!now) return;
   canvas.focus({preventScroll: true});
-  say('Click a point of the picture to focus on it');
+  say('Click a point in the picture to focus on it');
 }
 function focusAt(event) {
   const box = canvas.getBoundingClientRect(), full = frame.about.full_size;
@@ -560,7 +560,7 @@ onNumber('fov', (fov) => {
   edit({lens: {fov}, ...frame.about.lens.frames_subject && {camera: {eye, target, up}}});
 });
 onNumber('focus', (focus) => edit({lens: {focus, focus_at: undefined}}));
-byId('aperture').replaceChildren(new Option('Off: all is sharp', 'off'),
+byId('aperture').replaceChildren(new Option('Off: everything is sharp', 'off'),
     ...[1.4, 2, 2.8, 4, 5.6, 8, 11, 16, 22, 32].map((f) => new Option(`f/${f}`, `${f}`)));
 byId('aperture').addEventListener('change', ({target: {value}}) => edit({lens: {aperture: value === 'off' ? value : Number(value)}}));
 byId('focus-middle').addEventListener('click', () => edit({lens: {focus: 'auto', focus_at: undefined}}));
@@ -625,7 +625,7 @@ function showLights(known) {
   lights = {};
   const none = document.createElement('p');
   none.className = 'note';
-  none.textContent = 'No lights that can be dimmed';
+  none.textContent = 'No lights to dim';
   byId('light-list').replaceChildren(...known.length > 0 ? known.map(lightRow) : [none]);
 }
 /// Another environment is another light.
