@@ -118,7 +118,7 @@ PerspectiveCamera& perspective(Camera& camera, const char* option) {
   auto* const lens = std::get_if<PerspectiveCamera>(&camera.node);
   if (lens == nullptr)
     throw Error(camera.location,
-                fmt::format("{}: the scene's camera is not a perspective camera, as this option needs", option));
+                fmt::format("{}: the scene's camera is not a perspective camera, which this option needs", option));
   return *lens;
 }
 

@@ -78,7 +78,7 @@ struct RenderStatistics {
   /// time, unless `StopRule::noise` requires them.
   std::optional<ErrorEstimate> error{};
   std::uint64_t error_passes = 0;
-  bool out_of_memory = false;  ///< a pass needed more memory than available and was abandoned
+  bool out_of_memory = false;  ///< a pass needed more memory than is available and was abandoned
 };
 
 }  // namespace lanthorn

@@ -170,7 +170,7 @@ void ImageFile::guarded(const std::function<void()>& body) const {
   } catch (const Error&) {
     throw;
   } catch (const std::bad_alloc&) {
-    fail("needs more memory than available");
+    fail("needs more memory than is available");
   } catch (const std::exception& problem) {
     fail("cannot be read: " + one_line(problem.what()));
   }

@@ -110,9 +110,9 @@ auto discreet(const FileAccess& access, const std::string& name, Read&& read) {
   } catch (const Error& problem) {
     throw shown(access, problem.where, problem.message);
   } catch (const std::bad_alloc&) {
-    throw Error({name}, "the scene needs more memory than available");
+    throw Error({name}, "the scene needs more memory than is available");
   } catch (const std::length_error&) {
-    throw Error({name}, "the scene needs more memory than available");
+    throw Error({name}, "the scene needs more memory than is available");
   }
 }
 

@@ -136,7 +136,7 @@ UpAxis axis_upwards(SceneDescription& scene, const EnvironmentChoice& choice) {
   if (extension_of(scene) != ".pbrt") return UpAxis::y;
   const UpAxis up = axis_upwards(scene.view.camera);
   std::string message = fmt::format(
-      "--environment: +{0} is up, because the camera's up vector is nearer to it than to {1};  "
+      "--environment: +{0} is up, because the camera's up vector is nearer to it than to {1}; "
       "use --environment-up {1} to change it",
       up == UpAxis::z ? 'z' : 'y', up == UpAxis::z ? 'y' : 'z');
   if (std::none_of(scene.warnings.begin(), scene.warnings.end(),

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Compares renders with an independent renderer's images, by the test described in README.md: with few passes in CI, and
-// nightly with 32 times as many, and photons on more scenes.
+// Compares renders with an independent renderer's images, by the test described in README.md: with few passes in CI,
+// and nightly with 32 times as many, and photons on more scenes.
 #include <gtest/gtest.h>
 
 #include <string>

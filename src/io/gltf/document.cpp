@@ -192,7 +192,8 @@ void apply_filter(const std::string& filter, std::string& bytes, std::size_t cou
   else if (filter == "EXPONENTIAL" && stride % 4 == 0)
     meshopt_decodeFilterExp(bytes.data(), count, stride);
   else
-    throw place.error("filter " + in_quotes(filter) + "is not supported for a byteStride of " + std::to_string(stride));
+    throw place.error("filter " + in_quotes(filter) + " is not supported for a byteStride of " +
+                      std::to_string(stride));
 }
 
 }  // namespace

@@ -497,7 +497,7 @@ void Assembler::resolve_references(description::Shape& shape) {
   const auto& material = context_.scene.materials[shape.material].node;
   if (shape.area_light && std::holds_alternative<description::InterfaceMaterial>(material)) {
     context_.warn("interface emitter", shape.location,
-                  "a shape of material \"interface\" cannot emit light: it does not emit");
+                  "a shape of material \"interface\" cannot emit light: its emission is ignored");
     shape.area_light.reset();
   }
 }
@@ -557,7 +557,7 @@ void Assembler::read_ply_files() {
     } catch (const std::bad_alloc&) {
       results[i].problem = std::make_exception_ptr(
           Error(pending_plys_[i].place.location(),
-                "mesh \"" + printable(pending_plys_[i].path.string()) + "\" needs more memory than available"));
+                "mesh \"" + printable(pending_plys_[i].path.string()) + "\" needs more memory than is available"));
     } catch (...) {
       results[i].problem = std::current_exception();
     }

@@ -63,7 +63,7 @@ class AmbientOcclusion final : public Integrator {
   float reach_;
 };
 
-// From the third on, its passes need more memory than available.
+// From the third on, its passes need more memory than is available.
 class Insatiable final : public Integrator {
  public:
   PassReport render_pass(const RenderJob& /*any*/, std::uint32_t pass, const FilmPass& film,

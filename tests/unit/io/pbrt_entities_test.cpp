@@ -508,8 +508,8 @@ TEST(PbrtLights, AreaLights) {
   EXPECT_EQ(scene.shapes[1].area_light, 0u);
   EXPECT_EQ(scene.shapes[2].area_light, 1u);
   EXPECT_FALSE(scene.shapes[3].area_light.has_value());
-  expect_warnings(scene,
-                  {"a shape of material \"interface\" cannot emit light: it does not emit (and 1 more like it)"});
+  expect_warnings(
+      scene, {"a shape of material \"interface\" cannot emit light: its emission is ignored (and 1 more like it)"});
 }
 
 TEST(PbrtLights, LightsWithImages) {
