@@ -117,15 +117,14 @@ OptionTable display_options(OutputSettings& settings, const std::string& default
   return {{.names = "--exposure",
            .value = through<Stops>(number_or_word_type({-most, most}, "auto"), set, get),
            .brief = "Exposure of all pictures but .exr in stops, or auto",
-           .details = "auto shows a white surface under the picture's illumination as white, and reports the number.",
+           .details = "auto shows a white surface in the picture's light as white, and reports the number.",
            .otherwise = default_exposure},
           view_transform_option(settings.display),
           {.names = "--ocio",
            .value = into(settings.display.ocio, ocio_type()),
            .brief = "Use a view of an OpenColorIO configuration instead",
-           .details =
-               "CONFIG is its file; without DISPLAY/VIEW the configuration's default applies. The exposure is applied "
-               "first."}};
+           .details = "CONFIG is its file; without DISPLAY/VIEW the configuration's default applies. The exposure is "
+                      "applied first."}};
 }
 
 ValueType<ToneCurve> view_transform_type() {
