@@ -149,7 +149,7 @@ TEST(Api, AStoppedPassLeavesNoTrace) {
   }
 }
 
-// Embree can limit the threads of the whole program.
+// Embree can limit the threads of the whole process.
 TEST(Api, ScenesLeaveTheNumberOfThreads) {
   const unsigned before = lanthorn::thread_count();
   const SharedScene scene = load(box);
@@ -211,7 +211,7 @@ TEST(Api, AnEditedSceneIsRenderedAnew) {
   EXPECT_EQ(session.picture().pixels, pixels);
 }
 
-// A scene that a program describes, without any file.
+// A scene built by a program, without any file.
 TEST(Api, SceneDescriptionsArePlainData) {
   lanthorn::SceneDescription scene;
   scene.materials.emplace_back();  // diffuse, grey
@@ -302,7 +302,7 @@ TEST(Api, RaysInAFurnace) {
   EXPECT_THROW(lanthorn::radiance_along(*scene, rays, {.samples = 0}), lanthorn::Error);
 }
 
-// A small view of a large plane: the guide of the method sends more photons there.
+// A small view of a large plane: the method's guide sends more photons there.
 TEST(Api, PhotonsFollowTheGuideOfTheMethod) {
   const lanthorn::test::TemporaryDir dir;
   const SharedScene scene =

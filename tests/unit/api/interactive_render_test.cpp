@@ -62,7 +62,7 @@ std::vector<float> pixels_of(const SharedScene& scene, const ViewDescription& vi
   return picture_of(scene, view, options).pixels;
 }
 
-// The first snapshot of which `is_right` holds. Throws Error if there is none within a minute.
+// The first snapshot for which `is_right` returns true. Throws Error if there is none within a minute.
 template <class Condition>
 InteractiveSnapshot await(const InteractiveRender& render, Condition is_right) {
   const Clock::time_point deadline = Clock::now() + 60s;
@@ -157,7 +157,7 @@ TEST(InteractiveRender, CoarsePicturesOfAutoHaveNoPilot) {
   EXPECT_EQ(end.picture->image.pixels, pixels_of(scene, description_of(*scene).view, options));
 }
 
-// The last picture takes milliseconds to make, in which the one before must not be called finished.
+// Making the last picture takes milliseconds, during which the previous one must not be called finished.
 TEST(InteractiveRender, FinishedPicturesHaveAllPasses) {
   RenderOptions options = small(2);
   options.resolution = {300, 200};
@@ -238,7 +238,7 @@ TEST(InteractiveRender, AnErrorIsKeptAndThePictureStays) {
   EXPECT_EQ(now.status.revision, broken);
   EXPECT_EQ(now.status.problem, "no such room");
   EXPECT_EQ(now.picture, before);
-  render.edit({.view = view_of_angle(30)});  // the scene is as wrong as before
+  render.edit({.view = view_of_angle(30)});  // the scene is still invalid
   now = await(render, failed);
   EXPECT_EQ(now.status.revision, broken + 1);
   EXPECT_EQ(now.picture, before);
@@ -323,7 +323,7 @@ TEST(InteractiveRender, PausesAndGoesOn) {
   InteractiveRender render(box(), view_of_angle(40), small(4'000'000'000));
   await(render, refining);
   render.pause(true);
-  std::this_thread::sleep_for(300ms);  // the end of the running pass
+  std::this_thread::sleep_for(300ms);  // the end of the current pass
   const InteractiveSnapshot resting = render.snapshot();
   EXPECT_EQ(resting.status.phase, paused);
   std::this_thread::sleep_for(100ms);

@@ -29,7 +29,7 @@ std::string lamp(const std::string& points) {
 }
 
 using Words = std::vector<std::string>;
-// The coordinates of pbrt are left-handed: from +z, with y upwards, -x is to the right.
+// pbrt's coordinates are left-handed: seen from +z with y up, -x is on the right.
 const std::string y_up = "LookAt 0 0 9  0 0 0  0 1 0\nCamera \"perspective\"\n";
 
 TEST(LightNames, SayWhereALightIs) {

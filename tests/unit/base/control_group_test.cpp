@@ -13,7 +13,7 @@ namespace {
 
 constexpr const char* unlimited_v1 = "9223372036854771712\n";
 
-// A machine's /proc and /sys as files.
+// Files that imitate a machine's /proc and /sys.
 class ControlGroup : public testing::Test {
  protected:
   void processes(const std::string& groups, const std::string& mounts) const {
@@ -72,12 +72,12 @@ TEST_F(ControlGroup, VersionOneHasAHierarchyForEachController) {
 }
 
 TEST_F(ControlGroup, ContainersSeeTheirGroupAtTheMountPoint) {
-  // The container's own group is mounted, and the process says its path on the machine.
+  // The container's own group is mounted, and the process reports its path on the host.
   processes("2:cpu:/docker/abc\n", "32 31 0:29 /docker/abc /sys/fs/cgroup/my\\040cpu rw - cgroup cgroup rw,cpu\n");
   file("my cpu/cpu.cfs_quota_us", "300000\n");
   file("my cpu/cpu.cfs_period_us", "100000\n");
   EXPECT_DOUBLE_EQ(limits().cores.value_or(0), 3);
-  // A path that leads out of what is mounted.
+  // A path that leads outside the mounted groups.
   processes("0::/../other\n", "30 21 0:26 / /sys/fs/cgroup rw - cgroup2 cgroup2 rw\n");
   file("cpu.max", "100000 100000\n");
   EXPECT_DOUBLE_EQ(limits().cores.value_or(0), 1);

@@ -67,7 +67,7 @@ TEST(WriteFile, LinksStayLinks) {
   const test::TemporaryDir dir;
   const fs::path link = dir.path() / "link", chain = dir.path() / "chain", target = dir.path() / "there" / "target";
   fs::create_directory(target.parent_path());
-  fs::create_symlink("there/target", link);  // to nothing yet
+  fs::create_symlink("there/target", link);  // its target does not exist yet
   fs::create_symlink("link", chain);
   for (const std::string text : {"first", "second"}) {
     write(chain, text);

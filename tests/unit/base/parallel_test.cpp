@@ -12,7 +12,7 @@
 namespace lanthorn::parallel_test {
 namespace {
 
-constexpr unsigned flush_to_zero = _MM_FLUSH_ZERO_ON | 0x40;  // and denormals are zeros
+constexpr unsigned flush_to_zero = _MM_FLUSH_ZERO_ON | 0x40;  // and denormals are flushed to zero
 
 // Halves of the smallest normal number.
 std::vector<float> denormal_numbers() {
@@ -24,7 +24,7 @@ std::vector<float> denormal_numbers() {
   return numbers;
 }
 
-// Embree flushes them while it builds a scene, which may be the first that a thread does with TBB.
+// Embree turns on flushing while it builds a scene, which may be the first work of a thread in TBB.
 TEST(Parallel, LoopsKeepDenormalNumbersThoughTheFirstOfTheirThreadDidNot) {
   std::thread([] {
     const unsigned before = _mm_getcsr();

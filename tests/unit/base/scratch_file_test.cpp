@@ -36,7 +36,7 @@ TEST(ScratchFile, NamesTheFolderWhenItCannotBeMadeOrWritten) {
             "folder");
   const test::TemporaryDir folder;
   ScratchFile file(folder.path());
-  // Stands for a full disk.
+  // Simulates a full disk.
   rlimit before{};
   getrlimit(RLIMIT_FSIZE, &before);
   const rlimit small{1 << 16, before.rlim_max};

@@ -34,7 +34,7 @@ RealisticCamera double_gauss(float focus_distance, float diameter = 30, float di
   return std::get<RealisticCamera>(scene.view.camera.node);
 }
 
-// A thin lens with a stop behind it.
+// A thin lens with an aperture stop behind it.
 RealisticCamera magnifier(float stop_diameter) {
   RealisticCamera camera;
   camera.elements = {{0.1f, 1e-3f, 1.5f, 0.05f}, {-0.1f, 2e-3f, 1, 0.05f}, {0, 0.1f, 0, stop_diameter}};
@@ -130,9 +130,9 @@ TEST(Lens, WaysAreReversible) {
   EXPECT_GT(passed, 500);
 }
 
-// The stop behind the lens is its exit pupil: the irradiance of a point of the film under radiance 1 is pi times the
-// form factor of a disk (Howell, configuration factor B-13), which falls off like cos^4. Mean of n samples, 5 standard
-// errors: false-alarm rate below 1e-5 for all points.
+// The stop behind the lens is its exit pupil. Under radiance 1, the irradiance of a point of the film is pi times the
+// form factor of a disk (Howell, configuration factor B-13), which falls off like cos^4. Means of n samples within 5
+// standard errors: false-alarm rate below 1e-5 for all points.
 TEST(Lens, ExposureFallsOffAsTheFormFactorOfThePupil) {
   constexpr int width = 60, height = 40;
   const RealisticCamera lens = magnifier(0.012f);

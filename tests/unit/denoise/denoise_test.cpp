@@ -160,14 +160,14 @@ TEST(Denoise, KeepsTheEdgesOfCaustics) {
   EXPECT_GT(gain(scene, "caustic", step), 8);
 }
 
-// Texture is a feature: it is not smoothed with the noise.
+// Texture is kept: it is not smoothed together with the noise.
 TEST(Denoise, KeepsTexture) {
   const auto albedo = [](int x, int y) { return (x / 3 + y / 3) % 2 == 0 ? 0.9 : 0.2; };
   const auto light = [&](int x, int y) { return albedo(x, y) * smooth(x, y); };
   EXPECT_GT(gain({72, 72, {{"indirect", light, fifth}}, albedo}, "indirect", light), 10);
 }
 
-// Photons within a kernel are noise that its pixels share.
+// Photons within a kernel cause noise that pixels share.
 TEST(Denoise, RemovesNoiseThatNeighboursShare) {
   EXPECT_GT(gain({128, 128, {{"caustic", smooth, fifth, 3}}}, "caustic", smooth), 4);
 }

@@ -30,7 +30,7 @@ double white(int /*x*/, int /*y*/) { return 1; }
 bool is_in_lamp(int x, int y) { return x >= 40 && x < 60 && y >= 20 && y < 30; }
 double lamp(int x, int y) { return is_in_lamp(x, y) ? 25 : 0.4; }
 
-// Pictures of a truth with noise whose standard deviation for one pass is `sigma`. `noise(rng)` makes a field of unit
+// Pictures of `truth` plus noise with a standard deviation of `sigma` per pass. `noise(rng)` makes a field of unit
 // variance.
 struct Picture {
   PictureHalves halves;
@@ -75,7 +75,7 @@ std::vector<double> independent(std::mt19937& rng) {
   for (double& value : field) value = normal(rng);
   return field;
 }
-// Equal in blocks of 8 x 8 pixels, as under a wide kernel.
+// Constant in blocks of 8 x 8 pixels, like the noise of a wide kernel.
 std::vector<double> in_blocks(std::mt19937& rng) {
   std::vector<double> field = independent(rng);
   for (int y = 0; y < height; ++y)

@@ -31,7 +31,7 @@ namespace {
 // Four layers of light, as most methods have.
 constexpr std::size_t emission = 0, direct = 1, indirect = 2, caustic = 3;
 constexpr std::size_t first_splats =
-    3 * 4 + feature_channels + 2;  // plane of a film without bias: after light, features, hits, weights
+    3 * 4 + feature_channels + 2;  // plane index in a film without bias layers: after light, features, hits, weights
 const std::vector<std::string> layers{"emission", "direct", "indirect", "caustic"};
 const Decomposition techniques{{"technique.hit", "technique.nee", "technique.vc", "technique.vm"},
                                "technique.splat",
@@ -41,7 +41,7 @@ constexpr int width = 7, height = 5;
 constexpr std::uint32_t pixels = width * height;
 
 Rgb random_rgb(std::mt19937& rng, float scale) {
-  // Magnitudes over 30 binary orders: far below a step, and far above.
+  // Magnitudes over 30 binary orders: far below one step, and far above.
   const auto value = [&] { return scale * std::exp2(-30 * std::generate_canonical<float, 24>(rng)); };
   const float r = value(), g = value();
   return {r, g, -value()};
@@ -128,7 +128,7 @@ TEST(Film, MergedShardsEqualOneFilm) {
   EXPECT_EQ(planes(ba), planes(a));
 }
 
-// Each half is the film of its passes alone; together they are the picture.
+// Each half equals a film of its passes only. Together they equal the picture.
 TEST(Film, HalvesAreFilmsOfTheirPasses) {
   const std::vector<Contribution> all = random_contributions(3000);
   const Film film = film_of(all);
@@ -208,7 +208,7 @@ SpectralRadiance radiance_at(std::array<float, 4> lambda, float value) {
   SpectralRadiance r;
   r.lambda = lambda;
   r.radiance.fill(value);
-  for (std::size_t i = 0; i < 4; ++i) r.pdf[i] = 1 / (lambda[i] + 1);  // of no meaning, but different
+  for (std::size_t i = 0; i < 4; ++i) r.pdf[i] = 1 / (lambda[i] + 1);  // arbitrary, but all different
   return r;
 }
 
@@ -216,7 +216,7 @@ TEST(Film, BucketsHoldMeansOverTheWavelengthsInThem) {
   const SpectralBuckets buckets{3, 400, 700};
   Film film(2, 1, 4, {.light = layers, .splats = true, .buckets = buckets});
   PixelSample s;
-  s.spectrum = radiance_at({410, 480, 510, 720}, 3);  // one outside of all buckets
+  s.spectrum = radiance_at({410, 480, 510, 720}, 3);  // one outside all buckets
   s.weight = 0.25f;
   FilmPass(film, 0).add(0, s);
   s.spectrum = radiance_at({420, 530, 599, 399}, 3);
@@ -347,7 +347,7 @@ TEST(Film, LightLayersAddUpToColor) {
 }
 
 TEST(Film, TinyContributionsAreNotLost) {
-  // 2^-45 of the largest radiance is a thirty-second of a step: rounding to the nearest would lose all of it.
+  // 2^-45 of the largest radiance is 1/32 of a step: rounding to nearest would lose all of it.
   Film film(1, 1, 1, {.light = layers, .splats = true});
   std::mt19937 rng(5);
   double expected = 0;
@@ -397,7 +397,7 @@ TEST(Film, ReportsNonFiniteValuesWithTheirPlace) {
 
 TEST(Film, ReportsOverflowAndSaturates) {
   Film film(2, 1, 1, {.light = layers, .decomposition = techniques, .splats = true});
-  FilmPass(film, 3).splat(1, direct, {0x1p16f, 0x1p17f, 0});  // at the limit of a contribution, and beyond
+  FilmPass(film, 3).splat(1, direct, {0x1p16f, 0x1p17f, 0});  // at the limit of a contribution, and above it
   EXPECT_EQ(film.report().too_large, 1u);
   EXPECT_EQ(film.report().first_too_large, (FilmPlace{3, 1}));
   EXPECT_EQ(film.report().saturated, 0u);
@@ -432,7 +432,7 @@ TEST(Film, ConcurrentOverflowSaturates) {
 TEST(Film, AddsSamplesOfSeveralPassesToOnePixelAtOnce) {
   FilmContents contents{.light = {"direct"}, .decomposition = {.parts = {"a", "b"}}, .bias = true};
   contents.buckets = SpectralBuckets{};
-  constexpr int samples = 2000000;  // so that threads meet
+  constexpr int samples = 2000000;  // so that threads collide
   const std::array<std::uint64_t, 4> passes{0, 3, 5, 6};
   const auto add = [](Film& film, std::uint64_t pass, int i) {
     PixelSample s;
@@ -506,7 +506,7 @@ TEST(Display, AgxKeepsGreysAndTakesSaturationFromBrightColours) {
   EXPECT_NEAR(to_display({-1, std::nanf(""), 0}, display).r, 0, 1e-6f);
 }
 
-// A picture of 100 x 1 pixels: surfaces of one albedo in one light, a lamp over a fifth of it, and the rest black.
+// A picture of 100 x 1 pixels: surfaces of the same albedo in the same light, a lamp in a fifth of it, the rest black.
 Image lit_picture(float albedo, float light, int surfaces) {
   std::vector<std::string> channels{"R", "G", "B"};
   for (const char* layer : {"emission", "direct", "indirect", "caustic", "albedo"})
@@ -532,7 +532,7 @@ TEST(Exposure, IsThatOfTheLightOnSurfacesWhateverTheirColour) {
 }
 
 TEST(Exposure, IsThatOfColoursWhereNoSurfaceIsLit) {
-  EXPECT_FLOAT_EQ(measured_exposure(lit_picture(1, 1, 0)), -10);  // 1000, to a tenth of a stop
+  EXPECT_FLOAT_EQ(measured_exposure(lit_picture(1, 1, 0)), -10);  // 1000, within a tenth of a stop
   EXPECT_FLOAT_EQ(measured_exposure(lit_picture(0.001f, 1, 60)), -10);
   Image plain(10, 1, {"R", "G", "B"});
   EXPECT_EQ(measured_exposure(plain), 0);
@@ -552,7 +552,7 @@ Image test_image() {
   return image;
 }
 
-// Fichet, Pacanowski & Wilkie 2021, "An OpenEXR Layout for Spectral Images": channels by their names, two attributes.
+// Fichet, Pacanowski & Wilkie 2021, "An OpenEXR Layout for Spectral Images": names of channels, and two attributes.
 TEST(ImageFile, SpectralChannelsFollowTheirLayout) {
   const test::TemporaryDir dir;
   const Film film(2, 1, 1, {.buckets = SpectralBuckets{16, 360, 830}});
@@ -635,7 +635,7 @@ TEST(ImageFile, AlphaIsNotDecoded) {
 
 TEST(ImageFile, ReadsPfmTopToBottom) {
   const test::TemporaryDir dir;
-  const std::array<float, 6> values{1, 2, 3, 4, 5, 6};  // the lower row first
+  const std::array<float, 6> values{1, 2, 3, 4, 5, 6};  // PFM stores the lower row first
   std::string bytes = "PF\n1 2\n-1.0\n";
   bytes.append(reinterpret_cast<const char*>(values.data()), sizeof(values));
   const Image image = read_image(dir.write("a.pfm", bytes));

@@ -21,7 +21,7 @@ Image constant(int width, int height, const std::vector<float>& rgb) {
   return image;
 }
 
-/// A smooth picture and, if `disturbed`, one with every fifth diagonal at half.
+/// A smooth picture. If `disturbed`, every fifth diagonal has half the value.
 Image ramps(bool disturbed, float scale = 1) {
   Image image(32, 24, {"R", "G", "B"});
   for (int y = 0; y < 24; ++y)
@@ -59,7 +59,7 @@ TEST(ImageErrors, CountNonFiniteValues) {
 }
 
 TEST(StudentT, MatchesTables) {
-  // Two-sided 5 % and 0.1 % points of the usual table, and closed forms for 1 and 2 degrees of freedom.
+  // Two-sided 5 % and 0.1 % points from the usual tables, and closed forms for 1 and 2 degrees of freedom.
   EXPECT_NEAR(student_t_p_value(12.706, 1), 0.05, 1e-5);
   EXPECT_NEAR(student_t_p_value(4.303, 2), 0.05, 1e-5);
   EXPECT_NEAR(student_t_p_value(2.228, 10), 0.05, 1e-4);
@@ -86,14 +86,14 @@ TEST(Agreement, AcceptsNoiseAndRejectsBias) {
   const Image truth = constant(64, 64, {0.5f, 0.4f, 0.3f});
   const Image sem = constant(64, 64, {0.02f, 0.02f, 0.02f});
   const Image reference = noisy_runs(truth, 0.02f, 1, 1)[0];
-  // The image's mean has a standard error of 0.06 %, tiles of 1 %.
+  // The image's mean has a standard error of 0.06 %, means of tiles have 1 %.
   EXPECT_TRUE(agreement_with_reference(reference, sem, noisy_runs(truth, 0.05f, 4, 2)).agrees);
   const Image brighter = constant(64, 64, {0.51f, 0.408f, 0.306f});
   const Agreement biased = agreement_with_reference(reference, sem, noisy_runs(brighter, 0.05f, 4, 3));
   EXPECT_FALSE(biased.agrees);
   EXPECT_NEAR(biased.mean_difference, 0.02, 0.003);
 
-  Image local = truth;  // a blot in 9 of 64 tiles, balanced in the mean
+  Image local = truth;  // a blot in 9 of 64 tiles that leaves the mean unchanged
   for (int y = 0; y < 24; ++y)
     for (int x = 0; x < 48; ++x)
       for (std::size_t c = 0; c < 3; ++c) local.at(x, y, c) *= x < 24 ? 1.3f : 0.7f;
@@ -104,8 +104,8 @@ TEST(Agreement, AcceptsNoiseAndRejectsBias) {
 }
 
 TEST(Agreement, MatchesTheConformanceScript) {
-  // Against check.py of the conformance suite on the same numbers: deterministic "noise", three runs, and leftover rows
-  // and columns.
+  // Against check.py of the conformance suite, on the same numbers: deterministic "noise", three runs, incomplete
+  // tiles.
   const auto picture = [](int seed) {
     Image image(19, 17, {"R", "G", "B"});
     for (std::size_t i = 0; i < image.pixels.size(); ++i)
@@ -130,7 +130,7 @@ TEST(Agreement, NeedsTwoRunsAndATile) {
 }
 
 TEST(Welch, HasItsFalseAlarmRate) {
-  // 400 comparisons without a difference: p < 0.05 must happen in 20, sd 4.4. Outside 4 sd: 6e-5.
+  // 400 comparisons without a difference: p < 0.05 is expected in 20 of them, sd 4.4. Outside 4 sd: 6e-5.
   int alarms = 0;
   for (unsigned i = 0; i < 400; ++i) {
     const Image truth = constant(16, 16, {0.5f, 1, 2});
@@ -190,8 +190,8 @@ TEST(Flip, OfUniformPicturesIsTheColorDifference) {
   EXPECT_NEAR(expected, 0.96738, 1e-4);
 }
 
-// Made with a direct (not separable) double-precision transcription of the paper, its constants checked against the
-// authors' own code.
+// Expected values are from a direct (not separable) double-precision transcription of the paper, whose constants were
+// checked against the authors' code.
 TEST(Flip, MatchesADirectEvaluation) {
   const FlipResult flip = ldr_flip(ramps(true), ramps(false));
   EXPECT_NEAR(flip.mean, 0.206160832, 2e-6);
@@ -201,7 +201,7 @@ TEST(Flip, MatchesADirectEvaluation) {
   const FlipResult hdr = hdr_flip(ramps(true, 8), ramps(false, 8));
   EXPECT_NEAR(hdr.mean, 0.145164605, 2e-6);
   EXPECT_NEAR(hdr.map[20 * 32 + 30], 0.141168815, 2e-5);
-  // 15 stops from left to right: several exposures are needed.
+  // 15 stops from left to right, so that several exposures are needed.
   Image wide = ramps(true), wide_reference = ramps(false);
   for (Image* image : {&wide, &wide_reference})
     for (int y = 0; y < 24; ++y)

@@ -30,7 +30,7 @@ void set(Image& image, int x, int y, const Rgb& c) {
   image.at(x, y, 2) = c.b;
 }
 
-// From the definition in ibl.h: the centre is +x, a quarter to its right +z.
+// By the definition in ibl.h, the centre is +x, and +z is a quarter of the width to its right.
 Direction equirectangular_direction(int x, int y, int width) {
   const double polar = pi_d * (y + 0.5) / (width / 2.0), azimuth = 2 * pi_d * (x + 0.5) / width - pi_d;
   return {static_cast<float>(std::sin(polar) * std::cos(azimuth)), static_cast<float>(std::cos(polar)),
@@ -129,7 +129,7 @@ TEST(CubeMap, FacesAreOpenGls) {
   const std::array<Vec3, 6> axes{{{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}}};
   for (int face = 0; face < 6; ++face)
     EXPECT_LT(length_squared(centre(face) - axes[static_cast<std::size_t>(face)]), 1e-12f);
-  // The right edge of +Z is the left one of +X, the upper edge of +Z the lower one of +Y.
+  // The right edge of +Z is the left edge of +X, and the upper edge of +Z is the lower edge of +Y.
   EXPECT_GT(cube_direction(4, {1, 0.5f}).x, 0.7f);
   EXPECT_GT(cube_direction(0, {0, 0.5f}).z, 0.7f);
   EXPECT_GT(cube_direction(4, {0.5f, 0}).y, 0.7f);
@@ -317,7 +317,7 @@ TEST_P(Sun, KeepsItsEnergyAndIsSmooth) {
   EXPECT_NEAR(ibl.sh->radiance[0].r * 0.28209479 / mean, 1, 0.01);
 }
 
-// Under the horizon, at an edge of faces, near a pole, at the picture's seam.
+// Below the horizon, at an edge between faces, near a pole, at the picture's seam.
 INSTANTIATE_TEST_SUITE_P(Places, Sun,
                          testing::Values(std::pair{300, 150}, std::pair{320, 128}, std::pair{77, 6},
                                          std::pair{511, 90}));
@@ -348,7 +348,7 @@ TEST_P(SmallSun, IsAsBrightAsInTheImage) {
   }
 }
 
-// Somewhere, at an edge of faces, at a corner of the cube, near a pole, at the image's seam.
+// An arbitrary place, an edge between faces, a corner of the cube, a place near a pole, one at the image's seam.
 INSTANTIATE_TEST_SUITE_P(Places, SmallSun,
                          testing::Values(std::pair{300, 100}, std::pair{320, 128}, std::pair{320, 77},
                                          std::pair{77, 50}, std::pair{511, 90}));
@@ -485,7 +485,7 @@ TEST(SphericalHarmonics, WindowLeavesNoNegativeIrradiance) {
   EXPECT_EQ(bake_ibl(equirectangular(256, smooth), settings).sh->window, 0) << "nothing is negative";
 }
 
-// Over directions of light, by the closures' own D and G.
+// Integrates over light directions, with D and G of the closures.
 TEST(BrdfTable, BruteForceIsTheIntegralOverTheHemisphere) {
   constexpr int steps = 400;
   for (const double alpha : {0.4, 1.0})
@@ -569,7 +569,7 @@ TEST(ContactSheet, HasARowForEachMap) {
   EXPECT_NEAR(sheet.at(left + 4 + 48, top + 4 + 48, 0), smooth({1, 0, 0}).r, 0.02f);
 }
 
-// Its labels in dots: "+X" above the first face, "SPECULAR" and its roughness before the first row.
+// Its labels as dots: "+X" above the first face, "SPECULAR" and its roughness before the first row.
 TEST(ContactSheet, HasLabels) {
   const Ibl ibl = bake_ibl(equirectangular(64, smooth), small());
   const Image sheet = contact_sheet(ibl);

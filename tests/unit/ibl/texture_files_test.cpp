@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Texture files, read by the offsets of their specifications; and environments, read from files of all layouts.
+// Texture files are read at the byte offsets of their specifications. Environments are read from files in all layouts.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -15,7 +15,7 @@
 namespace lanthorn::texture_files_test {
 namespace {
 
-// A number that a half-float has, and that says where it is.
+// A value that half floats can represent and that identifies its texel.
 float value_at(int level, int face, int x, int y, int channel) {
   return static_cast<float>(level * 512 + face * 64 + y * 16 + x * 4 + channel) / 4;
 }
@@ -122,7 +122,7 @@ TEST(TextureFiles, HaveSharedExponentsOnRequest) {
 
 class EnvironmentFiles : public testing::Test {
  protected:
-  // The value says face, column and row.
+  // Values identify face, column and row.
   static Image face_image(int face) {
     Image image(2, 2, {"R", "G", "B"});
     for (int y = 0; y < 2; ++y)
@@ -168,7 +168,7 @@ TEST_F(EnvironmentFiles, OfCubesHaveSixLayouts) {
     paste(column, face, 0, face);
     paste(row, face, face, 0);
   }
-  // +Y above and -Y below the row -X +Z +X -Z; -Z of the high cross hangs under -Y, upside down.
+  // +Y above and -Y below the row -X +Z +X -Z; in the vertical cross, -Z is below -Y, upside down.
   for (Image* cross : {&wide, &high}) {
     paste(*cross, 1, 0, 1);
     paste(*cross, 4, 1, 1);
@@ -192,7 +192,7 @@ TEST_F(EnvironmentFiles, ThatAreNoneAreNamed) {
       odd.string() +
           ": is not an environment: it is 10 x 4 pixels; expected 2:1 (equirectangular), square (octahedral), a cube "
           "of 6:1, 1:6, or a cross of 4:3 or 3:4 with nothing beside its faces");
-  // A photograph has the shape of a cross, but something in its corners.
+  // A photograph in the shape of a cross differs in that its corners are not empty.
   for (const auto& [width, height] : std::vector<std::array<int, 2>>{{8, 6}, {6, 8}}) {
     Image photograph(width, height, {"R", "G", "B"});
     for (std::size_t i = 0; i < photograph.pixels.size(); ++i)

@@ -40,7 +40,7 @@ class ImageFormats : public testing::Test {
     EXPECT_TRUE(file) << OIIO::geterror();
     return file;
   }
-  // All channels by their names, as the file has them.
+  // All channels, by their names in the file.
   static void expect_pixels(OIIO::ImageInput& file, const Image& image) {
     const OIIO::ImageSpec& spec = file.spec();
     ASSERT_EQ(spec.width, image.width);
@@ -59,7 +59,7 @@ class ImageFormats : public testing::Test {
   test::TemporaryDir dir_;
 };
 
-// Some channels compress well, one not at all; lines end within a chunk.
+// Some channels compress well, one does not compress; scan lines end within a chunk.
 Image uneven_image(int width, int height) {
   Image image(width, height, {"samples", "R", "G", "B", "a layer whose name is longer than 31.X", "depth.Z"});
   std::mt19937 random(5);
@@ -118,7 +118,7 @@ TEST_F(ImageFormats, OpenExrIsTheSameForAnyNumberOfThreads) {
 TEST_F(ImageFormats, OpenExrSaysWhatItCannotHold) {
   EXPECT_EQ(error_text([] { encode_openexr(Image(0, 0, {"R"}), {}); }),
             "cannot write: OpenEXR has no images of 0 x 0 pixels with 1 channels");
-  Image wide;  // pixels are not looked at
+  Image wide;  // pixels are not read
   wide.width = 1 << 26;
   wide.height = 1;
   wide.channels = {"R"};
@@ -140,14 +140,14 @@ TEST_F(ImageFormats, OtherProgramsKnowColoursAndDepthOfOpenExr) {
   std::array<float, 8> rec709{};
   ASSERT_TRUE(spec.getattribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8), rec709.data()));
   EXPECT_EQ(rec709, (std::array<float, 8>{0.64f, 0.33f, 0.30f, 0.60f, 0.15f, 0.06f, 0.3127f, 0.3290f}));
-  // Here it is the layer that it was.
+  // Here the layer is unchanged.
   write_exr(dir_.path() / "b.exr", image);
   const Image again = read_image(dir_.path() / "b.exr");
   ASSERT_TRUE(again.find_channel("depth.Z"));
   EXPECT_EQ(again.at(1, 0, *again.find_channel("depth.Z")), 8);
 }
 
-// A gradient, which JPEG keeps but for a few steps.
+// A gradient, which JPEG keeps within a few steps.
 TEST_F(ImageFormats, JpegAndTiffShowWhatPngDoes) {
   Image image(64, 32, {"R", "G", "B"});
   for (int y = 0; y < image.height; ++y)
@@ -186,7 +186,7 @@ TEST_F(ImageFormats, JpegAndTiffShowWhatPngDoes) {
             std::string::npos);
 }
 
-// A configuration whose view halves the logarithm: display = linear^0.5, and one whose view keeps red alone.
+// A configuration with a view that halves the logarithm, display = linear^0.5, and one with a view that keeps only red.
 TEST_F(ImageFormats, OpenColorIoShowsWhatItsConfigurationSays) {
   dir_.write("own.ocio", R"(ocio_profile_version: 2
 roles: {default: raw, scene_linear: lin_rec709}
@@ -264,7 +264,7 @@ class RadiancePicture : public testing::Test {
 
 TEST_F(RadiancePicture, HasThePixelsThatOpenImageIOReads) {
   const std::string path = (dir_.path() / "a.hdr").string();
-  for (const int width : {4, 8, 129, 500}) {  // lines shorter than 8 are not written by component
+  for (const int width : {4, 8, 129, 500}) {  // lines shorter than 8 pixels are not stored by component
     OIIO::ImageSpec spec(width, 20, 3, OIIO::TypeFloat);
     std::vector<float> pixels(static_cast<std::size_t>(width) * 20 * 3, 0);
     std::mt19937 random(2);
@@ -287,7 +287,7 @@ TEST_F(RadiancePicture, HoldsMantissasTimesAPowerOfTwo) {
   EXPECT_EQ(image.pixels, expected);
 }
 
-// Two by two pixels: a is in the upper left corner of the picture, b in the upper right, c and d below.
+// Two by two pixels: a is at the upper left of the picture, b at the upper right, c and d below.
 TEST_F(RadiancePicture, LinesRunAsItsResolutionSays) {
   const std::string a("\x80\0\0\x81", 4), b("\x40\0\0\x81", 4), c("\x20\0\0\x81", 4), d("\x10\0\0\x81", 4);
   const std::vector<float> expected{1, 0, 0, 0.5f, 0, 0, 0.25f, 0, 0, 0.125f, 0, 0};
@@ -317,7 +317,7 @@ TEST_F(RadiancePicture, PixelsMayBeRepeated) {
   for (int x = 0; x < 260; ++x) EXPECT_EQ(long_run.at(x, 0, 0), x < 259 ? 1 : 0.5f) << x;
 }
 
-// Nine pixels of value 1, each component as one run.
+// Nine pixels of value 1, one run per component.
 std::string line_of_nine() { return std::string("\x02\x02\0\x09\x89\x80\x89\x80\x89\x80\x89\x81", 12); }
 
 TEST_F(RadiancePicture, DamagedOnesAreErrors) {
@@ -343,8 +343,8 @@ TEST_F(RadiancePicture, DamagedOnesAreErrors) {
   EXPECT_NE(problem(with_header("-Y 100000 +X 100000", "")).find("has 10000000000 pixels"), std::string::npos);
 }
 
-// In eight of ten runs of this test, or more, OpenImageIO 2.4 ended the program where headers were opened at the same
-// time: it adds the unknown names to one map.
+// In at least eight of ten runs of this test, OpenImageIO 2.4 crashed if headers were opened at the same time: it adds
+// unknown names to one shared map.
 TEST_F(ImageFormats, HeadersWithColourProfilesAreOpenedByManyThreads) {
   const std::string jpeg = test::grey_jpeg();
   constexpr std::size_t files = 4000;

@@ -75,7 +75,7 @@ std::vector<PointSet> point_sets() {
   return sets;
 }
 
-/// Points of the set, points near them, and points off it.
+/// Points of the set, points near them, and points away from it.
 std::vector<Point> queries_for(const PointSet& set) {
   HashRng rng(11);
   std::vector<Point> queries{{0, 0, 0}, {-1, 0.5f, 3}, {1e5f, -1e5f, 0}};
@@ -94,7 +94,7 @@ double exact_dist2(const Point& a, const Point& b) {
   return x * x + y * y + z * z;
 }
 
-/// Squared distances are rounded, differently for each way to compile them: points this near to the boundary may be
+/// Squared distances are rounded in a way that depends on the compilation: points this near to the boundary may be
 /// found or not.
 constexpr double rounding = 1e-6;
 
@@ -139,7 +139,8 @@ TEST(HashGrid, FindsWhatBruteForceFinds) {
     }
 }
 
-/// Everything here is exact in float: points on the boundary of a ball must be found, also where it is a cell's.
+/// Everything here is exact in single precision: points on the boundary of a ball must be found, even if it is also a
+/// cell's boundary.
 TEST(HashGrid, KeepsPointsOnTheBoundary) {
   const std::vector<Point> points = lattice(16, 1);
   for (const float radius : {1.0f, 2.0f, 3.0f}) {
@@ -258,7 +259,7 @@ TEST(LeftBalancedKdTree, EveryNodeSplitsItsSubtree) {
     for (Point& p : points) p = {rng.next(), 0, 0};  // one axis: the tree is a search tree
     const auto [tree, order] = LeftBalancedKdTree::build(points);
     for (std::uint32_t slot = 1; slot < count; ++slot) {
-      // An ancestor lies on the side that the path from it to here says.
+      // An ancestor must lie on the side that the path from it to this node implies.
       for (std::uint32_t below = slot; below > 0; below = (below - 1) / 2) {
         const float parent = tree.position((below - 1) / 2).x;
         if (below % 2 == 1) {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Balls and beams, found by position and by ray, against brute force in extended precision.
+// Queries of balls and beams by position and by ray, against brute force in extended precision.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -27,7 +27,7 @@ template <class Item>
 struct Set {
   std::string name;
   std::vector<Item> items;
-  float scale;  ///< as wide as what is looked at together
+  float scale;  ///< width of the part that queries cover
 };
 
 template <class Item, class Make>
@@ -70,7 +70,7 @@ std::vector<Set<Beam>> beam_sets() {
                                                   c + spread * (random_point(r) - Point(0.5f)), 0.1f * spread);
                                  }),
                   0.1f});
-  // Rays along them find nothing, and rays in nearly their direction must find the right ones.
+  // Rays exactly along the beams find nothing; rays in nearly their direction must find the right ones.
   sets.push_back({"parallel",
                   generate<Beam>(2000,
                                  [](HashRng& r, std::size_t) {
@@ -105,7 +105,7 @@ std::vector<Set<Beam>> beam_sets() {
                                    return Beam{{x, -1, r.next()}, {0, 1, 0}, 2, 0};
                                  }),
                   8});
-  // Thinner than bounds and pieces are rounded.
+  // Beams thinner than the rounding of bounds and pieces.
   sets.push_back({"thin", generate<Beam>(200, in_cube(1, {0, 0, 0}, 1e-5f)), 1});
   sets.push_back({"huge", generate<Beam>(2000, in_cube(1e9f, Point(-5e8f), 0.05f)), 1e9f});
   sets.push_back({"far away", generate<Beam>(2000, in_cube(100, Point(1e7f), 0.05f)), 100});
@@ -137,7 +137,7 @@ Point middle_of(const Beam& beam) { return beam.origin + 0.5f * beam.length * be
 Point start_of(const Ball& ball) { return ball.centre; }
 Point start_of(const Beam& beam) { return beam.origin + 0.001f * beam.length * beam.direction; }
 
-/// Points of items, points near them, and points off.
+/// Points on items, points near them, and points away from them.
 template <class Item>
 std::vector<Point> positions_for(const Set<Item>& set) {
   HashRng rng(11);
@@ -152,7 +152,7 @@ std::vector<Point> positions_for(const Set<Item>& set) {
   return positions;
 }
 
-/// Through and past items, whole and cut, along the axes and in the direction of items.
+/// Rays through items and past them, infinite and limited, along the axes and in the direction of items.
 template <class Item>
 std::vector<RaySegment> rays_for(const Set<Item>& set) {
   HashRng rng(13);
@@ -326,7 +326,7 @@ TEST(BeamBvh, FindsWhatBruteForceFinds) {
   }
 }
 
-/// All numbers here are exact: the boundary counts, and so do the ends.
+/// All numbers here are exact: boundaries are included, and so are ends.
 TEST(BallBvh, KeepsTheBoundary) {
   std::vector<Ball> balls;
   for (int i = 0; i < 512; ++i)
@@ -339,7 +339,7 @@ TEST(BallBvh, KeepsTheBoundary) {
     ++along;
     EXPECT_TRUE(t >= 6 && t <= 9 && dist2 <= 4);
   });
-  EXPECT_EQ(along, 4u * 13u);  // of four layers, the points within 2 in the plane
+  EXPECT_EQ(along, 4u * 13u);  // in four layers, the points within 2 in the plane
 }
 
 TEST(BeamBvh, KeepsTheBoundary) {
@@ -362,7 +362,7 @@ TEST(BeamBvh, KeepsTheBoundary) {
   EXPECT_EQ(beyond, 0u);  // ends are flat
 }
 
-/// The order of the items and the order in which they are found.
+/// The order of the items, and the order in which queries find them.
 template <class Index, class Item, class Query>
 std::vector<std::uint32_t> all_that_threads_could_change(const std::vector<Item>& items, const Query& query) {
   const auto [index, order] = Index::build(items);
@@ -398,7 +398,7 @@ TEST(RayIndex, DoesNotDependOnThreads) {
   }
 }
 
-/// More nodes and leaves than wait at a time.
+/// More nodes and leaves than the queues hold.
 TEST(RayIndex, FindsAllOfMany) {
   constexpr std::size_t count = 30000;
   HashRng rng(11);

@@ -30,7 +30,7 @@ struct Sphere {
   float radius;
 };
 
-// Of all sizes, some beyond the box.
+// Of all sizes, some larger than the box.
 std::vector<Sphere> random_spheres(HashRng& rng) {
   std::vector<Sphere> spheres(2000);
   for (Sphere& s : spheres) s = {1.4f * random_point(rng) - Point(0.2f), std::exp2(-1 - 12 * rng.next())};
@@ -57,7 +57,7 @@ TEST(SphereOctree, FindsAllSpheresAroundAPoint) {
       ASSERT_EQ(found.count(i), 1u) << q << ' ' << i;
     }
   }
-  // Boxes of twice to four times the diameter hold a point 15 to 122 times as often as the sphere.
+  // Boxes two to four times as wide as the diameter contain a point 15 to 122 times as often as the sphere does.
   EXPECT_LT(visited, 60 * contained);
 }
 
@@ -278,7 +278,7 @@ TEST(IrradianceGradients, OfRotationUnderHalfASky) {
   EXPECT_NEAR(dot(rotation, frame.n), 0, 1e-4f);
   EXPECT_NEAR(record.rotation.x[1], 0, 1e-4f);  // an even sky
   EXPECT_EQ(record.translation.x, Spectrum());  // that is infinitely far away
-  // And extrapolated, to the first order.
+  // Also extrapolated, to first order.
   const float tilt = 0.1f;
   const Normal inclined = std::cos(tilt) * frame.n + std::sin(tilt) * bright;
   EXPECT_NEAR(record.at(Point(0), inclined)[0], pi / 2 * (1 + std::sin(tilt)), 0.01f);
@@ -300,7 +300,7 @@ TEST(IrradianceGradients, OfTranslationUnderHalfACeiling) {
           Frame());
       const float slant2 = sqr(h) + sqr(edge);
       EXPECT_NEAR(record.irradiance[0], pi / 2 * (1 - edge / std::sqrt(slant2)), 0.01f);
-      // Cells in which the edge lies count with the nearer of two distances: a few per cent too much.
+      // Cells that contain the edge count with the smaller of two distances, which is a few per cent too much.
       EXPECT_NEAR(record.translation.x[0] / (pi / 2 * sqr(h) / (slant2 * std::sqrt(slant2))), 1, 0.06f) << edge;
       EXPECT_NEAR(record.translation.y[0], 0, 0.03f);
       EXPECT_NEAR(record.translation.z[0], 0, 1e-4f);
@@ -334,7 +334,7 @@ TEST(IrradianceGradients, AreFlattenedWhereDistancesAreTooShort) {
   EXPECT_NEAR(record.at({0.2f, 0, 0}, record.normal)[0], 0.5f, 1e-6f);
 }
 
-// On the left all photons leave three scatterings to eye paths, on the right two.
+// On the left, photons leave three scattering events to eye paths; on the right, two.
 TEST(IrradiancePhotons, AreForEyePathsThatMayUseAllTheirPhotons) {
   HashRng rng(8);
   std::vector<Photon> photons(1000);

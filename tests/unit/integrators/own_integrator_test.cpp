@@ -77,7 +77,7 @@ class Insatiable final : public Integrator {
   }
 };
 
-// Once in this program, whichever tests run.
+// Registered once per process, whichever tests run.
 const bool added = [] {
   add_integrator({"toy", "ambient occlusion", "a test", {{"reach", "10", "metres"}}, [](const Parameters& p) {
                     return std::unique_ptr<Integrator>(std::make_unique<AmbientOcclusion>(p));
@@ -88,7 +88,7 @@ const bool added = [] {
   return true;
 }();
 
-// A floor with a wall that stands on it, seen from above; half of the picture is sky.
+// A floor with a wall on it, seen from above; half of the picture is sky.
 const std::string corner = R"(
 LookAt 0 3 6  0 0.5 0  0 1 0
 Camera "perspective" "float fov" [60]

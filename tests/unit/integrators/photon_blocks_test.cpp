@@ -120,7 +120,7 @@ INSTANTIATE_TEST_SUITE_P(Methods, PhotonBlocks,
                                          "vcm:volume=point+photon-beam", "auto"),
                          [](const auto& of) { return test::identifier(of.param); });
 
-// The tree of light paths of a large scene is sorted block by block.
+// In a large scene, the tree of light paths is sorted block by block.
 TEST(LightPathBlocks, DivideAPassWithoutGaps) {
   for (const std::uint64_t paths : {0u, 1u, 999u, 1000u, 1001u, 5000u}) {
     const LightPathBlocks blocks(paths, 1000);

@@ -47,7 +47,7 @@ TEST(ReversePhotons, LeavesInBallsHoldAllPointsInThem) {
                     std::binary_search(numbers.begin(), numbers.end(), b));
     }
     if (count <= BucketKdTree::leaf_size) continue;
-    EXPECT_LE(met, count * balls.size() / 4);  // few that are too far
+    EXPECT_LE(met, count * balls.size() / 4);  // few beyond the radius
   }
 }
 
@@ -70,8 +70,8 @@ PhotonMap<BucketKdTree> map_of(const std::vector<Point>& positions) {
   return PhotonMap<BucketKdTree>::build(photons, ColorMode::rgb);
 }
 
-// Even on a square of 1 m²: a disc with k photons has π r² = k / n. 4096 leaves are squares; leaves twice as long as
-// wide would have radii 1.12 times as large.
+// Uniform density on a square of 1 m²: a disc with k photons has π r² = k / n. 4096 leaves are squares; leaves twice as
+// long as wide would have radii 1.12 times as large.
 TEST(ReversePhotons, RadiiHoldTheNumberOfPhotonsAskedFor) {
   constexpr std::size_t n = 100'000;
   HashRng rng(3);

@@ -54,7 +54,7 @@ Rgb mean_of(const std::string& scene, const std::string& integrator, std::uint64
 
 class SplitSumShading : public testing::Test {
  protected:
-  // Uneven, without anything small and bright: the zenith of the file is +z.
+  // Not uniform, but without small bright spots. The file's zenith is +z.
   SplitSumShading() {
     Image image(256, 128, {"R", "G", "B"});
     for (int y = 0; y < image.height; ++y)
@@ -155,8 +155,8 @@ TEST_F(SplitSumShading, EqualsPathTracingWhereNormalViewAndReflectionAreOne) {
   }
 }
 
-/// The points of a ball see only the environment, from all angles: relative RMS differences of splitsum and path in
-/// rings of the ball's picture, where the angle of normal and view is below 15, 45 to 60, and 65 to 80 degrees.
+/// The points of a ball see only the environment, from all angles. Relative RMS differences between splitsum and path,
+/// in rings of the ball's picture where the angle between normal and view is below 15, 45 to 60, and 65 to 80 degrees.
 std::array<double, 3> deviations(const std::string& sky, double alpha, const std::filesystem::path& folder) {
   constexpr int size = 32;
   const Scene scene = test::scene_from_text(
@@ -171,7 +171,7 @@ std::array<double, 3> deviations(const std::string& sky, double alpha, const std
     options.color = ColorMode::rgb;
     return *select_layer(test::render_image(scene, options), "color");
   };
-  // The product of differences whose noise is independent has the square of the difference as its mean.
+  // If two differences have independent noise, the mean of their product is the squared difference.
   const Image fast = rendered("splitsum", 16, 0), a = rendered("path", 64, 1), b = rendered("path", 64, 2);
   std::array<double, 3> squares{}, sums{}, counts{};
   for (int y = 0; y < size; ++y)

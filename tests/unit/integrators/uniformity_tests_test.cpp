@@ -20,7 +20,7 @@ constexpr std::uint32_t middle = 7;
 
 enum class Photons : std::uint8_t { none, even, in_one_half, dense_in_the_middle };
 
-// After `passes` passes, in each of which 60 photons or none meet the pixel in the middle.
+// The tests after `passes` passes. In each pass 60 photons or none hit the centre pixel.
 UniformityTests after(std::uint32_t passes, Photons photons, std::optional<std::uint32_t> obstructed = {}) {
   UniformityTests tests(window);
   std::mt19937 random(7);
@@ -57,7 +57,7 @@ TEST(UniformityTests, TrustFewPhotonsOnlyWhereAllDiscsAroundAreClear) {
     EXPECT_EQ(after(16, Photons::none, far).passed(middle), all_tests) << far;
 }
 
-// What was uneven at first may be even in the smaller disc.
+// A distribution that was uneven at first may be even in the smaller disc.
 TEST(UniformityTests, CountAgainAfterAFailure) {
   UniformityTests tests(window);
   for (std::uint32_t pass = 0; pass < 16; ++pass) {

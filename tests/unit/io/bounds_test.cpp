@@ -42,7 +42,7 @@ TEST(InQuotes, ShowsATokenThatDoesNothingToTerminals) {
   EXPECT_EQ(in_quotes("\x1b[2J\a\n"), "\"\\x1b[2J\\x07\\x0a\"");
   EXPECT_EQ(in_quotes("\x7f\xc2\x9b"), "\"\\x7f\\xc2\\x9b\"");                      // DEL, and CSI in one character
   EXPECT_EQ(in_quotes("\xff\xc3(\xed\xa0\x80"), "\"\\xff\\xc3(\\xed\\xa0\\x80\"");  // no UTF-8
-  EXPECT_EQ(in_quotes("\xe2\x80\xae"), "\"\\xe2\\x80\\xae\"");                      // turns the direction of writing
+  EXPECT_EQ(in_quotes("\xe2\x80\xae"), "\"\\xe2\\x80\\xae\"");                      // reverses the writing direction
   EXPECT_EQ(in_quotes("a\"b\\"), "\"a\\\"b\\\\\"");
   EXPECT_EQ(in_quotes(std::string(32, 'x')), '"' + std::string(32, 'x') + '"');
   EXPECT_EQ(in_quotes(std::string(33, 'x')), '"' + std::string(32, 'x') + "...\"");
@@ -67,7 +67,7 @@ TEST(Memory, MoreThanThereIsIsRefusedWithItsSize) {
               }).starts_with("a: the mesh takes 1.0 EiB of memory, but there are only "));
 }
 
-// A file that is a hole on disk.
+// A sparse file, which occupies no space on disk.
 TEST(Files, ThoseLargerThanMemoryAreRefused) {
   const test::TemporaryDir dir;
   const fs::path path = dir.write("large", "");
@@ -99,7 +99,7 @@ TEST(Gzip, SmallFilesOfMuchAreRefused) {
                        "a.pbrt.gz: decompressed data is larger than 1.0 MiB"));
 }
 
-// The largest memory of this process, bytes, since it was last forgotten.
+// The peak memory of this process in bytes since the last reset.
 double largest_memory() {
   std::ifstream status("/proc/self/status");
   for (std::string line; std::getline(status, line);)
@@ -147,7 +147,8 @@ TEST(Images, AnnouncedSizesAreCheckedBeforeMemoryIsTaken) {
       contains(problem("a.png", png, 1u << 30), "has 4294836225 pixels, more than the 1073741824 of --max-pixels"));
   EXPECT_TRUE(contains(problem("a.png", png, any), "announces 12 GiB of pixels, which its "))
       << problem("a.png", png, any);
-  // OpenImageIO would take a GIF's canvas when it opens it, and throws what is no Error where it has no such vector.
+  // OpenImageIO would allocate a GIF's canvas when it opens the file, and throws an exception other than Error if that
+  // fails.
   const std::string gif = test::gif_header(65535, 65535);
   EXPECT_TRUE(contains(problem("a.gif", gif, 1u << 30), "more than the 1073741824 of --max-pixels"));
   EXPECT_TRUE(contains(problem("a.gif", gif, any), "announces 16 GiB of pixels")) << problem("a.gif", gif, any);
@@ -173,7 +174,7 @@ TEST(Images, BrokenOnesAreErrorsWithTheirName) {
       "8BPS" + std::string(30, '\xff'), "DDS " + std::string(124, '\x7f'), "\xff\xd8\xff\xe0",
       "BM" + std::string(60, '\x11'), std::string("\x76\x2f\x31\x01\x02\0\0\0", 8), "FOR4" + std::string(60, '\x22'),
       "SDPX" + std::string(3000, '\x33'),
-      // A film: OpenImageIO would open it, and the files that it names.
+      // A video file: OpenImageIO would open it, and the files that it names.
       "#EXTM3U\n#EXT-X-TARGETDURATION:1\n#EXTINF:1,\nfile:///etc/passwd\n#EXT-X-ENDLIST\n"};
   for (const std::string& bytes : broken) {
     const fs::path path = dir.write("broken.gif", bytes);
@@ -182,10 +183,10 @@ TEST(Images, BrokenOnesAreErrorsWithTheirName) {
   }
 }
 
-// Kinds of images that are easily read wrongly: the first four values of each are known.
+// Kinds of images that are easily misread. The first four values of each are known.
 TEST(Images, UnusualOnesAreReadOrRefused) {
   const test::TemporaryDir dir;
-  // One bit a pixel: white, black, white, black.
+  // One bit per pixel: white, black, white, black.
   const fs::path bits = dir.write("bits.pbm", std::string("P4\n4 1\n\x50", 8));
   EXPECT_EQ(read_image(bits).pixels, (std::vector<float>{1, 0, 1, 0}));
   // 16 bits.
@@ -201,7 +202,7 @@ TEST(Images, UnusualOnesAreReadOrRefused) {
   EXPECT_TRUE(contains(error_text([&] { read_image(name); }), "is a deep image"));
 }
 
-// A folder of a scene beside files that it may not read.
+// A scene's folder, beside files that the scene may not read.
 class Sandbox : public testing::Test {
  protected:
   Sandbox() {
@@ -223,7 +224,7 @@ class Sandbox : public testing::Test {
     const fs::path path = dir_.write("scene/" + name, text);
     return error_text([&] { read_scene(path, {.sandbox = true}); });
   }
-  // The whole scene of a directive after WorldBegin.
+  // A complete scene with a directive after WorldBegin.
   std::string read(const std::string& directive) const {
     return read("a.pbrt", "Camera \"perspective\"\nWorldBegin\n" + directive + "\n");
   }
@@ -262,13 +263,13 @@ TEST_F(Sandbox, HoldsForEveryKindOfFileThatASceneNames) {
   // The scene file itself.
   fs::create_symlink(root() / "secret.txt", root() / "scene" / "b.pbrt");
   EXPECT_TRUE(contains(error_text([&] { read_scene(root() / "scene" / "b.pbrt", {.sandbox = true}); }), expected));
-  // Materials of OBJ files are left out with a warning.
+  // Missing MTL files of OBJ files only give a warning.
   const fs::path obj = dir_.write("scene/a.obj", "mtllib ../secret.txt\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   const SceneDescription scene = read_scene(obj, {.sandbox = true});
   ASSERT_FALSE(scene.warnings.empty());
   EXPECT_TRUE(contains(scene.warnings[0].message, expected)) << scene.warnings[0].message;
   for (const description::Warning& warning : scene.warnings) EXPECT_FALSE(contains(warning.message, "secret-word"));
-  // What is not read has no hash that would tell whether it is some known file.
+  // Files that are not read have no hash, which would reveal whether they are some known file.
   for (const auto& [name, file] : scene.files) EXPECT_FALSE(file.hash.has_value()) << name;
 }
 
@@ -287,7 +288,7 @@ TEST_F(Sandbox, MessagesShowNothingOfWhatIsInFiles) {
   refused(read("Shape \"plymesh\" \"string filename\" \"mistyped.ply\""), "mistyped.ply:2:1: unknown encoding");
   refused(read("a.obj", "mtllib mistyped.mtl\n"), "mistyped.mtl:2:4: expected a number");
   refused(error_text([&] { read_scene(root() / "scene/mistyped.gltf", {.sandbox = true}); }), "mistyped.gltf:1:");
-  // Outside of a sandbox the same error shows a token.
+  // Without the sandbox, the same error shows the token.
   EXPECT_TRUE(contains(error_text([&] { read_scene(root() / "scene/mistyped.gltf"); }), "last read: \""));
 }
 

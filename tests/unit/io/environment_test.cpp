@@ -24,7 +24,7 @@
 namespace lanthorn::environment_test {
 namespace {
 
-// A colour for each direction of the environment, which is smooth.
+// A smooth function that gives each direction of the environment its own colour.
 Rgb colour_of(const Vec3& d) { return {1.5f + d.x, 1.5f + d.y, 1.5f + d.z}; }
 
 template <class Direction>
@@ -38,7 +38,7 @@ Image painted(int width, int height, Direction&& direction) {
     }
   return image;
 }
-// As lanthorn/ibl.h has them.
+// In the layout of lanthorn/ibl.h.
 Image equirectangular() {
   return painted(128, 64, [](float u, float v) {
     const float azimuth = 2 * pi * u - pi, polar = pi * v;
@@ -79,7 +79,7 @@ class Environment : public testing::Test {
   SceneDescription read(const std::string& name, const EnvironmentChoice& choice) const {
     return read_scene(dir_.path() / name, {.environment = choice});
   }
-  // Light from a direction of the world, from the only environment.
+  // Radiance from a direction of the world, from the only environment.
   static Rgb light_from(const SharedScene& scene, const Vec3& towards) {
     Rgb sum;
     int environments = 0;
@@ -92,7 +92,7 @@ class Environment : public testing::Test {
     EXPECT_EQ(environments, 1);
     return sum;
   }
-  // The world's `shown` shows what the environment has in `painted`.
+  // In the world's direction `shown` the environment's direction `painted` is visible.
   static void expect(const SharedScene& scene, const Vec3& shown, const Vec3& painted, float scale = 1) {
     const Rgb light = light_from(scene, shown), expected = scale * colour_of(normalize(painted));
     constexpr float tolerance = 0.03f;
@@ -119,13 +119,13 @@ TEST_F(Environment, StandsAsTheMapsOfIblDo) {
 TEST_F(Environment, IsTurnedAndScaled) {
   const SharedScene scene =
       build_scene(read("model.gltf", {.source = file(equirectangular()), .rotation = 90, .scale = 3}));
-  // Counter-clockwise from above: +x comes to -z, +z to +x.
+  // Counter-clockwise seen from above: +x turns to -z, +z to +x.
   for (const Vec3& d : directions) expect(scene, {d.z, d.y, -d.x}, d, 3);
   const SharedScene upright = build_scene(read("model.gltf", {.source = file(equirectangular()), .up = UpAxis::z}));
   for (const Vec3& d : directions) expect(upright, {d.x, -d.z, d.y}, d);
 }
 
-// The camera looks along +y in a left-handed world: its right is +x. It sees the picture as it is.
+// The camera looks along +y in a left-handed world, so its right is +x. It sees the picture unmirrored.
 TEST_F(Environment, OfPbrtFilesStandsAsTheCameraDoes) {
   SceneDescription zup = read("zup.pbrt", {.source = file(equirectangular())});
   ASSERT_FALSE(zup.warnings.empty());
@@ -135,13 +135,13 @@ TEST_F(Environment, OfPbrtFilesStandsAsTheCameraDoes) {
   const SharedScene scene = build_scene(std::move(zup));
   expect(scene, {0, 0, 1}, {0, 1, 0});
   expect(scene, {1, 0, 0}, {1, 0, 0});
-  // To the right of +x, as the camera has right and left, lies what the environment has in +z.
+  // On the right of +x, in the camera's sense, is the environment's +z.
   const Vec3 right = to_world.vector({1, 0, 0}), up = to_world.vector({0, 1, 0}), forward = to_world.vector({0, 0, 1});
   const float handedness = dot(cross(forward, up), right);  // +1: right-handed
   expect(scene, handedness * cross(Vec3(1, 0, 0), Vec3(0, 0, 1)), {0, 0, 1});
   const SharedScene y_up = build_scene(read("zup.pbrt", {.source = file(equirectangular()), .up = UpAxis::y}));
   expect(y_up, {0, 1, 0}, {0, 1, 0});
-  // A right-handed world, as most converted scenes have it, is that of glTF.
+  // A right-handed world, as in most converted scenes, is like that of glTF.
   const SharedScene mirrored = build_scene(read("mirrored.pbrt", {.source = file(equirectangular()), .rotation = 90}));
   for (const Vec3& d : directions) expect(mirrored, {d.z, d.y, -d.x}, d);
 }
@@ -195,7 +195,7 @@ TEST_F(Environment, TheScenesOwnComesBack) {
   EXPECT_EQ(scene.environment, EnvironmentChoice());
 }
 
-// The user names the file, not the scene.
+// The file is named by the user, not by the scene.
 TEST_F(Environment, MayLieOutsideOfASandbox) {
   const test::TemporaryDir elsewhere;
   write_exr(elsewhere.path() / "sky.exr", equirectangular());
@@ -221,8 +221,8 @@ TEST_F(Environment, BadOnesSayWhatWasExpected) {
   EXPECT_NE(message({.source = "studio", .scale = -1}).find("a scale of 0 or more"), std::string::npos);
 }
 
-// Radiance of a white floor in the light of an equirectangular picture with y up, and the part of it from the sun's
-// half degree around the brightest texel.
+// Radiance of a white floor under an equirectangular picture with y up, and the part of it that comes from within half
+// a degree of the brightest texel, the sun.
 struct Floor {
   double radiance = 0, sun = 0;
   Vec3 brightest{0};
@@ -258,7 +258,7 @@ TEST(OwnEnvironments, LightAWhiteFloorWhite) {
   EXPECT_NEAR(floor_of(*own_environment("overcast")).radiance, 1, 0.01);
   const Floor sunny = floor_of(*own_environment("sunny"));
   EXPECT_NEAR(sunny.radiance, 1, 0.01);
-  // On a clear day with the sun at 40 degrees about four fifths of the light are its own.
+  // On a clear day with the sun at 40 degrees, about four fifths of the light come from the sun.
   EXPECT_GT(sunny.sun, 0.65);
   EXPECT_LT(sunny.sun, 0.9);
   EXPECT_NEAR(std::asin(sunny.brightest.y), to_radians(40.0f), 0.01f);

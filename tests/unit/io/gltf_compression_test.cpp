@@ -94,7 +94,7 @@ TEST(GltfCompression, Meshopt) {
   const TriangleMesh& decoded = mesh_of(decoded_scene.shapes.at(0));
   EXPECT_EQ(decoded.positions, sphere.positions);
   ASSERT_EQ(decoded.triangles.size() * 3, sphere.indices.size());
-  // The codec may turn triangles round, as it does not keep their first corner.
+  // The codec may rotate the corners of triangles, since it does not store which is the first.
   for (std::size_t i = 0; i < decoded.triangles.size(); ++i) {
     const auto& t = decoded.triangles[i];
     const std::array<std::uint32_t, 3> s = {sphere.indices[3 * i], sphere.indices[3 * i + 1],

@@ -41,7 +41,7 @@ TEST(GltfErrors, Container) {
   EXPECT_EQ(gltf_error(other), "t.gltf: the file has no JSON chunk");
 }
 
-// What is wrong with the file if the value at `pointer` is replaced.
+// Returns the error if the value at `pointer` is replaced.
 std::string broken(const char* pointer, const json& value, GltfWriter file = one_mesh()) {
   json root = json::parse(file.text());
   root[json::json_pointer(pointer)] = value;

@@ -21,7 +21,7 @@ using test::one_mesh;
 using test::read_gltf;
 using test::warnings;
 
-// The materials of a file with this one.
+// The materials of a file that contains this one.
 SceneDescription with_material(json material, GltfWriter file = {}) {
   file.mesh(corners, {0, 1, 2}, file.add("materials", std::move(material)));
   file.node({{"mesh", 0}});
@@ -219,10 +219,10 @@ TEST(GltfMaterial, Emission) {
   const SpectrumParameter& radiance = textured.area_lights.at(0).radiance;
   EXPECT_EQ(std::get<ImageTexture>(textured.spectrum_textures.at(radiance.texture.value()).node).tint,
             (Rgb{1, 0.5f, 0.25f}));
-  EXPECT_EQ(textured.lights.size(), 1u);  // it may be black all but a few spots
+  EXPECT_EQ(textured.lights.size(), 1u);  // it may be black except for a few spots
 }
 
-// The closure at the middle of the only triangle, seen from the front.
+// The closure at the centre of the only triangle, seen from the front.
 template <class Closure>
 Closure closure_of(const SceneDescription& description) {
   const Scene scene(description);
@@ -249,7 +249,7 @@ TEST(GltfMaterial, VertexColoursMultiplyTheBaseColour) {
     EXPECT_NEAR(colour[1], 0.25f * 0.4f, 1e-5f) << components;
     EXPECT_NEAR(colour[2], 0.25f * 1, 1e-5f) << components;
   }
-  // Without a material too, and the same material without colours is white.
+  // The same without a material; and the material without vertex colours is white.
   GltfWriter file = coloured(dull, 3);
   file.root["meshes"][0]["primitives"][0].erase("material");
   const SceneDescription metal = read_gltf(file);
@@ -310,7 +310,7 @@ TEST(GltfMaterial, TransmittedLightHasTheBaseColour) {
   const auto sheet = closure_of<ThinDielectric>(with_material(glass(0.5, 0)));
   EXPECT_NEAR(sheet.tint[0], 0.25f, 1e-6f);
   EXPECT_FLOAT_EQ(sheet.alpha_y, 0.25f);
-  // White is a number, which is exact in spectral rendering, too.
+  // White is stored as a number, which is exact in spectral rendering as well.
   const auto clear = only_material<ThinDielectricMaterial>(
       {{"pbrMetallicRoughness", {{"metallicFactor", 0}}},
        {"extensions", {{"KHR_materials_transmission", {{"transmissionFactor", 1}}}}}});
@@ -348,7 +348,7 @@ TEST(GltfMaterial, IridescenceIsAFilm) {
     material["extensions"]["KHR_materials_iridescence"] = film;
     return with_material(material);
   };
-  // A metal is a dielectric of its reflectance over black.
+  // A metal is described as a dielectric of its reflectance over black.
   const auto metal = closure_of<Plastic>(with({{"pbrMetallicRoughness", {{"baseColorFactor", {0.9, 0.5, 0.1, 1}}}}}));
   EXPECT_TRUE(metal.reflectance.is_black());
   EXPECT_NEAR(metal.f0[1], 0.5f, 1e-5f);
@@ -422,7 +422,7 @@ TEST(GltfMaterial, AnisotropyStretchesAndTurns) {
   EXPECT_NEAR(turned_to().y, 1, 1e-5f);  // u runs along x; a quarter turn counter-clockwise leads to y
   file.root["meshes"][0]["primitives"][0]["attributes"]["TANGENT"] =
       file.accessor<float>({0, 1, 0, -1, 0, 1, 0, -1, 0, 1, 0, -1}, 4);
-  EXPECT_NEAR(turned_to().x, 1, 1e-5f);  // with w = -1 the other way round, from y
+  EXPECT_NEAR(turned_to().x, 1, 1e-5f);  // with w = -1, in the opposite sense, from y
 }
 
 TEST(GltfMaterial, BothAxesOfATextureWrapAsTheyAre) {

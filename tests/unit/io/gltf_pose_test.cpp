@@ -65,7 +65,7 @@ TEST(GltfAnimation, StepHoldsAndSplinesFollowTheirTangents) {
   const GltfWriter step = animated("translation", "STEP", {0, 1}, {1, 0, 0, 2, 0, 0}, 3);
   EXPECT_EQ(moved(step, 0.999), Point(1, 0, 0));
   EXPECT_EQ(moved(step, 1), Point(2, 0, 0));
-  // From 0 to 8 in 2 seconds, leaving with 3 and arriving with -1 per second: Hermite's polynomial.
+  // From 0 to 8 in 2 seconds, with slopes of 3 at the start and -1 per second at the end: Hermite's polynomial.
   const GltfWriter spline =
       animated("translation", "CUBICSPLINE", {1, 3}, {9, 9, 9, 0, 0, 0, 3, 0, 0, -1, 0, 0, 8, 0, 0, 9, 9, 9}, 3);
   const double t = 0.25, h00 = 2 * t * t * t - 3 * t * t + 1, h10 = t * t * t - 2 * t * t + t, h11 = t * t * t - t * t;
@@ -76,7 +76,7 @@ TEST(GltfAnimation, StepHoldsAndSplinesFollowTheirTangents) {
 
 TEST(GltfAnimation, RotationsTakeTheShortArc) {
   const auto h = static_cast<float>(std::sqrt(0.5));
-  // Half a turn less than the other way round: the second key has the opposite sign.
+  // The rotation takes the shorter way: the second key has the opposite sign.
   const GltfWriter file = animated("rotation", "LINEAR", {0, 1}, {0, 0, 0, 1, 0, 0, -h, -h}, 4);
   const float sixteenth = pi / 8;
   expect_near(moved(file, 0.25, {1, 0, 0}), Point(std::cos(sixteenth), std::sin(sixteenth), 5));
@@ -100,7 +100,7 @@ TEST(GltfAnimation, ErrorsNameThePlace) {
   EXPECT_TRUE(warns(read_gltf(animated("pointer", "LINEAR", {0}, {0}, 1), 0), "animations of \"pointer\""));
 }
 
-// Two targets: one raises all corners, the other moves the second one to the right.
+// Two targets: one raises all corners, the other moves the second corner to the right.
 GltfWriter morphing() {
   GltfWriter file;
   file.mesh(corners, {0, 1, 2});
@@ -147,8 +147,8 @@ TEST(GltfMorph, TargetsAreAsLongAsTheMesh) {
             "t.gltf#/meshes/0/primitives/0/targets/1/POSITION: has 1 elements, but there are 3 positions");
 }
 
-// A triangle on two joints: its corners hang on the first, on the second, and half on each. The second joint is bound
-// at (0, 1, 0) and stands at (3, 1, 0), turned by 90 degrees about z.
+// A triangle with two joints: the first corner is bound to the first joint, the second to the second, and the third
+// half to each. The second joint is bound at (0, 1, 0) and is at (3, 1, 0), rotated by 90 degrees about z.
 GltfWriter skinned() {
   GltfWriter file;
   file.mesh(corners, {0, 1, 2});
@@ -175,7 +175,7 @@ TEST(GltfSkin, VerticesFollowTheirJoints) {
   const TriangleMesh& mesh = mesh_of(scene.shapes.at(0));
   EXPECT_TRUE(scene.shapes[0].object_to_world.start.is_identity());
   expect_near(mesh.positions[0], {0, 0, 0});
-  expect_near(mesh.positions[1], {4, 2, 0});     // (1, -1, 0) from the joint, turned: (1, 1, 0)
+  expect_near(mesh.positions[1], {4, 2, 0});     // (1, -1, 0) from the joint, rotated: (1, 1, 0)
   expect_near(mesh.positions[2], {1.5f, 1, 0});  // between (0, 1, 0) and (3, 1, 0)
   expect_near(normalize(mesh.normals[1]), {0, 1, 0});
   expect_near(normalize(mesh.normals[2]), {std::sqrt(0.5f), std::sqrt(0.5f), 0});
@@ -217,7 +217,7 @@ TEST(GltfStrokes, PointsAndLinesAreThinSurfaces) {
     EXPECT_TRUE(warns(scene, "points and lines have no size"));
     Bounds bounds;
     for (const Point& p : mesh.positions) bounds.extend(scene.shapes[0].object_to_world.start.point(p));
-    // A radius of a thousandth of the diagonal, which is 1000.
+    // The radius is a thousandth of the diagonal, which is 1000.
     EXPECT_NEAR(bounds.max.z, 1, mode == 0 ? 1e-4f : 0.14f) << mode;
     EXPECT_NEAR(bounds.max.y, 801, 1.1f);
     ASSERT_EQ(mesh.colors.size(), mesh.positions.size());

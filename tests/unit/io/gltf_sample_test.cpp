@@ -25,7 +25,7 @@ using test::GltfWriter;
 using test::one_mesh;
 using test::read_gltf;
 
-// A floor, a lamp and four balls, with all that the tests are about.
+// A floor, a lamp and four balls, with every feature that these tests check.
 GltfWriter sample() {
   GltfWriter file;
   const test::TemporaryDir dir;
@@ -101,7 +101,7 @@ TEST(GltfSample, KhronosValidatorFindsNoErrorInWhatTheTestsWrite) {
       {"node", LANTHORN_SOURCE_DIR "/tests/support/validate_gltf.js", "sample.glb", "sample.gltf", "least.gltf"},
       dir.path());
   const test::Ending ending = validator.wait();
-  // 126: a folder of PATH is not ours to look into.
+  // 126: a folder of PATH is not readable.
   if (ending.exit_code == 77 || ending.exit_code == 126 || ending.exit_code == 127)
     GTEST_SKIP() << "NOT VALIDATED: needs node and its package gltf-validator (npm install -g gltf-validator)";
   EXPECT_EQ(ending.exit_code, 0) << ending.out << ending.err;
@@ -117,7 +117,7 @@ std::string list(const std::vector<float>& numbers) {
   return text + "]";
 }
 
-// The same mesh of glass, lights and camera, once in each format.
+// The same glass mesh, lights and camera, once in each format.
 TEST(GltfRender, GlassSphereIsTheSameAsInPbrtForm) {
   const test::SphereMesh sphere = test::sphere_mesh(1, 24, 32);
   std::string indices = "[";
@@ -145,7 +145,7 @@ TEST(GltfRender, GlassSphereIsTheSameAsInPbrtForm) {
   file.root["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] = file.accessor(normals, 3);
   file.node({{"mesh", 0}});
   SceneDescription gltf = read_gltf(file);
-  // All but the glass comes from the other file.
+  // Everything except the glass comes from the other file.
   SceneDescription joined = pbrt;
   ASSERT_EQ(joined.shapes.size(), 2u);
   joined.shapes[1] = gltf.shapes.at(0);

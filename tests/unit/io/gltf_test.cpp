@@ -100,7 +100,7 @@ TEST(GltfMesh, AttributesAndModes) {
   const TriangleMesh& mesh = mesh_of(scene.shapes.at(0));
   EXPECT_EQ(mesh.normals, (std::vector<Normal>{{0, 0, 1}, {0, 1, 0}, {1, 0, 0}}));
   EXPECT_EQ(mesh.tangents, (std::vector<Vec3>{{1, 0, 0}, {0, 0, 1}, {0, 1, 0}}));
-  EXPECT_EQ(mesh.uvs, (std::vector<Vec2>{{0, 0}, {1, 1}, {0.2f, 0.6f}}));  // turned round: t runs upwards
+  EXPECT_EQ(mesh.uvs, (std::vector<Vec2>{{0, 0}, {1, 1}, {0.2f, 0.6f}}));  // flipped: t runs upwards
 
   using Triangles = std::vector<std::array<std::uint32_t, 3>>;
   const auto triangles = [](int mode, bool indexed) {
@@ -152,7 +152,7 @@ TEST(GltfContainer, NamesOfFilesMayBeEscapedThemselves) {
   dir.write("a%20b.bin", file.buffer());
   const auto scene = dir.write("a.gltf", file.text("a%20b.bin"));
   EXPECT_EQ(mesh_of(read_scene(scene).shapes.at(0)).positions, corners);
-  dir.write("a b.bin", "too short");  // the specification's name comes first
+  dir.write("a b.bin", "too short");  // the name by the specification has priority
   EXPECT_THROW(read_scene(scene), Error);
 }
 
@@ -167,7 +167,7 @@ TEST(GltfNodes, TransformsAndInstances) {
   file.node({{"mesh", 1}, {"matrix", {0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1, 0, 5, 6, 7, 1}}});
   const SceneDescription scene = read_gltf(file);
   ASSERT_EQ(scene.shapes.size(), 1u);
-  // Scaled, turned by 90 degrees about z, moved.
+  // Scaled, rotated by 90 degrees about z, then translated.
   const Point moved = scene.shapes[0].object_to_world.start.point({1, 0, 0});
   EXPECT_NEAR(moved.x, 1, 1e-6f);
   EXPECT_NEAR(moved.y, 4, 1e-6f);
@@ -207,7 +207,7 @@ TEST(GltfNodes, EmissiveMeshesAreLampsInEveryNode) {
   EXPECT_EQ(Scene(scene).lights().size(), 2u);
 }
 
-// Candela, lux and nits are one scale: a lamp of 3 cd at 1 m lights as much as one nit over 3 sr.
+// Candela, lux and nits are on one scale: a lamp of 3 cd at 1 m illuminates as much as one nit over 3 sr.
 TEST(GltfLights, UnitsAndDirections) {
   GltfWriter file = one_mesh();
   file.root["extensions"]["KHR_lights_punctual"]["lights"] = {
@@ -255,12 +255,12 @@ TEST(GltfCamera, PerspectiveAndOrthographic) {
       camera_scene({{"type", "orthographic"}, {"orthographic", {{"xmag", 4}, {"ymag", 2}, {"zfar", 9}, {"znear", 1}}}});
   EXPECT_EQ(flat.view.film.height, 640);
   const View view = make_view(flat.view);
-  // The right edge of the film lies 4 to the right, the upper one 2 up.
+  // The right edge of the film is 4 to the right, the upper edge 2 up.
   EXPECT_NEAR(view.camera.sample_ray({1280, 0}, {0.5f, 0.5f}, 0).ray.origin.x, 4, 1e-5f);
   EXPECT_NEAR(view.camera.sample_ray({1280, 0}, {0.5f, 0.5f}, 0).ray.origin.y, 2, 1e-5f);
 }
 
-// A camera that sees nothing would show a black picture, whatever the exporter intended.
+// A camera that sees nothing would give a black picture, whatever the exporter intended.
 TEST(GltfCamera, OneThatSeesNothingIsReplaced) {
   const auto is_replaced = [](const nlohmann::json& camera, const Vec3& at) {
     GltfWriter file = one_mesh();  // in the plane z = 0, from 0 to 1 in x and y
@@ -276,7 +276,7 @@ TEST(GltfCamera, OneThatSeesNothingIsReplaced) {
   EXPECT_FALSE(replaced(5, 4.9f));
   EXPECT_TRUE(replaced(5, 5.1f)) << "the mesh is nearer than viewers show it";
   EXPECT_TRUE(replaced(-1, 0.1f)) << "the mesh is behind the camera";
-  // At a distance of 5 it sees 5.46 to the left and right, and 2.73 up and down.
+  // At a distance of 5, the camera sees 5.46 to the left and right, and 2.73 up and down.
   const nlohmann::json perspective = {{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"aspectRatio", 2}}}};
   const nlohmann::json orthographic = {{"type", "orthographic"},
                                        {"orthographic", {{"xmag", 5.46}, {"ymag", 2.73}, {"zfar", 9}, {"znear", 0}}}};
@@ -288,7 +288,7 @@ TEST(GltfCamera, OneThatSeesNothingIsReplaced) {
       EXPECT_EQ(is_replaced(camera, {x, y, 5}), outside) << camera << ' ' << x << ' ' << y;
 }
 
-// Meshes have materials of their own, which are shown as long as nobody chooses a variant.
+// Meshes have default materials, which are used if no variant is selected.
 TEST(Gltf, FilesThatRequireVariantsAreRead) {
   const test::SphereMesh sphere = test::sphere_mesh(1, 8, 8);
   GltfWriter file;

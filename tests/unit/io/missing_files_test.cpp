@@ -39,7 +39,7 @@ std::string all_messages(const SceneDescription& scene) {
 
 bool contains(const std::string& text, const std::string& part) { return text.find(part) != text.npos; }
 
-// There is a warning for each of the missing files.
+// Each missing file gives a warning.
 void expect_named(const SceneDescription& scene, const std::vector<std::string>& files) {
   for (const std::string& name : files)
     EXPECT_TRUE(contains(all_messages(scene), "the file \"" + name + "\" is missing")) << name;
@@ -77,7 +77,7 @@ TEST_F(MissingFiles, LensesMediaAndMeasuredMaterialsHaveStandIns) {
   EXPECT_NO_THROW(build_scene(scene));
 }
 
-// A lens of 50 mm cannot focus on less than four times its focal length.
+// A lens of 50 mm cannot focus nearer than four times its focal length.
 TEST_F(MissingFiles, TheLensThatStandsInFocusesOnWhatIsClose) {
   dir_.write("a.pbrt", "Camera \"realistic\" \"string lensfile\" \"no.dat\" \"float focusdistance\" .1\nWorldBegin\n");
   const SceneDescription scene = read_without("a.pbrt");
@@ -85,7 +85,7 @@ TEST_F(MissingFiles, TheLensThatStandsInFocusesOnWhatIsClose) {
   EXPECT_NEAR(lens.focal_length(), 0.0125, 0.0002);
 }
 
-// Long names differ at their ends.
+// Long names that differ at their ends.
 TEST_F(MissingFiles, OfLongNamesTheEndIsShown) {
   dir_.write("a.pbrt",
              "WorldBegin\nShape \"plymesh\" \"string filename\" \"a/folder/of/a/long/name/with/meshes/one.ply\"\n"
@@ -118,7 +118,7 @@ TEST_F(MissingFiles, ComeBeforeErrorsThatTheyMayCause) {
             place("a.pbrt") + ":2:1: " + place("materials.pbrt") + ": no such file; --missing skip renders without it");
 }
 
-// Clones of repositories have them if Git LFS is not installed.
+// Clones of a repository contain such files if Git LFS is not installed.
 TEST_F(MissingFiles, PointersOfGitLfsAreMissingFiles) {
   const std::string pointer =
       "version https://git-lfs.github.com/spec/v1\n"
@@ -164,7 +164,7 @@ TEST_F(MissingFiles, OfGltfScenes) {
       << error_of("a.gltf");
 }
 
-// What stands in for a texture depends on what it is for.
+// The value that replaces a texture depends on the texture's role.
 TEST_F(MissingFiles, TexturesOfGltfHaveTheNeutralValueOfTheirRole) {
   const std::string models = LANTHORN_SOURCE_DIR "/tests/scenes/models/";
   ReadOptions skip;
@@ -264,12 +264,12 @@ TEST_F(MissingFiles, OfObjScenes) {
   dir_.write("a.mtl", "newmtl m\nmap_Kd no.png\n");
   EXPECT_EQ(error_of("a.obj"),
             place("a.mtl") + ":2:8: " + place("no.png") + ": no such file; --missing skip renders without it");
-  // A library has materials for several models.
+  // An MTL file may serve several models.
   dir_.write("a.mtl", "newmtl m\nnewmtl other\nmap_Kd no.png\nmap_d holes.png\n");
   EXPECT_TRUE(read_scene(dir_.path() / "a.obj").files.count("no.png") == 0);
 }
 
-// Files from systems where the case of names does not matter, and with absolute names of other machines.
+// Files from systems that ignore case, and with absolute names of other machines.
 TEST_F(MissingFiles, AreLookedForByCaseAndByTheirLastPart) {
   std::filesystem::create_directories(dir_.path() / "Textures");
   dir_.write("Textures/wood.png", "");
@@ -300,7 +300,7 @@ TEST_F(MissingFiles, AreLookedForByCaseAndByTheirLastPart) {
   dir_.write("b.pbrt",
              "WorldBegin\nTexture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"E:\\\\x\\\\bark.png\"\n");
   EXPECT_TRUE(contains(all_messages(read_without("b.pbrt")), "Bark.png\" is read"));
-  // As downloads of Sketchfab have them.
+  // The layout of downloads from Sketchfab.
   dir_.write("source/a.pbrt", "WorldBegin\nTexture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"wood.png\"\n");
   EXPECT_TRUE(contains(all_messages(read_without("source/a.pbrt")), "wood.png\" is read"));
 }

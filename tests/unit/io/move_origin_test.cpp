@@ -26,7 +26,7 @@ void replace(std::string& text, const std::string& old, const std::string& by) {
   text.replace(at, old.size(), by);
 }
 
-// The scene's text with all but the camera's own transformation moved, before and after WorldBegin.
+// The scene's text with everything but the camera's own transformation translated, before and after WorldBegin.
 std::string moved(std::string text, const DVec3& way) {
   replace(text, "\nCamera ", fmt::format("\nTranslate {} {} {}\nCamera ", -way.x, -way.y, -way.z));
   replace(text, "\nWorldBegin", fmt::format("\nWorldBegin\nTranslate {} {} {}", way.x, way.y, way.z));
@@ -66,7 +66,7 @@ TEST_P(MovedOrigin, ShowsTheSamePicture) {
 INSTANTIATE_TEST_SUITE_P(Scenes, MovedOrigin,
                          testing::Values(Case{"textures", .04f}, Case{"lights", .04f}, Case{"media", .04f},
                                          Case{"shapes", .04f}, Case{"subdivision", .04f},
-                                         // Coats and hairs draw numbers by the digits of directions.
+                                         // Coats and hairs draw random numbers that depend on the digits of directions.
                                          Case{"materials", .3f}, Case{"curves", .6f}),
                          [](const auto& moved_scene) { return std::string(moved_scene.param.scene); });
 
@@ -127,7 +127,7 @@ TEST(MoveOrigin, WarnsWhereStepsOfCoordinatesShow) {
             std::string::npos)
       << found;
   EXPECT_EQ(warning_of("LookAt 50000 0 1  50000 0 0  0 1 0\n", ball), "");
-  // What the file itself has rounded no origin mends.
+  // A shift of the origin cannot undo rounding in the file itself.
   EXPECT_NE(warning_of("LookAt 50000 0 1  50000 0 0  0 1 0\n",
                        "Shape \"trianglemesh\" \"point3 P\" [50000 0 0 50000.02 0 0 50000 .02 0]\n"),
             "");

@@ -34,7 +34,7 @@ std::string error_of(const std::string& text, const std::string& mtl = "") {
   return test::error_text([&] { read(text, {{"dir/m.mtl", mtl}}); });
 }
 
-// Without those that every file without camera and light raises.
+// Warnings, without those that every file without camera and light gives.
 std::vector<std::string> warnings(const SceneDescription& scene) {
   std::vector<std::string> result;
   for (const Warning& w : scene.warnings)
@@ -113,7 +113,7 @@ TEST(Obj, ErrorsHaveLineAndColumn) {
   EXPECT_EQ(error_of("mtllib m.mtl\n", "newmtl a\nmap_Kd -clamp on\n"), "dir/m.mtl:2:17: a file name is missing");
 }
 
-// Of Windows' editors and of old Macintosh programs.
+// Line endings of Windows and of old Macintosh programs.
 TEST(Obj, ByteOrderMarksAndCarriageReturns) {
   const std::string lines = "v 0 0 0\nv 1 0 0 # x\nv 0 \\\n1 0\nusemtl a b\nf 1 2 3\nnonsense\n";
   for (const std::string end : {"\n", "\r", "\r\n"}) {
@@ -128,7 +128,7 @@ TEST(Obj, ByteOrderMarksAndCarriageReturns) {
   }
 }
 
-// Some files name texture coordinates and normals, and have none.
+// Some files refer to texture coordinates and normals that do not exist.
 TEST(Obj, CornersOfFilesWithoutNormals) {
   const SceneDescription scene = read(triangle + "f 1/1/1 2/2/1 3/3/1\nf 1//1 2//1 3//1\n");
   const auto& mesh = std::get<TriangleMesh>(scene.shapes.at(0).geometry);
@@ -154,7 +154,7 @@ TEST(Mtl, SeveralLibrariesInALine) {
   EXPECT_TRUE(warnings(blank).empty());
 }
 
-// Of an open box, whose faces are wound as seen from inside, the inside is shown: here from behind.
+// The inside of an open box whose faces are wound as seen from inside is visible, here from behind.
 TEST(Obj, OpenBoxesAreSeenFromInside) {
   const SceneDescription scene = read(
       "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n"
@@ -178,7 +178,7 @@ const std::string models = LANTHORN_SOURCE_DIR "/tests/scenes/models/";
 
 std::vector<std::string> messages(const std::filesystem::path& file) { return warnings(read_scene(file)); }
 
-// The largest difference of a corner's normal from that of its triangle, degrees.
+// The largest angle between a corner's normal and that of its triangle, degrees.
 float bend(const SceneDescription& scene) {
   float largest = 0;
   for (const Shape& shape : scene.shapes) {
@@ -192,7 +192,7 @@ float bend(const SceneDescription& scene) {
   return largest * 180 / pi;
 }
 
-// An octagonal tube: sides of one group, which are round, and caps of none.
+// An octagonal tube: sides in one smoothing group, caps in none.
 TEST(ObjSmoothing, GroupsAreSmoothAndOtherFacesFlat) {
   const SceneDescription scene = read_scene(models + "smooth-tube.obj");
   EXPECT_TRUE(warnings(scene).empty());
@@ -214,7 +214,7 @@ TEST(ObjSmoothing, GroupsAreSmoothAndOtherFacesFlat) {
   EXPECT_EQ(flat, 12u);
 }
 
-// Two squares that meet at the y axis, the second turned about it by this angle out of the first's plane.
+// Two squares that share an edge on the y axis; the second is rotated about it by this angle out of the first's plane.
 std::string hinge(float degrees) {
   const float a = degrees * pi / 180;
   return "v -1 0 0\nv 0 0 0\nv 0 1 0\nv -1 1 0\nv " + std::to_string(std::cos(a)) + " 0 " +
@@ -234,12 +234,12 @@ TEST(ObjSmoothing, GroupsDecideWhereTheFileHasAny) {
   for (const char* none : {"s off\n", "s 0\n", "s null\n", "s\n"})
     EXPECT_EQ(bend(read(hinge(9) + none + left + right)), 0);
   EXPECT_EQ(bend(read(hinge(9) + left + "s 1\n" + right)), 0) << "the first face has no group";
-  // Sheets with a back of their own: each side is smooth by itself.
+  // Sheets with separate back faces: each side is smooth on its own.
   const std::string backs = "f 4 3 2 1\nf 3 6 5 2\n";
   EXPECT_NEAR(bend(read(sharp + "s 1\n" + left + right + backs)), 30, 0.01f);
   EXPECT_NEAR(bend(read(sharp + "s 1\n" + left + backs + right)), 30, 0.01f);
   EXPECT_EQ(bend(read(sharp + "s 1\n" + left + "f 4 3 2 1\n")), 0) << "a card";
-  // Normals of the file count, whatever its groups.
+  // Normals in the file are used, whatever its smoothing groups.
   EXPECT_EQ(mesh(read(sharp + "vn 0 1 0\ns 1\nf 1//1 2//1 3//1 4//1\n")).normals[0], Vec3(0, 1, 0));
 }
 
@@ -249,15 +249,15 @@ TEST(ObjSmoothing, WithoutGroupsEdgesOfLessThan30DegreesAreSmooth) {
   const SceneDescription plane = read(hinge(0) + left + right);
   ASSERT_EQ(plane.shapes.size(), 1u);
   EXPECT_TRUE(mesh(plane).normals.empty()) << "flat faces need none";
-  // The widest angle counts most: of the three corners at the vertex, 90, 45 and 45 degrees, the latter two agree.
+  // Normals are weighted by angle: of the three corners at the vertex, of 90, 45 and 45 degrees, the latter two agree.
   const SceneDescription fan = read("v 0 0 0\nv 1 0 0\nv 0 1 0\nv -1 .2 0\nv -1 .2 1\nf 1 2 3\nf 1 3 4\nf 1 4 5\n");
   EXPECT_EQ(bend(fan), 0) << "a right angle stays";
-  // Faces without area, and edges of three faces.
+  // Degenerate faces, and edges of three faces.
   EXPECT_EQ(read("v 0 0 0\nv 1 0 0\nf 1 1 1\nf 1 2 1\ns 1\nf 1 2 1\n").shapes.size(), 1u);
   EXPECT_EQ(read("s 1\n" + triangle + "v 0 0 1\nf 1 2 3\nf 2 1 4\nf 2 1 3\n").shapes.empty(), false);
 }
 
-// As in the collections of students' renderers, whose models come with a picture and without an MTL file.
+// As in collections for students' renderers, whose models have a picture but no MTL file.
 TEST(Obj, APictureCalledAfterTheModelIsSuggested) {
   test::TemporaryDir dir;
   const std::string faces = triangle + "vt 0 0\nf 1/1 2/1 3/1\n";
@@ -285,7 +285,7 @@ TEST(Obj, APictureCalledAfterTheModelIsSuggested) {
   EXPECT_EQ(said("mtllib a.mtl\nusemtl m\n" + faces), "");
 }
 
-// A card whose picture has holes.
+// A card whose picture has transparent holes.
 TEST(Obj, TransparentTexelsOfColoursAreHoles) {
   const Scene scene(read_scene(models + "leaf.obj"));
   const auto is_hit = [&](float u, float v) {
@@ -353,7 +353,7 @@ void expect_near(const Spectrum& colour, const Rgb& expected, const std::string&
   EXPECT_NEAR(colour[2], expected.b, 1e-5f) << what;
 }
 
-// Colours of vertices are in sRGB, from 0 to 1 or to 255. They multiply Kd, and stand for a missing material.
+// Vertex colours are in sRGB, from 0 to 1 or to 255. They multiply Kd, and replace a missing material.
 TEST(Obj, ColoursOfVerticesMultiplyTheReflectance) {
   const std::string faces = "f 1 2 3\n";
   const auto corners = [](const std::string& a, const std::string& b, const std::string& c) {
@@ -373,14 +373,14 @@ TEST(Obj, ColoursOfVerticesMultiplyTheReflectance) {
   };
   expect_near(closure_of<Diffuse>(with("Kd 0.8 0.4 1\n")).reflectance, {0.4f, 0.1f, 0.25f}, "diffuse");
   expect_near(closure_of<Plastic>(with("Kd 0.8 0.4 1\nKs 1 1 1\n")).reflectance, {0.4f, 0.1f, 0.25f}, "plastic");
-  // A weight is no colour, and without any colour nothing changes.
+  // A vertex weight is not a colour, and without colours nothing changes.
   expect_near(closure_of<Diffuse>(read(corners("1", "1", "1") + faces)).reflectance, {0.5f, 0.5f, 0.5f}, "weights");
   const SceneDescription plain = read(triangle + faces);
   EXPECT_TRUE(mesh(plain).colors.empty());
   EXPECT_TRUE(plain.spectrum_textures.empty());
 }
 
-// As Blender writes a leaf of alpha 0.5, and a robot whose alpha of 0 its own renderer ignores.
+// As Blender writes a leaf of alpha 0.5, and a robot with an alpha of 0 that its own renderer ignores.
 TEST(Mtl, OpacityDecidesWhetherModelNineIsGlass) {
   const std::string blender = "Kd 0.2 0.4 0.1\nKs 0.5 0.5 0.5\nNs 96\nNi 1.45\nillum 9\n";
   for (const auto& [line, alpha] :
@@ -392,7 +392,7 @@ TEST(Mtl, OpacityDecidesWhetherModelNineIsGlass) {
   EXPECT_EQ(std::get<float>(material<DielectricMaterial>(blender + "d 1\n").eta), 1.45f);
 }
 
-// Such files come from exporters that confuse opacity with transparency, or have lost the name.
+// Exporters that confuse opacity with transparency, or lose the material's name, write such files.
 TEST(Mtl, InvisibleAndNamelessMaterialsAreShown) {
   for (const char* line : {"d 0\n", "Tr 1\n"}) {
     const SceneDescription scene = with_mtl(line);
@@ -459,7 +459,7 @@ TEST(Mtl, TextureMaps) {
   EXPECT_EQ(std::get<ImageTexture>(scene.float_textures.at(shape.alpha.texture.value()).node).filename, "dir/leaf.png");
 }
 
-// Of a bump map, the image itself tells whether it is of normals or of heights.
+// The image itself tells whether a bump map contains normals or heights.
 TEST(Mtl, BumpMapsAreOfNormalsOrHeights) {
   for (const char* name : {"map_Bump", "map_bump", "bump"})
     for (const char* kind : {"Kd 1 1 1\n", "Ks 1 1 1\n", "illum 7\n", "illum 3\nKd 0 0 0\nKs 1 1 1\n"}) {
@@ -496,7 +496,7 @@ TEST(Mtl, SpecularMaps) {
   EXPECT_TRUE(std::holds_alternative<DiffuseMaterial>(with_mtl("illum 1\nmap_Ks shine.png\n").materials.at(0).node));
 }
 
-// Blender, from 3.1 on, writes its roughness in Ns and map_Ns, and its metalness in map_refl.
+// From version 3.1 on, Blender writes roughness in Ns and map_Ns, and metalness in map_refl.
 TEST(Mtl, FilesByBlenderHaveItsRoughness) {
   const auto by = [](const std::string& program, const std::string& lines) {
     return read(triangle + "mtllib m.mtl\nusemtl m\nf 1 2 3\n", {{"dir/m.mtl", program + "newmtl m\n" + lines}});

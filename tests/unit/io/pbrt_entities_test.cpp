@@ -29,7 +29,7 @@ void expect_warnings(const SceneDescription& scene, const std::vector<std::strin
   EXPECT_EQ(messages, expected);
 }
 
-// The material that follows WorldBegin.
+// The material of a scene with this text after WorldBegin.
 template <class T>
 T material(const std::string& text) {
   const SceneDescription scene = read("WorldBegin " + text);
@@ -345,7 +345,7 @@ TEST(PbrtTextures, Procedural) {
   EXPECT_EQ(bilerp.v10.value, 0.25f);
   EXPECT_EQ(bilerp.v11.value, 1);
   EXPECT_EQ(std::get<UvMapping>(bilerp.mapping).linear, Mat2(1, 0, 0, 2));
-  // As in pbrt-v4, which gives "inside" to the ground.
+  // As in pbrt-v4, where "inside" is the background.
   const auto dots = std::get<DotsTexture<FloatParameter>>(floats(4));
   EXPECT_EQ(dots.outside.texture, 0u);
   EXPECT_EQ(dots.inside.value, 0.5f);
@@ -477,7 +477,7 @@ TEST(PbrtLights, DefaultsAndParameters) {
   EXPECT_NEAR(scene.lights[7].light_to_world.vector({0, 0, 1}).y, 1, 1e-6);
 }
 
-// A cone narrower than the default width of its edge is an ordinary lamp.
+// A cone narrower than the default width of its edge is valid.
 TEST(PbrtLights, EdgesWiderThanTheConeOfASpot) {
   const auto scene = read(
       "WorldBegin LightSource \"spot\" \"float coneangle\" 4\n"

@@ -68,7 +68,7 @@ TEST(PbrtTokenizer, ReadsNumbers) {
   EXPECT_EQ(number("5."), 5);
   EXPECT_EQ(number("1e5"), 1e5f);
   EXPECT_EQ(number("-1.5E-2"), -1.5e-2f);
-  EXPECT_EQ(number("1.5,"), 1.5f);  // as pbrt passes over commas
+  EXPECT_EQ(number("1.5,"), 1.5f);  // pbrt ignores commas
   EXPECT_EQ(number("1e-60"), 0);
   EXPECT_EQ(number("1e-600"), 0);
   EXPECT_EQ(number("0." + std::string(400, '0') + "1"), 0);
@@ -82,7 +82,7 @@ TEST(PbrtTokenizer, ReadsNumbers) {
   for (const std::string text : {"2147483648", "1.0", "1e3", "", "a"}) EXPECT_THROW(integer(text), Error) << text;
 }
 
-// Every error has its exact place and says what is wrong.
+// Every error has an exact location and states the problem.
 TEST(Pbrt, ErrorsHavePlaces) {
   struct Bad {
     std::string text, message;
@@ -352,7 +352,7 @@ TEST(Pbrt, IncludeErrors) {
   EXPECT_EQ(error_in("Include \"n0.pbrt\""), folder + "n62.pbrt:1:1: files include each other more than 64 deep");
 }
 
-// Fractals include the same files again and again: what bounds them are their bytes, not their number.
+// Fractals include the same files many times: the limit is on their bytes, not on their number.
 TEST(Pbrt, ManyInclusions) {
   const auto times = [](int n, const std::string& text) {
     std::string result;
@@ -474,7 +474,7 @@ TEST(Pbrt, WarnsOncePerKind) {
   EXPECT_EQ(std::get<description::Sphere>(scene.shapes[0].geometry).radius, 2);
 }
 
-// Counts of the scenes that everything else is tested on.
+// Counts for the scenes that the other tests use.
 struct SceneCounts {
   const char* file;
   std::size_t shapes, triangles, patches, lights, area_lights, materials, instances, warnings;

@@ -65,8 +65,8 @@ class PlyWriter {
 class PlyEncodings : public testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(All, PlyEncodings, testing::Values("ascii", "binary_little_endian", "binary_big_endian"));
 
-// Everything at once: unknown elements before and between, odd types and orders, lists in vertices, triangles, a quad
-// and a pentagon.
+// All features together: unknown elements before and between, unusual types and orders, lists in vertices, triangles, a
+// quad and a pentagon.
 std::string strange_file(const std::string& format) {
   PlyWriter w(format);
   w.header("obj_info nothing")
@@ -142,7 +142,7 @@ TEST_P(PlyEncodings, ReadsGzip) {
 TEST_P(PlyEncodings, TruncatedFilesAreErrors) {
   const std::string whole = strange_file(GetParam());
   const bool ascii = std::string(GetParam()) == "ascii";
-  // Without its last digits, an ascii file can still be whole.
+  // An ascii file without its last digits can still be valid.
   const std::size_t least = ascii ? whole.find_last_of('1') : whole.size() - 1;
   for (std::size_t size = 0; size <= least; ++size)
     EXPECT_THROW(parse_ply(std::string_view(whole).substr(0, size), "t.ply"), Error) << size;
@@ -154,8 +154,8 @@ std::string small_file(const std::string& body, const std::string& vertices = "3
          "\nproperty list uchar int vertex_index\nend_header\n" + body;
 }
 
-// The corners of a strip go to and fro across it: every other triangle is wound the other way. -1 begins a new strip;
-// triangles of two corners are left out.
+// The corners of a strip zigzag across it, so every other triangle has the opposite winding. -1 begins a new strip;
+// triangles with two equal corners are left out.
 TEST_P(PlyEncodings, ReadsTriangleStrips) {
   PlyWriter w(GetParam());
   w.header("element vertex 6").header("property float x").header("property float y").header("property float z");
@@ -252,7 +252,7 @@ TEST(Gzip, DamageIsAnError) {
   EXPECT_THROW(gunzip(whole, "z", 1000), Error);
 }
 
-// A gzip file can hold itself.
+// A gzip file can contain itself.
 TEST(Gzip, IsOpenedOnce) { EXPECT_THROW(parse_ply(test::gzip(test::gzip(strange_file("ascii"))), "t.ply"), Error); }
 
 TEST(File, OnlyRegularFilesAreRead) {

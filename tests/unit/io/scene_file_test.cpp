@@ -26,7 +26,7 @@ Image checks(float bright) {
   return image;
 }
 
-// Two squares, one with a picture beside the file and one with a picture in it; the second moves.
+// Two squares: one has a picture beside the file, one a picture inside it. The second moves.
 class SceneFiles : public testing::Test {
  protected:
   SceneFiles() {
@@ -99,13 +99,13 @@ TEST_F(SceneFiles, NothingIsReadAgain) {
   for (const char* name : {"moves.gltf", "moves.bin", "beside.png", "sky.exr"})
     std::filesystem::remove(dir_.path() / name);
   EXPECT_NE(picture(scene = build_scene(file.at(1), scene)), first);
-  // What a scene shares does not end with the scenes before it.
+  // Data that scenes share outlive the scene that they come from.
   EXPECT_EQ(picture(scene = build_scene(file.at(0), scene)), first);
   EXPECT_EQ(picture(edit_scene(*scene, {})), first);
   EXPECT_THROW(build_scene(file.at(1)), Error) << "without another scene, its images are read";
 }
 
-// A mesh that is deformed is read before those that are not: at rest the other one comes first.
+// Deformed meshes are read before the others; at rest, the other mesh comes first.
 TEST_F(SceneFiles, PicturesInTheFileKeepTheirMeshes) {
   GltfWriter model;
   for (const int i : {0, 1}) {

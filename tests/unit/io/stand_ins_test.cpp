@@ -35,7 +35,7 @@ Shape sphere(const Point& centre, float radius) {
   for (Point& p : mesh.positions) p += centre;
   return mesh_shape(std::move(mesh.positions), mesh.indices);
 }
-// A square of this side about `centre`, whose outside is that of cross(right, up).
+// A square with this side length, centred at `centre`, whose outside faces cross(right, up).
 Shape square(const Point& centre, const Vec3& right, const Vec3& up) {
   return mesh_shape({centre - right - up, centre + right - up, centre + right + up, centre - right + up},
                     {0, 1, 2, 0, 2, 3});
@@ -73,7 +73,7 @@ TEST(StandIns, TheCameraFramesTheModelWhateverThePicture) {
       top = std::fmin(top, at.y);
       bottom = std::fmax(bottom, at.y);
     }
-    // Some pair of edges is almost reached.
+    // The object nearly touches one pair of opposite edges.
     EXPECT_GT(std::fmax(right - left, bottom - top), 0.75f) << width << " x " << height;
   }
 }
@@ -83,8 +83,8 @@ TEST(StandIns, RoundThingsAreSeenFromTheFrontAndBoxesThroughTheirOpening) {
   EXPECT_NEAR(ball.x, 5, 1e-3f);
   EXPECT_GT(ball.z, 4);
   EXPECT_GT(ball.y, 0.5f);
-  // A box without the wall at -z, and one without that at +x; the outsides of the walls face inwards, or outwards but
-  // are shown from behind, too.
+  // A box without the wall at -z, and one without the wall at +x. The walls' outsides face inwards, or outwards with
+  // two-sided materials.
   const Vec3 x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
   for (const float side : {1.0f, -1.0f}) {
     const auto walls = [&](int missing) {
@@ -117,8 +117,7 @@ TEST(StandIns, PlainsAreSeenFromHigherUp) {
   EXPECT_GT(eye.y, 0.7f * std::hypot(eye.x, eye.z));
 }
 
-// A room of this half extent, or some of its walls, and what is in it. Walls face outwards; they are seen from both
-// sides.
+// A room with this half extent, or some of its walls, and its contents. Walls face outwards and are two-sided.
 std::vector<Shape> room(const Vec3& half, std::vector<Shape> things, int walls = 6) {
   const Vec3 x(half.x, 0, 0), y(0, half.y, 0), z(0, 0, half.z);
   const std::vector<Shape> all = {square(-x, z, y), square(x, -z, y),  square(y, x, -z),
@@ -126,7 +125,8 @@ std::vector<Shape> room(const Vec3& half, std::vector<Shape> things, int walls =
   things.insert(things.end(), all.begin(), all.begin() + walls);
   return things;
 }
-// Where the corners of a box of this half extent about `centre` lie in a square picture, from 0 to 1.
+// Positions, from 0 to 1, of the corners of a box in a square picture. The box has this half extent and is centred at
+// `centre`.
 Bounds seen_box(const SceneDescription& scene, const Point& centre, float half) {
   const View view = make_view(scene.view, {.resolution = std::array{100, 100}});
   Bounds box;
@@ -239,7 +239,7 @@ TEST(StandIns, ChestsEmptyRoomsAndOpenBoxesAreSeenFromOutside) {
   EXPECT_FALSE(is_inside(seen(room(chest, {ball}), {}), chest));
   EXPECT_FALSE(is_inside(seen(room(half, {ball}, 5), {}), half));
   EXPECT_FALSE(is_inside(seen(room(half, {sphere({1, -0.5f, 0}, 0.3f)}), {}), half));
-  // Not a box: a flat ball, with another in it.
+  // Not a box: a flattened ball with another one inside.
   Shape flat = sphere({0, 0, 0}, 3);
   for (Point& p : std::get<TriangleMesh>(flat.geometry).positions) p.y *= 0.5f;
   EXPECT_FALSE(is_inside(seen({flat, ball}, {}), Vec3(3, 1.5f, 3)));
@@ -261,7 +261,7 @@ TEST(StandIns, RoomsWithoutAFloorOrWithARoofThatShowsAreSeenFromOutside) {
   EXPECT_FALSE(is_inside(seen(without_floor, {}), half));
   std::vector<Shape> many = balls_at({-2.5f, -0.8f, 0.8f, 2.5f}, {-0.8f, 0.8f}, {-1.8f, -0.6f, 0.6f, 1.8f});
   EXPECT_TRUE(is_inside(seen(room(half, many), {}), half));
-  // Corrugated iron on two fifths of the ceiling.
+  // Corrugated iron covers two fifths of the ceiling.
   TriangleMesh iron;
   for (std::uint32_t i = 0; i <= 32; ++i)
     for (const float z : {-3.0f, 3.0f})
@@ -290,7 +290,7 @@ TEST(StandIns, WhatFacesInwardsIsSeenFromInside) {
   EXPECT_FALSE(is_inside(seen(empty, {{}, true}), half)) << "has outsides";
   EXPECT_FALSE(is_inside(seen(room(half, {}), certain), half));
   EXPECT_FALSE(is_inside(seen(inwards(room(half, {}, 5)), certain), half));
-  // A sky about a ball, high as it is.
+  // A sphere as a sky around a ball counts as a room, although it is high.
   EXPECT_TRUE(is_inside(seen(inwards({sphere({0, 0, 0}, 9)}), certain), Vec3(9)));
   std::vector<Shape> sky = inwards({sphere({0, 0, 0}, 9)});
   sky.push_back(sphere({0, -2, 0}, 2));
@@ -299,7 +299,7 @@ TEST(StandIns, WhatFacesInwardsIsSeenFromInside) {
   std::vector<Shape> hull = inwards({sphere({0, 0, 0}, 2.1f)});
   hull.push_back(sphere({0, 0, 0}, 2));
   EXPECT_FALSE(is_inside(seen(hull, certain), Vec3(2.1f)));
-  // A room with a quarter of a floor, which is hidden from outside.
+  // A room with a quarter of its floor, which is hidden from outside.
   std::vector<Shape> open = room(half, {});
   open[3] = square({-3, -1.5f, 0}, {1, 0, 0}, {0, 0, 3});
   EXPECT_FALSE(is_inside(seen(inwards(open), certain), half));
@@ -309,7 +309,7 @@ SceneDescription seen_in_own_light(SceneDescription scene) {
   add_stand_ins(scene, {true, false, {}});
   return scene;
 }
-// A lamp of this radiance that shines down, and up against the ceiling.
+// A lamp of this radiance that shines down, and up at the ceiling.
 void add_lamp(SceneDescription& scene, const Point& centre, float radiance = 20) {
   Shape lamp = square(centre, {0.3f, 0, 0}, {0, 0, 0.3f});
   lamp.area_light = static_cast<Index>(scene.area_lights.size());
@@ -324,7 +324,7 @@ description::PointLight point_light(const Point& from, float intensity = 1) {
   light.from = from;
   return light;
 }
-// From there to the origin.
+// The view from a position to the origin.
 description::DistantLight distant_light(const Point& from, float radiance = 1) {
   description::DistantLight light;
   light.radiance.scale = radiance;
@@ -336,7 +336,7 @@ void add_light(SceneDescription& scene, decltype(description::Light::node) node)
   scene.lights.emplace_back().node = std::move(node);
 }
 
-// The walls of a high box, which is open at +z.
+// The walls of a tall box that is open at +z.
 TEST(StandIns, WhatTheScenesOwnLightsReachIsShown) {
   const auto open_box = [] { return scene_of(room({2, 2, 2}, {}, 5)); };
   const auto box_with = [&](decltype(description::Light::node) node) {
@@ -349,14 +349,14 @@ TEST(StandIns, WhatTheScenesOwnLightsReachIsShown) {
   EXPECT_GT(eye_of(seen_in_own_light(box)).z, 3) << "open there";
   for (Shape& shape : box.shapes) shape.object_to_world = AnimatedTransform(rotate(180, {0, 1, 0}));
   EXPECT_LT(eye_of(seen_in_own_light(box)).z, -3) << "open at the back";
-  // From the right, into a box whose left wall is seen from the front and right, too.
+  // A view from the right, into a box whose left wall is visible from the front as well as from the right.
   SceneDescription open_at_right = scene_of(room({2, 2, 2}, {}));
   open_at_right.shapes.erase(open_at_right.shapes.begin() + 1);
   add_lamp(open_at_right, {0, 1.99f, 0});
   const Point eye = eye_of(seen_in_own_light(open_at_right));
   EXPECT_GT(eye.x, 3);
   EXPECT_LT(std::fabs(eye.z), 1);
-  // Lights that are not in it.
+  // Lights that are not in the room.
   EXPECT_GT(box_with(distant_light({0, 1, 3})).z, 3);
   EXPECT_LT(box_with(distant_light({0, 1, -3})).z, -3);
   EXPECT_LT(box_with(point_light({-5, 0, -9})).z, -3);
@@ -367,7 +367,7 @@ TEST(StandIns, WhatTheScenesOwnLightsReachIsShown) {
   spot.to = {9, 9, 0};
   EXPECT_GT(box_with(spot).z, 3) << "reaches nothing";
   EXPECT_GT(box_with(description::InfiniteLight{}).z, 3);
-  // Lights beyond all floats, or without a direction, reach nothing.
+  // Lights at positions that overflow, or without a direction, illuminate nothing.
   EXPECT_GT(box_with(point_light({1e30f, 0, -1e30f})).z, 3);
   EXPECT_GT(box_with(point_light({0, 0, -9}, infinity)).z, 3);
   EXPECT_GT(box_with(distant_light({0, 0, 0})).z, 3);
@@ -381,7 +381,7 @@ TEST(StandIns, ClosedBoxesWithALampInsideAreSeenFromInside) {
   EXPECT_TRUE(is_inside(seen_in_own_light(lit), half)) << "empty, and as high as wide";
   lit.area_lights[0].radiance.value = RgbSpectrum{{1, 1, 1}};
   EXPECT_FALSE(is_inside(seen_in_own_light(lit), half)) << "a glow";
-  // A bulb, and one in a ball that is not clear.
+  // A bulb, and one inside a ball that is not clear.
   for (const bool is_clear : {true, false}) {
     SceneDescription bulb = cube({sphere({0, 1, 0}, 0.4f)});
     bulb.materials.emplace_back();
@@ -399,13 +399,13 @@ TEST(StandIns, ClosedBoxesWithALampInsideAreSeenFromInside) {
 
 const std::string models = LANTHORN_SOURCE_DIR "/tests/scenes/models/";
 
-// As large again as this factor says.
+// The scene, scaled by this factor.
 SceneDescription scaled(SceneDescription scene, float factor) {
   for (Shape& shape : scene.shapes)
     for (Point& p : std::get<TriangleMesh>(shape.geometry).positions) p *= factor;
   return scene;
 }
-// The number of these places that the stand-in camera sees.
+// The number of these points that are visible to the stand-in camera.
 int count_seen(const SceneDescription& description, const std::vector<Point>& places) {
   const View view = make_view(description.view);
   const Point eye = eye_of(description);
@@ -433,7 +433,7 @@ TEST(StandInRooms, AreSeenThroughTheirOpenSide) {
   EXPECT_LT(high->raster.y, low->raster.y - 100);
 }
 
-// Boxes with three things in them, open on any side, of any size, wound either way, lit by a lamp or not.
+// Boxes that contain three objects: open on any side, of any size, with either winding, with and without a lamp.
 TEST(StandInRooms, AreSeenThroughAnyOpenSideAtAnySize) {
   const Vec3 x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
   const std::vector<Vec3> outwards{x, -x, y, -y, z, -z};
@@ -470,7 +470,7 @@ TEST(StandInRooms, AreFramedAlikeAtAnySize) {
   EXPECT_LT(eye_of(tiny).z, 3e-4f);
 }
 
-// Where the view takes z to be up, the studio's lamps are there, too.
+// If the view treats z as up, the studio's lamps do so as well.
 TEST(StandInRooms, WithZUpAreLitFromThere) {
   std::vector<Shape> shapes = room(
       {1, 1, 1}, {sphere({0.5f, -0.4f, 0.3f}, 0.2f), sphere({-0.5f, 0.4f, 0.1f}, 0.2f), sphere({0, 0, -0.5f}, 0.2f)});
@@ -490,7 +490,7 @@ TEST(StandInRooms, HousesWithoutAFloorAreNotSeenFromBelow) {
   EXPECT_GT(eye_of(seen(house, {{0}, false})).y, 0);
 }
 
-// A spot light in a closed figure on a stage: the file is lit as if it had no light, from outside.
+// A spot light inside a closed figure on a stage. The file is lit as if it had no light, and seen from outside.
 TEST(StandInLight, LightsThatMeshesEncloseGetTheHelpOfTheStudio) {
   const SceneDescription scene = read_scene(models + "lamp-in-figure-spot.gltf");
   const Point eye = eye_of(scene);
@@ -553,7 +553,7 @@ TEST(StandIns, ASceneIsLitByLampsThatSendEnoughLight) {
   EXPECT_FALSE(is_lit(2, 0.1f, true));  // 2 %
   EXPECT_FALSE(is_lit(1, 0.9f, true));  // a glow
   EXPECT_TRUE(is_lit(100, 0.03f, true));
-  EXPECT_FALSE(is_lit(100, 1, false));  // nothing to be lit
+  EXPECT_FALSE(is_lit(100, 1, false));  // nothing to illuminate
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Files of pbrt-v3: pictures against those of the same scenes in the form of pbrt-v4, albedos against pbrt-v3's sums of
-// lobes, and the rules of translation that pictures do not show.
+// Translation of pbrt-v3 files: pictures against those of the same scenes written for pbrt-v4, albedos against
+// pbrt-v3's sums of lobes, and rules of translation that pictures do not show.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -33,7 +33,7 @@ std::vector<std::string> warnings_of(const std::string& text) {
 
 const std::string v3_head = "Film \"image\" \"integer xresolution\" 24 \"integer yresolution\" 24\n";
 
-// The heads are of different versions, and give the same film.
+// The headers are for different versions, and describe the same film.
 struct Pair {
   std::string name;
   std::string v3_options, v4_options;
@@ -58,8 +58,8 @@ std::string v4_text(const Pair& p) {
          "\nPixelFilter \"box\" \"float xradius\" [0.5] \"float yradius\" [0.5]\nWorldBegin\n" + p.v4;
 }
 
-// Numbers of the v4 forms that are not in the v3 forms were computed apart from the program: widths of highlights by
-// the polynomial of pbrt-v3, luminances of black bodies from Planck's law and the CIE's table.
+// Numbers that only the v4 text contains were computed independently: GGX alpha by pbrt-v3's polynomial, luminances of
+// black bodies from Planck's law and the CIE's table.
 std::vector<Pair> pairs() {
   const std::string sky3 = "LightSource \"infinite\" \"color L\" [.5 .6 .7] \"color scale\" [2 2 2]\n";
   const std::string sky4 = "LightSource \"infinite\" \"rgb L\" [.5 .6 .7] \"float scale\" 2\n";
@@ -169,7 +169,7 @@ Image picture(const std::string& text, const std::filesystem::path& folder = "."
   return *select_layer(test::render_image(scene, options), "color");
 }
 
-// The same random numbers make the same paths: the pictures differ by no more than the rounding of what is computed.
+// The same random numbers make the same paths, so that pictures only differ by rounding.
 TEST_P(UpgradedPictures, AreThoseOfTheSameSceneInTheNewForm) {
   const Image found = picture(v3_text(GetParam())), expected = picture(v4_text(GetParam()));
   ASSERT_GT(test::mean_of(expected), 0.001);
@@ -182,8 +182,8 @@ TEST_P(UpgradedPictures, AreThoseOfTheSameSceneInTheNewForm) {
 INSTANTIATE_TEST_SUITE_P(V3, UpgradedPictures, testing::ValuesIn(pairs()),
                          [](const auto& instance) { return test::identifier(instance.param.name); });
 
-// Under a uniform sky of radiance 1, a flat body as wide as the picture has the albedo of its material as radiance: at
-// normal incidence, or, for a sphere, the mean over all directions, weighted by their cosine.
+// Under a uniform sky of radiance 1, the radiance of a flat body as wide as the picture is its material's albedo: at
+// normal incidence; or for a sphere, the mean over all directions, weighted by their cosine.
 double mean_albedo(const std::string& material) {
   const Scene scene = test::scene_from_text(
       "LookAt 0 0 5  0 0 0  0 1 0\nCamera \"orthographic\" \"float screenwindow\" [-1 1 -1 1]\n" + v3_head +
@@ -205,8 +205,8 @@ struct Sum {
   double albedo;  ///< the sum of pbrt-v3's lobes
 };
 
-// The mean Fresnel reflectance of index 1.5 is 0.0918 when smooth; of GGX, with its shadowing, it is 0.054 at a width
-// of 0.3, and 0.040 at 0.49 (by Monte Carlo integration apart from the program). Coats of that width are fits.
+// The mean Fresnel reflectance at index 1.5 is 0.0918 for a smooth surface. For GGX with shadowing it is 0.054 at an
+// alpha of 0.3, and 0.040 at 0.49 (by separate Monte Carlo integration). Coats of that alpha are fits.
 std::vector<Sum> sums() {
   const std::string smooth = " \"float roughness\" .001 \"bool remaproughness\" \"false\"";
   return {
@@ -378,7 +378,7 @@ std::string file_text(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-// The text reads as the same scene, and files are found from its folder.
+// The text describes the same scene, and files are found from its folder.
 TEST(Upgrade, WritesTheTranslation) {
   const test::TemporaryDir dir;
   std::filesystem::create_directories(dir.path() / "new");
@@ -435,7 +435,7 @@ TEST(Upgrade, FilesOfPbrtV2AreRead) {
   EXPECT_EQ(warnings_of(v3_head + "WorldBegin\nMaterial \"subsurface\" \"color sigma_prime_s\" [4 5 6]").size(), 1u);
 }
 
-// A name of pbrt-v2, with the parameters that it had there.
+// A name from pbrt-v2, with its parameters there.
 TEST(Upgrade, PhotonMapsAreOurs) {
   const std::string head = v3_head +
                            "Integrator \"photonmap\" \"integer causticphotons\" 5000 \"integer indirectphotons\" "
@@ -458,7 +458,7 @@ TEST(Upgrade, PhotonMapsAreOurs) {
             replaced + ", which uses final gathering although \"finalgather\" is false");
 }
 
-// Quadrics that pbrt-v4 lacks: their points and normals, by the equations f(p) = 0 and grad f of the surfaces.
+// Quadrics that pbrt-v4 lacks: their points and normals, against the surfaces' equation f(p) = 0 and grad f.
 TEST(Upgrade, QuadricsAreMeshes) {
   struct Quadric {
     std::string text;
@@ -500,7 +500,7 @@ TEST(Upgrade, QuadricsAreMeshes) {
             "t.pbrt:2:12: Shape \"paraboloid\" needs 0 <= zmin < zmax");
 }
 
-// The texture "uv" shows fractional parts: (-1) u + 0 is 1 - u, 0.5 u + 2.25 is 0.25 + 0.5 u.
+// The texture "uv" returns fractional parts: (-1) u + 0 becomes 1 - u, 0.5 u + 2.25 becomes 0.25 + 0.5 u.
 TEST(Upgrade, CoordinatesAsColoursStayBetween0And1) {
   const SceneDescription scene =
       read(v3_head +

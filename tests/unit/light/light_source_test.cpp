@@ -36,7 +36,7 @@ struct WithInvisible {
 };
 struct WithoutInvisible {};
 
-// Black. `At`: what tells where it is seen, a hit or a direction.
+// A black light. `At`: argument that says where it is seen, a hit or a direction.
 template <Part missing, class Traits, class At>
 struct Toy : std::conditional_t<missing == Part::traits, WithoutTraits, Traits>,
              std::conditional_t<missing == Part::invisible, WithoutInvisible, WithInvisible> {
@@ -101,7 +101,7 @@ TEST(LightSource, HaveWhatTheirTraitsAskFor) {
   static_assert(LightSource<Spark<Part::emitted>>);
 }
 
-/// Traits and the answers that depend on them agree.
+/// Traits agree with the functions that depend on them.
 TEST(LightSource, TraitsOfLights) {
   const auto expect = [](const Light& light, bool surface, bool infinite, bool far, bool delta) {
     EXPECT_EQ(has_surface(light), surface) << light.index();

@@ -26,7 +26,7 @@ const Wavelengths rgb = Wavelengths::rgb(0.5f);
 double to_double(float x) { return static_cast<double>(x); }
 float colour_luminance(const Spectrum& s) { return luminance(Rgb{s[0], s[1], s[2]}); }
 
-/// Points around, near, inside and far from the test surfaces.
+/// Points around, near, inside and far away from the test surfaces.
 std::vector<Point> receivers() {
   return {{2, 1, 3}, {-1.5f, 2, -2}, {0.3f, 0.2f, 0.1f}, {0, -3, 0.2f}, {60, -80, 20}, {1.2f, 0.1f, 0.1f}};
 }
@@ -137,7 +137,7 @@ TEST(Octahedral, RoundTripsAndKeepsAreas) {
     ASSERT_NEAR(p.x, q.x, 2e-6f);
     ASSERT_NEAR(p.y, q.y, 2e-6f);
   }
-  // A cap of half angle theta has the share (1 - cos) / 2 of the square.
+  // A cap of half angle theta occupies a fraction (1 - cos) / 2 of the square.
   for (const Direction& axis : {Vec3(0, 0, 1), Vec3(0, 0, -1), Vec3(0.6f, 0, -0.8f), Vec3(0, -1, 0)}) {
     int inside = 0;
     constexpr int n = 1000;
@@ -145,7 +145,7 @@ TEST(Octahedral, RoundTripsAndKeepsAreas) {
       inside += dot(axis, direction_from_octahedral((Vec2(i % n, i / n) + 0.5f) / static_cast<float>(n))) > 0.7f;
     EXPECT_NEAR(inside / static_cast<double>(n * n), 0.15, 1e-3);
   }
-  // Clarberg's layout: +z in the middle, -z in the corners, +x to the right, +y below (v grows).
+  // Clarberg's layout: +z at the centre, -z at the corners, +x on the right, +y below (v grows).
   EXPECT_FLOAT_EQ(octahedral_from_direction({0, 0, 1}).x, 0.5f);
   EXPECT_FLOAT_EQ(octahedral_from_direction({1, 0, 0}).x, 1);
   EXPECT_FLOAT_EQ(octahedral_from_direction({0, 1, 0}).y, 1);
@@ -158,7 +158,7 @@ TEST(Emitter, AreaIsTheSurfaceIntegral) {
     s.integrate(200, [&](double, double, auto, auto, double da) { expected += da; });
     EXPECT_NEAR(to_double(area(s.shape)) / expected, 1, 1e-4) << s.name;
   }
-  // A prolate spheroid in closed form.
+  // A prolate spheroid, in closed form.
   const double a = 0.01, c = 1, e = std::sqrt(1 - a * a / (c * c));
   const SphereEmitter needle(scale({0.01f, 0.01f, 1}), 1);
   EXPECT_NEAR(to_double(needle.area) / (2 * std::numbers::pi * a * a * (1 + c / (a * e) * std::asin(e))), 1, 1e-5);
@@ -202,7 +202,7 @@ TEST(Emitter, DirectionSamplesAgreeWithTheirDensity) {
       }
 }
 
-/// Solid angle of the parallelogram that a small square of random numbers maps to, times the density: 1.
+/// The solid angle to which a small square of random numbers maps, times the density: 1.
 double jacobian_test(const EmitterShape& shape, const Point& from, const Vec2& u, float h) {
   const auto at = [&](float x, float y) { return glm::dvec3(sample_towards(shape, from, u + Vec2(x, y))->wi); };
   const glm::dvec3 du = at(h, 0) - at(-h, 0), dv = at(0, h) - at(0, -h);
@@ -221,7 +221,7 @@ TEST(Emitter, SphereConeIsRightNearAndFar) {
   ASSERT_TRUE(s);
   EXPECT_NEAR(s->pdf * pi * sqr(0.5f / (far - 1)), 1, 1e-4f);
   EXPECT_NEAR(std::sqrt(distance_squared(s->point, {1, 2, 3})), 0.5f, 1e-5f);
-  // Inside the sphere there is no cone.
+  // Inside the sphere there is no cone of directions.
   EXPECT_TRUE(sphere.sample_towards({1.1f, 2, 3}, {0.5f, 0.5f}));
 }
 
@@ -298,7 +298,7 @@ TEST(Light, EmissionAgreesWithItsDensities) {
       const EmitterHit origin{s->origin, s->normal};
       const EmissionPdf pdf = pdf_emission(l.light, origin, s->direction);
       ASSERT_NEAR(pdf.position / s->pdf_position, 1, 1e-4f) << l.name;
-      // Directions at the rim of a spot or at a texel's border may round to the other side.
+      // Directions at the edge of a spot's cone or of a texel may round to the other side.
       if (s->pdf_direction > 1e-3f) {
         ASSERT_NEAR(pdf.direction / s->pdf_direction, 1, 2e-2f) << l.name;
       }
@@ -322,11 +322,11 @@ TEST(Light, EmissionIsInverted) {
       const Vec2 u_position = rng.next2(), u_direction = rng.next2();
       const auto s = sample_emission(l.light, u_position, u_direction, rgb);
       ASSERT_TRUE(s) << l.name;
-      // Of far lights any point of the ray will do.
+      // For distant lights, any point on the ray is correct.
       const Point origin = is_far(l.light) ? s->origin + 1.7f * s->direction : s->origin;
       const EmissionNumbers found = invert_emission(l.light, {origin, s->normal}, s->direction);
-      // Numbers that a light does not need change nothing. Of stretched and twisted emitters positions are not found,
-      // nor of round spheres that shine to both sides.
+      // Random numbers that a light does not need do not affect it. Positions on stretched and twisted emitters, and on
+      // two-sided spheres, cannot be inverted.
       const bool rejects = l.name.starts_with("ellipsoid") || l.name.starts_with("sheared sphere") ||
                            l.name.starts_with("partial ellipsoid") || l.name.starts_with("sheared cylinder") ||
                            l.name.starts_with("saddle") || l.name == "sphere two-sided" ||
@@ -346,7 +346,8 @@ TEST(Light, EmissionIsInverted) {
 TEST(Light, PhotonsCarryEqualFluxWhoseMeanIsThePower) {
   HashRng rng(5);
   for (const NamedLight& l : test_lights()) {
-    // Their powers are documented as approximate; screens of the tests are drawn by a table that is not their pattern.
+    // Their powers are documented as approximate; the screens of these tests are sampled by a table that differs from
+    // their pattern.
     if (l.name.starts_with("stretched") || l.name.ends_with("as a screen")) continue;
     double sum = 0, squares = 0;
     constexpr int n = 2000;
@@ -357,7 +358,7 @@ TEST(Light, PhotonsCarryEqualFluxWhoseMeanIsThePower) {
       sum += flux / n;
       squares += flux * flux / n;
     }
-    // Where solid angle varies within a texel, or colours are interpolated, flux varies.
+    // If solid angle varies within a texel, or colours are interpolated, flux varies.
     const bool varies = l.name == "projection" || l.name == "equirectangular infinite" || l.name.ends_with("portal");
     const double variance = squares / (sum * sum) - 1;
     EXPECT_NEAR(sum / to_double(power(l.light)), 1, varies ? 4 * std::sqrt(variance / n) : 1e-4) << l.name;
@@ -392,13 +393,13 @@ TEST(Light, PowersInClosedForm) {
     EXPECT_NEAR(power(ImageInfiniteLight{&white, 3, {}, scene}), 3 * 4 * pi * 4 * pi, 1e-2f);
     EXPECT_NEAR(power(GoniometricLight{{}, one, &white, {}}), 4 * pi, 1e-4f);
   }
-  // A face of a cube seen from its centre: a sixth of the sphere.
+  // A face of a cube, seen from its centre, is a sixth of the sphere.
   const ProjectionImage slide(64, 64, std::vector<Rgb>(64 * 64, Rgb{1, 1, 1}), pi / 2);
   EXPECT_NEAR(slide.solid_angle(), 4 * pi / 6, 1e-5f);
   EXPECT_NEAR(power(ProjectionLight{{}, 3, &slide, {}}), 3 * 4 * pi / 6, 1e-3f);
 }
 
-// An image of bytes is the same light as its colours are.
+// An image of bytes is the same light as one of colours.
 TEST(LightTexels, BytesAreTheirColours) {
   std::array<float, 256> values{};
   for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<float>(i * i) / 1000;
@@ -433,7 +434,7 @@ TEST(SpotLight, FallsOffAsPbrtAndGltfDo) {
     const float x = std::clamp((std::cos(angle) - std::cos(total)) / (std::cos(start) - std::cos(total)), 0.0f, 1.0f);
     EXPECT_NEAR(spot.falloff({std::sin(angle), 0, std::cos(angle)}), x * x * (3 - 2 * x), 1e-4f) << angle;
   }
-  // glTF's, as KHR_lights_punctual recommends it.
+  // glTF's spot light, as KHR_lights_punctual recommends it.
   const SpotLight square({}, {0, 0, 1}, SpectrumCurve::illuminant({1, 1, 1}), start, total, SpotLight::Falloff::square);
   const float scale = 1 / (std::cos(start) - std::cos(total)), offset = -std::cos(total) * scale;
   for (float angle = 0; angle < 0.5f; angle += 0.01f) {
@@ -477,7 +478,7 @@ TEST(InfiniteLight, ReadsPanoramasBilinearlyInLightSpace) {
   };
   EXPECT_NEAR(at(67.5f, 22.5f)[0], 2, 1e-5f);  // the texel's centre
   EXPECT_NEAR(at(112.5f, 337.5f)[1], 2, 1e-5f);
-  EXPECT_NEAR(at(67.5f, 45)[0], 1, 1e-5f);          // half way to its dark neighbour
+  EXPECT_NEAR(at(67.5f, 45)[0], 1, 1e-5f);          // halfway to its dark neighbour
   EXPECT_NEAR(at(67.5f, -11.25f)[0], 0.5f, 1e-5f);  // across the seam
   EXPECT_NEAR(at(90, 0)[0], 0.5f, 1e-5f);
   EXPECT_NEAR(at(90, 0)[1], 0.5f, 1e-5f);
@@ -504,7 +505,7 @@ TEST(PortalLight, ShinesThroughItsRectangleAlone) {
   EXPECT_FALSE(seen(inside, {0.5f, 2.01f, 0}));
   EXPECT_FALSE(seen(inside, {0.5f, 1, 6}));          // away from it
   EXPECT_FALSE(seen({0.5f, 1, -1}, {0.5f, 1, 0}));   // from the sky's side
-  EXPECT_FALSE(seen({0.5f, 1, -1}, {0.5f, 1, -3}));  // where it is the sky that is seen
+  EXPECT_FALSE(seen({0.5f, 1, -1}, {0.5f, 1, -3}));  // the side from which the sky is visible
   EXPECT_FALSE(sample_direct(light, {0.5f, 1, -1}, {0.5f, 0.5f}, rgb));
   HashRng rng(8);
   for (int i = 0; i < 200; ++i) {
@@ -568,7 +569,7 @@ TEST(InfiniteLight, DirectSamplesAgreeWithDensityAndRadiance) {
                         std::fabs(emitted_infinite(l.light, {}, s->wi, rgb)[0] - s->radiance[0]) < 1e-4f;
       wrong += !same;
     }
-    EXPECT_LE(wrong, 1) << l.name;  // rounding at the borders of texels
+    EXPECT_LE(wrong, 1) << l.name;  // rounding at the texels' borders
   }
 }
 
@@ -662,7 +663,7 @@ TEST(GuidedDensity, NeedNotBeExactAboveWhatIsEnough) {
   const BoundingSphere scene{{0, 0, 0}, 10};
   const Light light = UniformInfiniteLight{test_colour(), scene};
   EmissionGuide guide(1, AimedDisks(scene, {1, 2, 0}, 1));
-  TreeDistribution& numbers = guide.lights[0].numbers;  // few of the photons start from the wide disks
+  TreeDistribution& numbers = guide.lights[0].numbers;  // few photons start from the wide disks
   numbers.add_inner(0, numbers.add_leaf(0.9f), numbers.add_leaf(0.1f));
   HashRng rng(13);
   int exact = 0, bounded = 0;
@@ -698,7 +699,7 @@ TEST(LightBvh, ProbabilitiesSumToOneAndMatchSamples) {
       const Normal n = i % 3 == 0 ? Normal(0) : normalize(Vec3(rng.next(), rng.next(), rng.next()) - 0.5f);
       double sum = 0;
       for (std::uint32_t l = 0; l < lights.size(); ++l) sum += to_double(bvh.pmf(p, n, l));
-      // Less than 1 where a group was chosen whose bounds, but not whose lights, could contribute.
+      // Less than 1 if the chosen group has bounds, but no light, that could contribute.
       ASSERT_LE(sum, 1 + 1e-5) << count;
       std::vector<int> counts(lights.size());
       double nothing = 0;

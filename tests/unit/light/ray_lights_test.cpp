@@ -29,8 +29,8 @@ std::vector<Segment> random_segments(int count) {
   return segments;
 }
 
-// Cones that are narrow, wide, and wider than half of the sphere; a point; and a lamp with a surface, which has no
-// part.
+// Spot lights with narrow cones, wide ones, and ones wider than a hemisphere; a point light; and an area light, which
+// has no interval.
 std::vector<Light> some_lights() {
   return {spot({-1, 0, 0}, {1, 0.1f, 0}, 8), AreaLight{}, spot({0, 1, 0}, {0.2f, -1, 0.3f}, 60),
           spot({0.5f, 0, 1}, {0, 0, -1}, 120), PointLight{{0.3f, -0.4f, 0.2f}, one}};
@@ -52,7 +52,7 @@ TEST(RayLights, DensitiesIntegrateToOne) {
   }
 }
 
-// The part of the segment that has a density is the part that the light shines on.
+// The interval of the segment with a density is the one that the light illuminates.
 TEST(RayLights, DensitiesAreThereWhereTheLightIs) {
   const std::vector<Light> all = some_lights();
   const RayLights lights{all};
@@ -65,7 +65,7 @@ TEST(RayLights, DensitiesAreThereWhereTheLightIs) {
         const float distance = segment.length * (static_cast<float>(i) + 0.5f) / 50;
         const auto seen = sample_direct(all[light], segment.origin + distance * segment.direction, Vec2(0.5f), w);
         const bool has_density = lights.pdf(segment, strength, light, distance) > 0;
-        // Wide cones are not looked at.
+        // Wide cones are not considered.
         EXPECT_EQ(has_density, seen.has_value() || light == 3) << light << ' ' << distance;
         ++(seen ? lit : dark);
       }
@@ -79,7 +79,7 @@ TEST(RayLights, SamplesHaveTheirDensity) {
   HashRng rng(3);
   for (const Segment& segment : random_segments(10)) {
     const double strength = lights.strength(segment);
-    // The mean of any function over its density is its integral: here of the distance, over all lights.
+    // The mean of a function divided by the density is the function's integral: here of the distance, over all lights.
     double mean = 0, expected = 0;
     constexpr int count = 40'000;
     for (int i = 0; i < count; ++i) {

@@ -17,7 +17,7 @@ using test::Mean;
 
 const Wavelengths rgb = Wavelengths::rgb(0.5f);
 
-// Twice as bright in its upper half, and only there blue; the world's x is turned and stretched.
+// Twice as bright in its upper half, and blue only there. Its x axis is rotated and stretched in the world.
 const Medium& flame() {
   static const Medium medium = [] {
     DensityMedium m;
@@ -33,7 +33,7 @@ const Medium& flame() {
   return medium;
 }
 
-// Its table knows of the lower half alone.
+// Its table only has the lower half.
 VolumeLight light_of_flame() {
   const MediumBox place = *box_of(flame());
   BlockGrid emission(place.box, 4, [](const Bounds& block) { return block.min.y < 0 ? 1.0f : 0.0f; });
@@ -42,8 +42,8 @@ VolumeLight light_of_flame() {
 
 constexpr int samples = 200'000;
 
-// The directions to points of the table have the density that `pdf_direct` gives them: from a place inside they cover
-// the sphere, from one outside the part of it that rays through the box have.
+// Directions to points of the table have the density that `pdf_direct` returns. From a point inside they cover the
+// sphere; from outside, the part whose rays hit the box.
 TEST(VolumeLight, DirectionsHaveTheirDensity) {
   const VolumeLight light = light_of_flame();
   HashRng rng(1);
@@ -63,7 +63,7 @@ TEST(VolumeLight, DirectionsHaveTheirDensity) {
   }
 }
 
-// Over all rays of one direction the density is 1 per area across them, and beyond the box there is none.
+// Over all rays of one direction, the density is 1 per area perpendicular to them; beyond the box it is 0.
 TEST(VolumeLight, RaysHaveADensityPerArea) {
   const VolumeLight light = light_of_flame();
   const Direction along = normalize(Vec3(0.3f, -0.5f, 0.8f));
@@ -80,8 +80,9 @@ TEST(VolumeLight, RaysHaveADensityPerArea) {
   EXPECT_NEAR(all.mean(), 1, 5 * all.error());
 }
 
-// 4 pi times the emission's integral over the box: 0.5 per metre, radiance 3 and densities between 1 and 2, which fall
-// to half within a cell of the faces: those of y by a quarter of a cell each, those of x and z by a quarter of all.
+// 4 pi times the integral of emission over the box: 0.5 per metre, radiance 3, densities between 1 and 2, which fall to
+// half within a cell of the faces: by a quarter of a cell each at the faces of y, by a quarter in all at those of x and
+// z.
 TEST(VolumeLight, PhotonsCarryThePower) {
   const VolumeLight light = light_of_flame();
   HashRng rng(3);

@@ -23,7 +23,7 @@ using test::look;
 using test::white;
 using test::world;
 
-// One patch in z = 0 whose uv are x and y in [0,1).
+// A patch in z = 0 whose uv are x and y in [0,1).
 const char* const unit_quad = "Shape \"bilinearmesh\" \"point3 P\" [0 0 0  1 0 0  0 1 0  1 1 0]\n";
 
 std::optional<SurfacePoint> at_uv(const Scene& scene, float u, float v) { return look(scene, {u, v, 1}, {0, 0, -1}); }
@@ -88,7 +88,7 @@ TEST_F(SceneTexture, BilinearWeightsTexelCentresAndWraps) {
   expect_rgb(reflectance(repeat, 0.25f, 0.75f), {1, 0, 0});
   expect_rgb(reflectance(repeat, 0.5f, 0.75f), {0.5f, 0.5f, 0});
   expect_rgb(reflectance(repeat, 0.35f, 0.75f), {0.8f, 0.2f, 0});
-  expect_rgb(reflectance(repeat, 0.05f, 0.75f), {0.6f, 0.4f, 0});  // with the texel that repeats on the left
+  expect_rgb(reflectance(repeat, 0.05f, 0.75f), {0.6f, 0.4f, 0});  // with the texel that repeats at the left
   const Scene clamp = textured(four, "\"string wrap\" \"clamp\"");
   expect_rgb(reflectance(clamp, 0.05f, 0.75f), {1, 0, 0});
   const Scene black = textured(four, "\"string wrap\" \"black\"");
@@ -120,7 +120,8 @@ TEST_F(SceneTexture, EncodingsDecode) {
   expect_rgb(reflectance(textured(floats, nearest), 0.5f, 0.5f), {0.25f, 0.5f, 0.75f});
 }
 
-// What only descriptions have, not pbrt files: `change` is applied to the image texture of a diffuse quad.
+// Features that scene descriptions have, but not pbrt files: `change` is applied to the image texture of a diffuse
+// quad.
 template <class Change>
 Scene textured_with(const std::string& image, const Change& change) {
   SceneDescription scene = read_pbrt_string(
@@ -231,7 +232,7 @@ TEST(SceneTextures, SolidCheckerboardLivesInTextureSpace) {
       "\"rgb tex1\" [1 1 1] \"rgb tex2\" [0 0 0] AttributeEnd\n"
       "Material \"diffuse\" \"texture reflectance\" \"c\"\nTranslate 0 0 0.1\n" +
       std::string(unit_quad));
-  // Cells of half a metre that begin at x = 0.25.
+  // Cells 0.5 m wide, starting at x = 0.25.
   expect_rgb(reflectance(scene, 0.1f, 0.1f), {0, 0, 0});
   expect_rgb(reflectance(scene, 0.3f, 0.1f), {1, 1, 1});
   expect_rgb(reflectance(scene, 0.3f, 0.6f), {0, 0, 0});
@@ -245,7 +246,7 @@ TEST(SceneTextures, TrianglesWithoutUvHavePbrtsDefaults) {
   EXPECT_NEAR(at->uv.y, 0.5f, 1e-6f);
 }
 
-// Constant alpha is a probability; false-alarm rate of each check below 1e-6 (five standard deviations).
+// Constant alpha is a probability. False-alarm rate of each check below 1e-6 (five standard deviations).
 TEST(SceneAlpha, IsAProbabilityThatBothQueriesAgreeOn) {
   for (const char* shape : {unit_quad, "Shape \"bilinearmesh\" \"point3 P\" [0 0 0  1 0 0  0 1 0  1 1 1e-3]\n",
                             "Translate 0.5 0.5 0 Shape \"disk\" \"float radius\" 2\n"}) {
@@ -266,7 +267,7 @@ TEST(SceneAlpha, IsAProbabilityThatBothQueriesAgreeOn) {
 }
 
 TEST(SceneAlpha, LayersAreIndependent) {
-  // Two shapes in a row, and the two sides of one sphere.
+  // Two shapes one after the other, and the two sides of a sphere.
   const std::string quad =
       std::string(unit_quad).substr(0, std::string(unit_quad).size() - 1) + " \"float alpha\" 0.5\n";
   const Scene quads = world(quad + "Translate 0 0 -0.5\n" + quad);
@@ -308,7 +309,7 @@ TEST(PointBsdf, CopiesKeepTheirClosures) {
   EXPECT_EQ(std::get<Diffuse>(own.get()).reflectance[0], 0.5f);
 }
 
-// Closures that are the same everywhere are not made anew for each hit.
+// Closures that are constant over the surface are not rebuilt for each hit.
 TEST(SceneMaterials, ConstantClosuresAreShared) {
   const Scene scene = world(std::string("Material \"diffuse\" \"rgb reflectance\" [0.2 0.3 0.4]\n") + unit_quad);
   EXPECT_EQ(&at_uv(scene, 0.2f, 0.5f)->bsdf.get(), &at_uv(scene, 0.6f, 0.5f)->bsdf.get());
@@ -368,7 +369,7 @@ TEST(SceneMaterials, IndicesAreThoseOfTheHeroWavelength) {
   const auto eta_rgb = [&](float u) {
     return std::get<Dielectric>(scene.intersect({{0.5f, 0.5f, 1}, {0, 0, -1}}, Wavelengths::rgb(u))->bsdf.get()).eta;
   };
-  EXPECT_GT(eta(0.05f), eta(0.9f) + 0.005f);  // blue light is bent more
+  EXPECT_GT(eta(0.05f), eta(0.9f) + 0.005f);  // blue light is refracted more
   EXPECT_GT(eta_rgb(0.05f), eta_rgb(0.9f) + 0.005f);
   EXPECT_FALSE(world(unit_quad).has_measured_spectra());
 }
@@ -444,7 +445,7 @@ TEST(SceneMaterials, MixesHaveTheMediumOfTheirPartInside) {
   EXPECT_EQ(both.warnings()[0].location.line, 11);
 }
 
-// Mixes each of which has the one before as one part, or as both. Line i + 4 defines mix i.
+// Mixes that refer to the previous mix once or twice. Line i + 4 defines mix i.
 TEST(SceneMaterials, RefusesDeepAndDoublingMixes) {
   const auto error_of = [](int last, bool is_doubling, const std::string& amount) {
     std::string text = "MakeNamedMaterial \"m0\" \"string type\" \"diffuse\"\n";
@@ -478,7 +479,7 @@ TEST(SceneMaterials, AnisotropyFollowsDpdu) {
       "\"integer indices\" [0 1 2]\n");
   const auto at = look(scene, {0, 0, 1}, {0, 0, -1});
   ASSERT_TRUE(at);
-  // v runs along x and u along y of the object.
+  // v runs along the object's x, u along its y.
   const Vec3 along_u = rotate(30, {0, 0, 1}).vector({0, 1, 0});
   EXPECT_NEAR(std::fabs(dot(at->shading.s, along_u)), 1, 1e-4f);
 }
@@ -495,7 +496,7 @@ TEST(SceneErrors, NameTheirPlace) {
             std::string::npos);
 }
 
-// Refraction of light that goes straight on is 0/0 there.
+// Refraction is 0/0 there, for light that goes straight on.
 TEST(Materials, AnIndexOfAlmostOneBendsNothing) {
   for (const char* index : {"1", "1.0000001", "0.9999999"}) {
     const Scene scene =

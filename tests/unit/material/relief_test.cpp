@@ -38,7 +38,7 @@ const char* const square =
 const char* const square_patch = "Shape \"bilinearmesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0 1 1 0]\n";
 
 std::string ramp(const std::string& slopes) {
-  // Displacement h = a x + b y + c z of the space where it is defined.
+  // Displacement h = a x + b y + c z in the space where it is defined.
   return "Texture \"h\" \"float\" \"bilerp\" \"float v01\" 0 \"float v10\" 1 \"float v11\" 1 \"string mapping\" "
          "\"planar\" \"vector3 v1\" [" +
          slopes + "]\nMaterial \"diffuse\" \"texture displacement\" \"h\"\n";
@@ -49,7 +49,7 @@ Vec3 raised(const Vec3& n, const Vec3& gradient) { return normalize(n - (gradien
 
 class NormalMaps : public ::testing::Test {
  protected:
-  // One texel that asks for the normal (x, y, z), stored as floats.
+  // One texel with the normal (x, y, z), stored as floats.
   std::string map(const Vec3& n, const std::string& name = "n.exr") {
     const std::array<float, 3> texel{0.5f + 0.5f * n.x, 0.5f + 0.5f * n.y, 0.5f + 0.5f * n.z};
     const std::string path = (folder.path() / name).string();
@@ -98,7 +98,7 @@ TEST_F(NormalMaps, EightBitTexelsAreLinear) {
   expect_near(at->shading.n, normalize(Vec3(2 * 192 / 255.0f - 1, 2 * 128 / 255.0f - 1, 2 * 230 / 255.0f - 1)), 1e-5f);
 }
 
-// What mirrors the surface mirrors the relief; what turns the surface inside out leaves the relief along u and v.
+// Mirroring the surface mirrors the relief. Turning the surface inside out keeps the relief relative to u and v.
 TEST_F(NormalMaps, FollowTransforms) {
   const auto normal = [&](const std::string& transform, const std::string& shape, const Point& target) {
     const Scene scene = world(map(tilted) + transform + shape);
@@ -117,7 +117,7 @@ TEST_F(NormalMaps, FollowTransforms) {
   }
 }
 
-// x along the mesh's own tangents where it has them.
+// x is along the mesh's own tangents if it has them.
 TEST_F(NormalMaps, FollowTangents) {
   const std::string shape = std::string(square).substr(0, std::string(square).size() - 1);
   const Scene scene = world(map(tilted) + shape + " \"vector3 S\" [3 3 0 3 3 0 3 3 0 3 3 0]\n");
@@ -161,7 +161,7 @@ TEST_F(NormalMaps, NeedColours) {
   EXPECT_NE(error.find("must have three channels"), std::string::npos) << error;
 }
 
-// Of a material that has both, as those of MTL files, the image decides: here bluish, grey and brown.
+// If a material has both, as in MTL files, the image decides: here bluish, grey and brown.
 TEST_F(NormalMaps, GiveWayToDisplacementsUnlessTheyHaveColoursOfNormals) {
   const auto normal = [&](const Vec3& texel) {
     SceneDescription scene = read_pbrt_string(
@@ -188,13 +188,13 @@ TEST(Displacement, OfALinearRampOnAPlane) {
       expect_near(at->shading.n, expected);
       expect_frame(*at);
     }
-  // By u and v, on a square of 2 x 4 m.
+  // Relative to u and v, on a square of 2 x 4 m.
   const Scene by_uv = world(
       "Texture \"h\" \"float\" \"bilerp\" \"float v00\" 0 \"float v10\" 0.5 \"float v01\" 2 \"float v11\" 2.5\n"
       "Material \"diffuse\" \"texture displacement\" \"h\"\nScale 2 4 1\n" +
       std::string(square));
   expect_near(look(by_uv, {1.3f, 1.7f, 1}, {0, 0, -1})->shading.n, normalize(Vec3(-0.25f, -0.5f, 1)));
-  // Turned inside out, the surface is raised towards its other side.
+  // Inside out, the surface is raised towards its other side.
   const Scene reversed = world(ramp("0.3 -0.2 0") + "ReverseOrientation\n" + square);
   expect_near(look(reversed, {0.3f, 0.6f, 1}, {0, 0, -1})->shading.n, normalize(Vec3(-0.3f, 0.2f, -1)));
 }
@@ -208,7 +208,7 @@ TEST(Displacement, OfSolidRampsOnCurvedShapesWhereverTheyArePlaced) {
       "Shape \"trianglemesh\" \"integer indices\" [0 1 2] \"point3 P\" [-2 -1 0.1  2 -1 0.5  0 2 -0.4] \"point2 uv\" "
       "[0 0 "
       "5 1 -1 3]\n",
-      // Without a parametrisation.
+      // A surface without a parametrisation.
       "Shape \"trianglemesh\" \"integer indices\" [0 1 2] \"point3 P\" [-2 -1 0.1  2 -1 0.5  0 2 -0.4] \"point2 uv\" "
       "[1 1 "
       "1 1 1 1]\n"};
@@ -237,7 +237,7 @@ TEST(Displacement, OfSolidRampsOnCurvedShapesWhereverTheyArePlaced) {
     }
 }
 
-// The bilinear interpolation of an image of a parabola: the difference over one texel is that of its middle.
+// Bilinear interpolation of an image of a parabola: the difference over one texel is the slope at its middle.
 TEST(Displacement, OfAnImage) {
   const test::TemporaryDir folder;
   constexpr int size = 32;
@@ -270,7 +270,7 @@ TEST(Displacement, OfAConstantChangesNothing) {
   EXPECT_EQ(a->shading.s, b->shading.s);
 }
 
-// At the poles of a sphere u has no direction.
+// At the poles of a sphere, u has no direction.
 TEST(Displacement, IsFiniteAtPoles) {
   for (const char* texture : {"Texture \"h\" \"float\" \"fbm\"\n", "Texture \"h\" \"float\" \"bilerp\"\n",
                               "Texture \"h\" \"float\" \"dots\" \"float uscale\" 9 \"float vscale\" 9\n"}) {

@@ -12,7 +12,7 @@ namespace lanthorn {
 namespace description {
 namespace {
 
-/// Paper that shines through where it is thin.
+/// Paper that transmits light where it is thin.
 struct ToyMaterial {
   SpectrumParameter colour{0.5f, {}};
   FloatParameter thickness{1, {}};  ///< in [0,1]
@@ -34,7 +34,7 @@ template ClosureAt compile(const description::ToyMaterial& m, MaterialCompiler& 
 namespace toy_material_test {
 namespace {
 
-// A scene of its own, for textures.
+// A separate scene, for textures.
 struct Workshop {
   SceneDescription scene;
   SpectrumStore spectra;

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double pi_d = std::numbers::pi;
 
-// Photons of one pass around the origin of a plane: uniform places in a square, `light(p)` their light per area.
+// Photons of one pass around the origin of a plane, uniform in a square. `light(p)` is their light per area.
 struct Plane {
   static constexpr float half_side = 1;
   static constexpr int photons = 4000;
@@ -38,7 +38,7 @@ struct Plane {
 
 AdaptiveRadiusSettings epanechnikov(float alpha = 2.0f / 3) { return {alpha, {KernelShape::epanechnikov}}; }
 
-// Hachisuka et al. 2008 with τ, as published, against the mean over passes that the integrators compute.
+// Hachisuka et al. 2008 with τ as published, against the mean over passes that the integrators compute.
 TEST(HachisukaRadius, IsThePublishedEstimate) {
   const AdaptiveRadiusSettings settings{0.7f, {KernelShape::box}};
   HachisukaRadius radius(0.5f);
@@ -67,7 +67,7 @@ TEST(HachisukaRadius, IsThePublishedEstimate) {
   EXPECT_NEAR(mean, published, 1e-4 * published);
 }
 
-// Of uniform photons the radius shrinks as Knaus & Zwicker's does, whose rule was derived from this one.
+// With uniform photons, the radius shrinks as Knaus & Zwicker's does, whose rule was derived from this one.
 TEST(HachisukaRadius, ShrinksLikeTheScheduleOnUniformPhotons) {
   const AdaptiveRadiusSettings settings = epanechnikov();
   HachisukaRadius radius(0.5f);
@@ -82,7 +82,7 @@ TEST(HachisukaRadius, ShrinksLikeTheScheduleOnUniformPhotons) {
   EXPECT_NEAR(slope, -(1 - 2.0 / 3) / 2, 0.01);
 }
 
-// Of light 1 + c d² everything is known: v = 1 / per_area, and the Laplacian is 4 c.
+// For light 1 + c d² everything is known: v = 1 / per_area, and the Laplacian is 4 c.
 TEST(LeastErrorRadius, FindsTheBestRadiusOfAParabola) {
   const AdaptiveRadiusSettings settings = epanechnikov();
   for (const float c : {1.5f, 3.0f}) {
@@ -99,8 +99,8 @@ TEST(LeastErrorRadius, FindsTheBestRadiusOfAParabola) {
   }
 }
 
-// The radius of the formula above `LeastErrorRadius`, from photons that are the same in every pass and the brighter the
-// farther they are; between its bounds. In how many of 60 passes it is away from both.
+// The radius of the formula above `LeastErrorRadius`, between its bounds. Photons are the same in every pass, and are
+// brighter the farther away they are. Returns in how many of 60 passes the radius differs from both bounds.
 int passes_between_bounds(KernelShape shape, double growth) {
   const AdaptiveRadiusSettings settings{1, {shape}};
   constexpr double first = 0.3;
@@ -148,7 +148,7 @@ TEST(LeastErrorRadius, FollowsItsFormula) {
   }
 }
 
-// No photon says nothing.
+// Without photons, nothing is learned.
 TEST(LeastErrorRadius, StaysAsItIsWithoutPhotons) {
   const AdaptiveRadiusSettings settings = epanechnikov();
   LeastErrorRadius radius(0.3f);
@@ -179,7 +179,7 @@ TEST(ChiSquaredRadius, ShrinksAtAnEdgeAndHardlyOnUniformPhotons) {
   EXPECT_GT(chi_squared_radius(true, 30), 0.99f * fastest.radius(30));
 }
 
-// Photons of one pass: so many in each sector of a disc in the plane of y and z, more in one of them.
+// Photons of one pass: `in_each` in each sector of a disc in the y-z plane, and `more` in addition in one of them.
 void update(ChiSquaredRadius& radius, int in_each, std::size_t full_sector, int more) {
   const AdaptiveRadiusSettings settings = epanechnikov();
   const Frame frame({0, 1, 0}, {0, 0, 1}, {1, 0, 0});
@@ -194,8 +194,8 @@ void update(ChiSquaredRadius& radius, int in_each, std::size_t full_sector, int 
   radius.update(tally, settings);
 }
 
-// 100 photons in each sector and 41 or 42 more in one have a chi-squared of 13.99 or 14.66: below and above the 5 % of
-// 14.07. (Of the counts since the radius last shrank, in however many passes they came.)
+// With 100 photons in each sector and 41 or 42 more in one, chi-squared is 13.99 or 14.66: just below and above 14.07,
+// the 5 % point. (Counts since the radius last shrank, whatever the number of passes.)
 TEST(ChiSquaredRadius, ShrinksBeyondTheCriticalValue) {
   constexpr float first = 0.3f;
   const RadiusSchedule slowest{static_cast<double>(first), 0.9};

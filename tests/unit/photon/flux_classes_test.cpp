@@ -29,7 +29,7 @@ TEST(FluxClasses, HoldPhotonsWithinAFactorOfFour) {
   EXPECT_EQ(classes.of(infinity), classes.count() - 1);
 }
 
-// Sixteen times the flux is a class, with four times the area.
+// Photons of sixteen times the flux form a class, with four times the area.
 TEST(FluxClasses, HaveAreasThatGrowWithTheRootOfTheFlux) {
   const FluxClasses classes{3};
   EXPECT_FLOAT_EQ(FluxClasses::radius_factor(classes.of(48)), 2);
@@ -37,7 +37,7 @@ TEST(FluxClasses, HaveAreasThatGrowWithTheRootOfTheFlux) {
   EXPECT_FLOAT_EQ(classes.area_factor(1), 1);
 }
 
-// For a dispersed path only the first wavelength counts, whatever the others carry.
+// For a dispersed path, only the first wavelength matters, whatever the others carry.
 TEST(FluxClasses, CountWhatDispersionLeaves) {
   const Wavelengths w = Wavelengths::spectral(0.3f);
   EXPECT_FLOAT_EQ(flux_of({1, 2, 3, 4}, false, w), 10);

@@ -32,7 +32,7 @@ GuidePhotons guides_of(const std::vector<Photon>& photons) {
                              [](const PhotonFlags& flags) { return !flags.direct; });
 }
 
-/// What guides a walk at a diffuse surface, unless another closure is given.
+/// The guide of a walk at a diffuse surface, unless another closure is given.
 Guidance find(const GuidePhotons& guides, const Point& p, const Normal& normal, const Direction& wi,
               const Bsdf& bsdf = Diffuse{Spectrum(0.5f)}) {
   WalkState state;
@@ -74,7 +74,7 @@ TEST(GuidePhotons, AreOfTheirSurfaceAndSide) {
   EXPECT_EQ(find(guides, middle, up, -up).guide, nullptr);  // seen from below
   EXPECT_EQ(find(guides, middle, {1, 0, 0}, {1, 0, 0}).guide, nullptr);
   EXPECT_EQ(find(guides, middle + Vec3(0, 0, 0.3f), up, up).guide, nullptr);
-  // A shape that is turned inside out is the same surface.
+  // A shape turned inside out is the same surface.
   EXPECT_NE(find(guides, middle, -up, up).guide, nullptr);
 }
 

@@ -24,8 +24,8 @@ TEST(Incidence, IsTheRatioOfCosinesOnOneFacet) {
       EXPECT_FLOAT_EQ(grazing_gain(geometric) * incidence_ratio(shading, geometric), shading / geometric);
 }
 
-// The edge of two facets that stand for a round surface, seen on the one that lies along the light; it is lit by the
-// photons of the other.
+// The edge between two facets of a round surface. The facet that is seen is parallel to the light; photons only hit the
+// other one.
 struct GrazingFacet {
   static constexpr float radius = 0.1f;
   static constexpr float tilt = 0.2f;  // of the other facet, radians
@@ -40,7 +40,7 @@ struct GrazingFacet {
     vertex.wi_local = {0, 0, 1};
     HashRng rng(1);
     constexpr int count = 4000;
-    // One watt falls on each square metre across the light.
+    // One watt per square metre perpendicular to the light.
     const float power = 2 * radius * radius * std::sin(tilt) / count;
     for (int i = 0; i < count; ++i) {
       const Vec2 u = rng.next2();
@@ -49,7 +49,7 @@ struct GrazingFacet {
           {Spectrum(power), p, {0, 0, 1}, {0, std::cos(tilt), std::sin(tilt)}, {.eye_scatterings = 9}, far});
     }
   }
-  // The irradiance by the shading normal, W/m², is sin(tilt / 2); half of the disc is the other facet's.
+  // With the shading normal, irradiance is sin(tilt / 2) W/m². Half of the disc is on the other facet.
   static void expect_plausible(const Spectrum& radiance) {
     const float irradiance = radiance[0] * pi;
     EXPECT_GT(irradiance, 0.2f * std::sin(tilt / 2));

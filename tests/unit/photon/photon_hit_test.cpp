@@ -55,7 +55,7 @@ TEST(PhotonHit, LanesAreAsOneByOne) {
     const float reach = 0.1f + rng.next(), flight = 0.3f * rng.next();
     std::array<float, Lanes::width> height{}, cosine{};
     for (std::size_t i = 0; i < Lanes::width; ++i) {
-      // Some are in the plane, some along it.
+      // Some photons are in the plane, some fly parallel to it.
       height[i] = rng.next() < 0.1f ? 0.0f : 0.5f * reach * (2 * rng.next() - 1);
       cosine[i] = rng.next() < 0.1f ? 0.0f : 2 * rng.next() - 1;
     }

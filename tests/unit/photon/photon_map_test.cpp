@@ -45,8 +45,8 @@ TEST(Kernel, IntegratesToOneOverItsDisc) {
     EXPECT_NEAR(integral_over_disc({KernelShape::cone, slope}, 2.0f), 1, 1e-5) << slope;
 }
 
-// By shells, in each of the dimensions of volume estimates.
-// Light L(x) = 1 + c x² has a bias of c times the kernel's second moment; even light has none.
+// Sums over shells, in each dimension of volume estimates. Light L(x) = 1 + c x² has a bias of c times the kernel's
+// second moment; constant light has none.
 TEST(KernelIn, KnowsItsBias) {
   constexpr double c = 0.7;
   for (const KernelShape shape :
@@ -133,7 +133,7 @@ TEST(RadiusSchedule, FollowsTheRecurrence) {
   EXPECT_NEAR(schedule.shrink2(10'000'000) / schedule.shrink2(80'000'000), 2, 1e-6);
 }
 
-// r, r² and r³ shrink alike (Knaus & Zwicker 2011, section 5).
+// r, r² and r³ have the same shrinkage (Knaus & Zwicker 2011, section 5).
 TEST(RadiusSchedule, ShrinksByDimension) {
   const RadiusSchedule schedule{1, 0.6};
   for (const std::uint64_t pass : {0, 1, 7, 1000})
@@ -161,7 +161,8 @@ TEST(Photon, DirectionsAreRoundedToNearest) {
     ASSERT_LT(std::sqrt(length_squared(decode_octahedral<12>(encode_octahedral<12>(v)) - v)), 1.2e-3f);
   }
   EXPECT_LT(worst, 7e-5);
-  // Errors have a deviation of about 2e-5 per axis: the mean of 2e5 one of 4.5e-8. Six of these: false alarm < 1e-8.
+  // Errors have a standard deviation of about 2e-5 per axis, and the mean of 2e5 errors one of 4.5e-8. Limit: six of
+  // these; false alarms < 1e-8.
   for (int axis = 0; axis < 3; ++axis) EXPECT_LT(std::fabs(mean_error[axis] / count), 2.7e-7);
   for (int axis = 0; axis < 3; ++axis)
     for (const float sign : {-1.0f, 1.0f}) {

@@ -13,9 +13,9 @@ namespace lanthorn::volume_gather_test {
 namespace {
 
 constexpr std::array radii{0.8f, 0.4f, 0.2f, 0.1f};  // m
-constexpr float height = 0.25f, depth = 3;           // of the photon, above the eye's ray and along it, m
+constexpr float height = 0.25f, depth = 3;           // of the photon, above the eye ray and along it, m
 
-// One photon or flight in fog, and an eye's ray and vertex that it is near.
+// One photon or flight in fog, and a ray and a vertex of an eye path near it.
 class OnePhoton {
  public:
   explicit OnePhoton(VolumeEstimator estimator) : estimator_(estimator) {
@@ -25,13 +25,13 @@ class OnePhoton {
     chunks_ = {{MediumPhoton{photon, MediumId(1), is_beam ? 4.0f : 0.0f}}};
   }
 
-  /// What an estimate by one kernel finds.
+  /// The estimate by one kernel.
   float gathered(float radius) const {
     const VolumeGather gather = gather_by(radius);
     const GatheredLight light = is_at_point(estimator_) ? gather.at(path_, vertex_) : gather.along(path_, flight_);
     return sum_of(light.caustic + light.indirect);
   }
-  /// The same by all kernels; the eye's path has flown so far before.
+  /// The estimate by all kernels. The eye path has flown this far before.
   std::array<float, radii.size()> compared(float flown, float near) const {
     std::vector<KernelIn> kernels;
     for (const float radius : radii) kernels.emplace_back(kernel_dimensions(estimator_), kernel, radius);

@@ -23,8 +23,8 @@ namespace {
 
 class EnvironmentTest : public test::OpenGl {};
 
-// Uneven in all directions and colours, with a sun of two texels of 64 x 32: of more it would not be one
-// (ibl/environment).
+// An environment that varies in all directions and colours, with a sun of two of 64 x 32 texels: more would not count
+// as a sun (ibl/environment).
 Rgb sky(float x, float y) {
   const float azimuth = 2 * pi * x, polar = pi * y;
   const bool is_sun = std::fabs(x - 0.3f) < 0.008f && std::fabs(y - 0.25f) < 0.016f;
@@ -45,7 +45,7 @@ Image sky_image(int width) {
   return image;
 }
 
-// Largest difference of texels, borders included, over the root mean square of the CPU's.
+// Largest difference between texels, borders included, relative to the root mean square of the CPU's.
 double difference(const CubeMap& found, const CubeMap& expected) {
   double largest = 0, squares = 0, count = 0;
   const int n = expected.size();
@@ -91,7 +91,7 @@ TEST_F(EnvironmentTest, MapsOfTheGpuAreThoseOfTheCpu) {
   }
 }
 
-// A ball of triangles with the normals of a ball: both renderers see the same triangles.
+// A ball of triangles with a ball's normals: both renderers see the same triangles.
 std::string ball(float x, float radius) {
   constexpr int across = 40;
   std::string indices, points, normals;
@@ -112,7 +112,7 @@ std::string ball(float x, float radius) {
          normals + "]\n";
 }
 
-// The samples of a film with so narrow a filter lie where a frame has its own.
+// With such a narrow filter, the film's samples are at the same positions as a frame's.
 Scene balls_under_the_sky() {
   const std::string text =
       R"(
@@ -139,8 +139,8 @@ Material "conductor" "spectrum eta" "metal-Cu-eta" "spectrum k" "metal-Cu-k" "fl
   return Scene(std::move(description));
 }
 
-// Relative to the brightness there, and at least to the mean. Pixels whose sample lies on an edge may see either side:
-// a few are left out. Graphics cards know only 256 steps between two texels of a map.
+// Differences are relative to the pixel's brightness or the mean, whichever is larger. Pixels whose sample is on an
+// edge may show either side, so a few are skipped. Graphics cards only have 256 steps between two texels of a map.
 TEST_F(EnvironmentTest, FrameIsThePictureOfTheCpu) {
   const Scene scene = balls_under_the_sky();
   RenderOptions options = test::options_for("splitsum", 1);
@@ -162,7 +162,7 @@ TEST_F(EnvironmentTest, FrameIsThePictureOfTheCpu) {
   }
   EXPECT_GT(lit, 1000);
   EXPECT_LE(differ, lit / 200);
-  // A second frame takes the maps of the first.
+  // A second frame reuses the maps of the first.
   const auto has_baked = [&] {
     const std::vector<gl::StageTime> stages = renderer.report().stages;
     return std::any_of(stages.begin(), stages.end(),

@@ -23,7 +23,7 @@
 namespace lanthorn::own_technique_test {
 namespace {
 
-// The same indirect light in all pixels. Eye paths find twice as much at diffuse surfaces.
+// Gives all pixels the same indirect light. Eye paths find twice as much at diffuse surfaces.
 class Flood final : public Technique {
  public:
   void prepare(const FrameContext& frame) override { views_before_ = frame.light_views.size(); }
@@ -60,7 +60,7 @@ TechniqueInfo flood() {
       .limitations = [](const Scene&, const GpuScene*) -> std::vector<std::string> { return {"all is flooded"}; }};
 }
 
-// Once in this program, whichever tests run.
+// Registered once per process, whichever tests run.
 const bool added = [] {
   add_technique(flood());
   add_realtime_methods();
@@ -69,7 +69,7 @@ const bool added = [] {
 
 class OwnTechnique : public test::OpenGl {};
 
-// A wall, the left half of which is a mirror that shows a wall behind the eye.
+// A wall whose left half is a mirror that shows a wall behind the eye.
 constexpr const char* walls = R"(
 LookAt 0 0 -2  0 0 0  0 1 0
 Camera "perspective" "float fov" [40]

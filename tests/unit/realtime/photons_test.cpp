@@ -28,7 +28,7 @@ namespace {
 
 class Photons : public test::OpenGl {};
 
-// A box, open to the eye, with a block and a light of the given kind.
+// A box that is open towards the eye, with a block and a light of the given kind.
 std::string box(const std::string& light,
                 const std::string& wall = R"(Material "diffuse" "rgb reflectance" [.7 .6 .5])") {
   return R"(
@@ -56,7 +56,7 @@ constexpr const char* spot_light =
     "\"float coneangle\" [35] \"float conedeltaangle\" [12]\n";
 constexpr const char* sun =
     "LightSource \"distant\" \"rgb L\" [2 2 2] \"point3 from\" [.4 1 -.8] \"point3 to\" [0 0 0]\n";
-/// A square lamp that faces down.
+/// A square lamp facing down.
 std::string lamp_of(const std::string& radiance, double half, double height) {
   return fmt::format(R"(
 AttributeBegin
@@ -85,7 +85,7 @@ Image frame_of(const Scene& scene, const FrameSettings& settings) {
   return renderer.read_layers();
 }
 
-// In the second room the eye has photons behind it and around it.
+// In the second room, photons are also behind the eye and around it.
 TEST_F(Photons, SplatsAndTilesGiveTheSameLight) {
   std::string inside = box(point_light);
   inside.replace(inside.find("0 1 -3.4"), 8, ".9 1 -.5");
@@ -125,7 +125,7 @@ TEST_F(Photons, TilesLoseNoneOfVeryManyPhotons) {
   EXPECT_LT(errors.max_difference, 1e-4 * errors.mean_image);
 }
 
-// Software computes at once and draws late: without waiting, a stage's time would be that of the stage before.
+// Software drivers compute immediately and draw later: without waiting, a stage would be charged for the stage before.
 TEST_F(Photons, StagesBeginWhenAllBeforeIsDone) {
   gl::Texture large(GL_RGBA32F, 2048, 2048, 12);
   large.clear();
@@ -196,7 +196,7 @@ TEST_F(Photons, FollowALightThatMoves) {
   EXPECT_GT(image_errors(renderer.read_layers(), before).rel_mse, 0.01);
 }
 
-// Cells of the room by the first points of photons: 6 x 6 x 6.
+// Counts, by 6 x 6 x 6 cells of the room, of photons' first hits.
 constexpr int cells_along = 6;
 std::size_t cell_of(const Point& p) {
   const auto along = [](float x, float low) {
@@ -207,7 +207,7 @@ std::size_t cell_of(const Point& p) {
 }
 using Histogram = std::array<double, cells_along * cells_along * cells_along>;
 
-// Luminance times albedo, by which texels are drawn.
+// Luminance times albedo, in proportion to which texels are sampled.
 float importance_of(const Spectrum& flux, const Spectrum& albedo) {
   const Spectrum s = flux * albedo;
   return 0.2126f * s[0] + 0.7152f * s[1] + 0.0722f * s[2];
@@ -225,7 +225,7 @@ struct FirstHit {
   }
 };
 
-// Positions of traced photons, each with the share of them that maps should draw there.
+// Positions of traced photons, each with the fraction of them that maps should sample there.
 Histogram traced_positions(const Scene& scene, int photons) {
   Histogram shares{};
   double total = 0;
@@ -261,8 +261,8 @@ Histogram map_positions(const Scene& scene, std::uint32_t frames, std::uint32_t 
   return counts;
 }
 
-// Pearson's test; cells of few photons count together. Photons of a frame are stratified, which only makes the
-// statistic smaller. The shares are themselves sampled, with `share_samples` photons: the variances add up.
+// Pearson's test. Cells of few photons are pooled. Photons of a frame are stratified, which only makes the statistic
+// smaller. The expected fractions are themselves estimated from `share_samples` photons, so the variances add up.
 double chi2_p(const Histogram& counts, const Histogram& shares, double share_samples) {
   double total = 0, statistic = 0, few_count = 0, few_share = 0;
   for (const double c : counts) total += c;
@@ -285,7 +285,7 @@ double chi2_p(const Histogram& counts, const Histogram& shares, double share_sam
 }
 
 TEST_F(Photons, OfMapsLieWhereTracedOnesDo) {
-  // The lamp is so small that all photons of a frame may start at one of its points.
+  // The lamp is so small that all photons of a frame may start at one point.
   for (const std::string& light :
        {std::string(point_light), std::string(spot_light), std::string(sun), lamp_of("9000 8000 5000", 0.002, 1.9)}) {
     const Scene scene = test::scene_from_text(box(light));
@@ -296,7 +296,7 @@ TEST_F(Photons, OfMapsLieWhereTracedOnesDo) {
   }
 }
 
-// Watts that surfaces scatter first, by luminance, in 3 x 3 x 3 cells of the room.
+// Watts scattered at the first surface, by luminance, in 3 x 3 x 3 cells of the room.
 constexpr std::size_t block_count = 27;
 using Blocks = std::array<double, block_count>;
 std::size_t block_of(const Point& p) {
@@ -312,7 +312,7 @@ std::vector<Blocks> watts_of_maps(const Scene& scene, std::uint32_t frames, std:
   Renderer renderer(scene);
   BounceMap bounces(shader_files());
   ViewOptions options;
-  options.resolution = {2, 2};  // what the eye sees does not matter
+  options.resolution = {2, 2};  // the view does not matter
   const View view = make_view(scene.description().view, options);
   FrameSettings settings = photon_settings(photons);
   settings.views.seed = test::seed(8);
@@ -384,10 +384,9 @@ double squared_length(std::vector<std::vector<double>> c, std::vector<double> d)
   return sum;
 }
 
-// Hotelling's test, which is Pearson's for samples whose cells depend on each other: T² is a chi-squared variable but
-// for the covariances, which are estimated from `frames` samples; the F distribution knows that, here by Paulson's
-// approximation (1942). Blocks of less than 2 % of the light count together. Frames are stratified, which only makes
-// T² smaller.
+// Hotelling's test, i.e. Pearson's for cells that are correlated: T² would be chi-squared, but the covariances are
+// estimated from `frames` samples. The F distribution accounts for that, here by Paulson's approximation (1942). Blocks
+// of less than 2 % of the light are pooled. Frames are stratified, which only makes T² smaller.
 double hotelling_p(const std::vector<Blocks>& frames, const std::vector<Blocks>& traced) {
   Blocks share{};
   double total = 0;
@@ -397,7 +396,7 @@ double hotelling_p(const std::vector<Blocks>& frames, const std::vector<Blocks>&
       total += b[i];
     }
   std::vector<std::size_t> group_of(block_count, 0);
-  std::size_t groups = 1;  // the first: all blocks of little light
+  std::size_t groups = 1;  // the first: all dim blocks
   for (std::size_t i = 0; i < block_count; ++i)
     if (share[i] > 0.02 * total) group_of[i] = groups++;
   const GroupMeans found = group_means(frames, group_of, groups), expected = group_means(traced, group_of, groups);
@@ -414,14 +413,14 @@ double hotelling_p(const std::vector<Blocks>& frames, const std::vector<Blocks>&
   return 0.5 * std::erfc(((1 - b) * root - (1 - a)) / std::sqrt(2 * (b * root * root + a)));
 }
 
-// A lamp of nine tenths of the width has T² = 119, where 80 is the limit and 5 is usual.
+// A lamp of nine tenths the width gives T² = 119. The limit is 80, and 5 is usual.
 TEST_F(Photons, OfExtendedLampsLieWhereTracedOnesDo) {
   const Scene scene = test::scene_from_text(box(lamp_of("9 8 5", 0.6, 1.7)));
   EXPECT_TRUE(test::not_below(hotelling_p(watts_of_maps(scene, 600, 500), watts_of_traced(scene, 1000, 200)),
                               test::false_alarm_rate));
 }
 
-// The finer map of the sun takes its part of the light from the other one, and half of the photons.
+// The sun's finer map takes over its part of the light from the other map, and half of the photons.
 TEST_F(Photons, OfNestedMapsCarryTheSameLight) {
   const Scene scene = test::scene_from_text(box(sun));
   Renderer renderer(scene);
@@ -448,13 +447,13 @@ TEST_F(Photons, OfNestedMapsCarryTheSameLight) {
   settings.views.focus = focus;
   const std::vector<PhotonStart> nested = starts();
   ASSERT_EQ(renderer.light_views().front().windows.size(), 2u);
-  // Stratified photons of one light, seen in texels of 1 and .2 cm.
+  // Stratified photons of one light, in texels of 1 and .2 cm.
   EXPECT_NEAR(watts(nested) / watts(whole), 1, 0.01);
   EXPECT_GT(near_focus(nested), 10000);
   EXPECT_LT(near_focus(whole), 9000);
 }
 
-// Watts that the first surfaces scatter, by the GPU's photons and by the CPU's.
+// Watts scattered at the first surfaces, by photons of the GPU and of the CPU.
 TEST_F(Photons, OfMapsCarryTheLightThatIsScattered) {
   const Scene scene = test::scene_from_text(box(point_light));
   Renderer renderer(scene);
@@ -482,7 +481,7 @@ TEST_F(Photons, OfMapsCarryTheLightThatIsScattered) {
     walk_from_light(PathContext{scene, w, sampler, counts, {1, 2}}, LightPath{scene.lights()[0]}, 0, visitor);
     expected += visitor.green / paths;
   }
-  // Stratified photons of one light: 1 % is some twenty standard deviations of either sum.
+  // Stratified photons of one light: 1 % is about twenty standard deviations of either sum.
   EXPECT_NEAR(scattered / expected, 1, 0.01);
 }
 

@@ -66,7 +66,7 @@ TEST_F(RendererTest, FramesAreTheSameFromRunToRun) {
   EXPECT_EQ(frame_of(plane_and_point, settings).pixels, frame_of(plane_and_point, settings).pixels);
 }
 
-// A ball on a square plane, in the sun. `h`: half of the plane's edge.
+// A ball on a square plane, in the sun. `h`: half the plane's width.
 std::string ball_on_plane(const std::string& h) {
   return R"(
 LookAt 0 1.5 -3.5  0 .5 0  0 1 0
@@ -85,7 +85,7 @@ Shape "sphere" "float radius" [.6]
 )";
 }
 
-// How pixels that maps shade otherwise than rays compare with those in shadow.
+// Pixels that maps shade differently than rays do, relative to the pixels in shadow.
 struct MapErrors {
   int others = 0, shadowed = 0;
 };
@@ -107,17 +107,17 @@ MapErrors map_errors(const Scene& scene, FrameSettings settings) {
   return errors;
 }
 
-// By maps of few texels, the ball does not shadow itself, and has a shadow.
+// With maps of few texels, the ball does not shadow itself, but has a shadow.
 TEST_F(RendererTest, MapsShadeRoundShapesAsRaysDo) {
   FrameSettings settings;
   settings.views.map_size = 64;
   const auto [others, shadowed] = map_errors(test::scene_from_text(ball_on_plane("4")), settings);
   EXPECT_GT(shadowed, 150);
-  // At the edges of the shadow.
+  // Differences at the edges of the shadow.
   EXPECT_LT(others, 0.4 * shadowed) << shadowed;
 }
 
-// A floor under a spot light; a blade above the camera shadows half of it, with an edge at a slant.
+// A floor under a spot light, half in the shadow of a blade above the camera, with an oblique edge.
 constexpr const char* floor_and_blade = R"(
 LookAt 0 1.5 0  0 0 0  0 0 1
 Camera "perspective" "float fov" [60]
@@ -171,7 +171,7 @@ TEST_F(RendererTest, SoftEdgesHaveNoTeeth) {
   EXPECT_LT(ratios / count, 0.16);
 }
 
-// A texel of the whole plane is 4 m wide.
+// A texel of the whole plane would be 4 m wide.
 TEST_F(RendererTest, SmallThingsHaveShadowsInLargeScenes) {
   const Scene scene = test::scene_from_text(ball_on_plane("400"));
   FrameSettings settings;
@@ -182,7 +182,7 @@ TEST_F(RendererTest, SmallThingsHaveShadowsInLargeScenes) {
   EXPECT_LT(others, 0.4 * shadowed) << shadowed;
 }
 
-// A square 1 cm before the eye, on a plane 2 km wide.
+// A square 1 cm in front of the eye, on a plane 2 km wide.
 TEST_F(RendererTest, NearThingsAreSeenInLargeScenes) {
   FrameSettings settings;
   settings.shadows = ShadowKind::none;
@@ -199,7 +199,7 @@ Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-1 0 .01  1 0 .
   EXPECT_GT(image.at(8, 2, 3), 0);
 }
 
-// A corner of a room with an instanced block and a lamp at the given places.
+// A corner of a room, with an instanced block and a lamp at the given positions.
 std::string corner(const std::string& block, const std::string& lamp) {
   return R"(
 LookAt 0 1.2 -3.4  0 .6 0  0 1 0
@@ -239,7 +239,7 @@ Image frame_of(Renderer& renderer, const Scene& scene, const Look& look) {
   return renderer.read_layers();
 }
 
-// While the eye moves, a pixel of the mirror may show the light of another one in its block, and all else is the same.
+// While the eye moves, a pixel of the mirror may show the light of another pixel in its block. All else is the same.
 TEST_F(RendererTest, EyePathsMayStandForBlocksOfPixels) {
   const Scene scene = test::scene_from_text(corner("-.2 0 0", ".4 1.5 -.2"));
   const View view = make_view(scene.description().view);
@@ -271,7 +271,7 @@ TEST_F(RendererTest, EyePathsMayStandForBlocksOfPixels) {
   EXPECT_EQ(frame(1).pixels, exact.pixels);
 }
 
-// Frames after a lamp, an object or both have moved are those of a fresh start with them there.
+// After a lamp, an object or both have moved, frames are the same as after a fresh start.
 TEST_F(RendererTest, FramesFollowObjectsAndLamps) {
   const std::string block_here = "-.2 0 0", block_there = ".4 .1 -.3", lamp_here = ".4 1.5 -.2",
                     lamp_there = "-.6 1.6 -.5";
@@ -306,7 +306,7 @@ TEST_F(RendererTest, FramesFollowObjectsAndLamps) {
   }
 }
 
-// A driver that says that it was reset.
+// A driver that reports a reset.
 TEST_F(RendererTest, LostContextIsAnError) {
   const Scene scene = test::scene_from_text(plane_and_point);
   const View view = make_view(scene.description().view);
@@ -344,9 +344,9 @@ TEST_F(RendererTest, RemarksOfDriversAreNoErrors) {
   EXPECT_THROW(log.check(), Error);
 }
 
-// Exits with 0 if the lack of OpenGL is told.
+// Exits with 0 if the lack of OpenGL is reported.
 void make_context_without_drivers() {
-  unsetenv("__EGL_VENDOR_LIBRARY_FILENAMES");  // counts before the other
+  unsetenv("__EGL_VENDOR_LIBRARY_FILENAMES");  // takes precedence over the other
   setenv("__EGL_VENDOR_LIBRARY_DIRS", "/nonexistent", 1);
   try {
     gl::Context::headless();
@@ -358,7 +358,7 @@ void make_context_without_drivers() {
 }
 
 TEST(Context, WithoutDriversSaysWhatIsMissing) {
-  GTEST_FLAG_SET(death_test_style, "threadsafe");  // a process in which EGL has no drivers yet
+  GTEST_FLAG_SET(death_test_style, "threadsafe");  // a process whose EGL has no drivers yet
   EXPECT_EXIT(make_context_without_drivers(), testing::ExitedWithCode(0), "");
 }
 

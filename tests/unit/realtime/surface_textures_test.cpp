@@ -24,7 +24,7 @@ namespace {
 
 class SurfaceTexturesTest : public test::OpenGl {};
 
-// A square of side 2 before the wall, with u along x and v along y, or against it.
+// A square of side 2 in front of the wall. u runs along x or against it, v along y or against it.
 std::string square(float x, float y, const std::string& options = "", bool is_mirrored = false) {
   const auto at = [&](float dx, float dy) { return std::to_string(x + dx) + " " + std::to_string(y + dy) + " 0  "; };
   return "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point3 P\" [" + at(-1, -1) + at(1, -1) + at(1, 1) +
@@ -32,7 +32,7 @@ std::string square(float x, float y, const std::string& options = "", bool is_mi
          "\n";
 }
 
-// The samples of a film with so narrow a filter lie where a frame has its own.
+// With such a narrow filter, the film's samples are at the same positions as a frame's.
 std::string before_wall(const std::string& light, const std::string& squares) {
   return R"(
 LookAt 0 0 -8  0 0 0  0 1 0
@@ -48,7 +48,7 @@ Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-4 -4 1  4 -4 1
 )" + squares;
 }
 
-// A map of 2 x 2 normals that lean by about 30 degrees to the left, the right, downwards and upwards.
+// A map of 2 x 2 normals, tilted by about 30 degrees to the left, the right, downwards and upwards.
 std::string normal_map(const test::TemporaryDir& folder) {
   const std::vector<float> texels{.25f, .5f, .93f, .75f, .5f, .93f, .5f, .25f, .93f, .5f, .75f, .93f};
   std::string path = (folder.path() / "n.exr").string();
@@ -59,8 +59,8 @@ std::string normal_map(const test::TemporaryDir& folder) {
   return path;
 }
 
-// Four squares in a sky that is bright on one side: metal beside plaster, leaning normals, a lamp with a picture, and a
-// square of which only a half is there, whose map is mirrored. Pixels at the edges of patterns are left out.
+// Four squares under a sky that is bright on one side: metal beside plaster, tilted normals, a lamp with a picture, and
+// a half-transparent square with a mirrored map. Pixels at edges of patterns are skipped.
 TEST_F(SurfaceTexturesTest, SurfacesAreThoseOfTheCpu) {
   const test::TemporaryDir folder;
   const std::string squares =
@@ -103,7 +103,7 @@ Material "diffuse" "rgb reflectance" [.1 .1 .1]
     for (std::size_t i = 0; i < a.pixels.size(); ++i)
       if (std::fabs(a.pixels[i] - b.pixels[i]) > 0.01f * std::max(0.1f, a.pixels[i])) ++differ;
     RecordProperty(layer, std::to_string(differ));
-    // None with llvmpipe; the edges between halves may fall on the other side of some pixels.
+    // 0 with llvmpipe. Edges between halves may fall on the other side of some pixels.
     EXPECT_LT(differ, static_cast<int>(a.pixels.size()) / 200) << layer;
   }
 }
@@ -128,8 +128,8 @@ double mean_over(const Image& image, int x0, int y0, int x1, int y1) {
   return sum / ((x1 - x0) * (y1 - y0));
 }
 
-// Two black squares of opacities .3 and .5, one behind the other, before the wall: of 180 pixels of 50 frames the wall
-// is seen in .35; five standard deviations are .025.
+// Two black squares of opacities .3 and .5, one behind the other, in front of the wall. The wall is visible in .35 of
+// 180 pixels of 50 frames; five standard deviations are .025.
 TEST_F(SurfaceTexturesTest, FramesSeeThroughSurfacesByChance) {
   const std::string light = "LightSource \"distant\" \"point3 from\" [0 0 -1] \"point3 to\" [0 0 0]\n";
   const std::string black = "Material \"diffuse\" \"rgb reflectance\" [0 0 0]\n";
@@ -145,7 +145,7 @@ TEST_F(SurfaceTexturesTest, FramesSeeThroughSurfacesByChance) {
   EXPECT_NEAR(seen / wall, 0.35, 0.025);
 }
 
-// In the sun, the shadow of the left half of the square is not there, and that of a square of opacity .25 is light.
+// In the sun, the left half of the square casts no shadow, and a square of opacity .25 casts a faint one.
 TEST_F(SurfaceTexturesTest, MapsShadowByOpacity) {
   const auto shadow = [&](const std::string& alpha) {
     const std::string sun = "LightSource \"distant\" \"point3 from\" [-4 0 -1] \"point3 to\" [0 0 0]\n";
@@ -156,7 +156,8 @@ TEST_F(SurfaceTexturesTest, MapsShadowByOpacity) {
   };
   const Image opaque = shadow(""), holed = shadow("\"texture alpha\" \"halves\""),
               light = shadow("\"float alpha\" [.25]");
-  // The square throws it to x = -1.5 to .5: its halves meet at -.5, in column 26 or 20 as x grows to the right or left.
+  // The shadow is at x = -1.5 to .5. Its halves meet at -.5, in column 26 or 20, depending on whether x grows to the
+  // right or left.
   const double lit = mean_over(opaque, 2, 2, 46, 8);
   std::vector<double> columns;
   for (int x = 0; x < 48; ++x)
@@ -171,7 +172,7 @@ TEST_F(SurfaceTexturesTest, MapsShadowByOpacity) {
   EXPECT_NEAR(mean_over(light, first, 22, last, 26) / lit, 0.75, 0.02);
 }
 
-// Of a square of 4 m² and opacity .25, a quarter lies in the voxels.
+// A quarter of a square of 4 m² and opacity .25 is in the voxels.
 TEST_F(SurfaceTexturesTest, VoxelsHoldSurfacesByOpacity) {
   const Scene scene =
       test::scene_from_text("WorldBegin\nLightSource \"point\"\n" + square(0, 0, "\"float alpha\" [.25]"));
@@ -214,7 +215,7 @@ Material "mix" "string materials" ["plaster" "metal"] "texture amount" "halves"
   EXPECT_GT(renderer.report().rays, 0u);
 }
 
-// A lamp that moves leaves textured surfaces as they were; another texture on them does not.
+// Moving a lamp keeps textured surfaces; another texture on them does not.
 TEST_F(SurfaceTexturesTest, AreMadeAnewForOtherTexturesAlone) {
   const Scene scene = test::scene_from_text(before_wall("LightSource \"point\"\n", R"(
 Texture "stripes" "spectrum" "checkerboard" "float uscale" [9] "float vscale" [1] "rgb tex1" [.1 .2 .3] "rgb tex2" [.8 .7 .9]

@@ -15,7 +15,7 @@
 namespace lanthorn::technique_docs_test {
 namespace {
 
-// Rows of the table that begins with this line, without its ruler.
+// Rows of the table that begins with this line, without the line below the header.
 std::set<std::string> rows_after(const std::string& text, const std::string& head) {
   std::istringstream lines(text.substr(std::min(text.find(head), text.size())));
   std::set<std::string> rows;

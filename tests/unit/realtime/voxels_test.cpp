@@ -28,7 +28,7 @@ WorldBegin
 )";
 }
 
-// Every triangle is cut into pieces of voxels, each with two sides.
+// Every triangle is cut into pieces in voxels, each with two sides.
 TEST_F(VoxelsTest, HoldAllSurfacesAtTheirPlaces) {
   const Scene scene = test::scene_from_text(view("0 1 -3  0 0 0  0 1 0", 40) + R"(
 Material "diffuse" "rgb reflectance" [.5 .25 .125]
@@ -61,7 +61,7 @@ Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-1 -1 -1  1 -1 
   EXPECT_NEAR(area / (2 * (slanted + 4)), 1, 1e-4);
 }
 
-// Of a floor that is wider than a grid, that holds a square with two sides; of what lies beside it, nothing.
+// Of a floor wider than the grid, the grid contains a square with two sides. It contains nothing of a floor beside it.
 TEST_F(VoxelsTest, HoldOfSurfacesWhatLiesInTheirGrid) {
   const Scene scene = test::scene_from_text(view("0 1 -3  0 0 0  0 1 0", 40) + R"(
 Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-8 0 -8  8 0 -8  8 0 8  -8 0 8]
@@ -86,7 +86,7 @@ TEST(VoxelGrids, NarrowAroundTheFocusAsFarAsItLooks) {
   bounds.extend(Point(100, 9, 100));
   const ViewFocus focus{Point(30, 1, -20), 2};
   const std::vector<VoxelGrid> grids = voxel_grids(bounds, 64, focus, 0);
-  // 210 m, and halves of it while they are at least 3 m.
+  // 210 m, repeatedly halved as long as the result is at least 3 m.
   ASSERT_EQ(grids.size(), 7u);
   EXPECT_LT(grids[0].corner.x, -100);
   EXPECT_GT(grids[0].corner.x + grids[0].edge(), 100);
@@ -95,12 +95,12 @@ TEST(VoxelGrids, NarrowAroundTheFocusAsFarAsItLooks) {
     for (int axis = 0; axis < 3; ++axis) {
       EXPECT_GE(grids[g].corner[axis], grids[g - 1].corner[axis]);
       EXPECT_LE(grids[g].corner[axis] + grids[g].edge(), grids[g - 1].corner[axis] + grids[g - 1].edge());
-      // Within an eighth of the edge around the middle.
+      // Within an eighth of the width around the middle.
       const float place = (focus.centre[axis] - grids[g].corner[axis]) / grids[g].edge();
       EXPECT_NEAR(place, 0.5f, 0.0626f);
     }
   }
-  // On a way of 14 m, each grid moves by eighths of its edge, and not more often.
+  // Along 14 m, each grid moves by eighths of its width, and not more often.
   std::vector<VoxelGrid> before = grids;
   std::vector<float> moves(grids.size());
   constexpr int steps = 1400;
@@ -126,7 +126,7 @@ TEST(VoxelGrids, AreAsManyAsAreAskedForOrNeeded) {
   EXPECT_EQ(voxel_grids(bounds, 256, {}, 8).size(), 2u) << "of .9 GiB each";
 }
 
-// 2 m above a floor, and 2 m above it by parallel rays: these look for detail where they meet it.
+// 2 m above a floor, and the same with parallel rays, which need detail where they meet it.
 TEST_F(VoxelsTest, FocusIsTheEyeOrWhatParallelRaysMeet) {
   const std::string floor = test::quad("-50 0 -50  50 0 -50  50 0 50  -50 0 50");
   const auto focus = [&](const std::string& camera) {
@@ -164,7 +164,7 @@ Rgb mean_of(const Image& image, int x0, int x1) {
 }
 
 Image indirect_of(Renderer& renderer, const Scene& scene, FrameSettings settings) {
-  // Means over turns of the cones.
+  // Means over rotations of the cones.
   constexpr std::uint32_t frames = 4;
   Image sum;
   for (std::uint32_t i = 0; i < frames; ++i) {
@@ -180,7 +180,7 @@ Image indirect_of(Renderer& renderer, const Scene& scene, FrameSettings settings
   return sum;
 }
 
-// A ball around its lamp: irradiance E = I / r² everywhere, and each bounce is the albedo times the one before.
+// A ball around its lamp: the irradiance is E = I / r² everywhere, and each bounce is the albedo times the one before.
 TEST_F(VoxelsTest, EnergyIsBoundedInsideABall) {
   for (const float albedo : {0.5f, 0.9f}) {
     const Scene scene = test::scene_from_text(view("0 0 -.5  0 0 1  0 1 0", 80) +
@@ -193,15 +193,15 @@ TEST_F(VoxelsTest, EnergyIsBoundedInsideABall) {
     for (int bounces = 1; bounces <= 4; ++bounces) {
       expected += std::pow(albedo, static_cast<float>(bounces + 1)) * inv_pi;
       const float found = mean_of(indirect_of(renderer, scene, cone_settings(bounces)), 0, 32).g;
-      // Each bounce loses a tenth to the coarse dark outside of the ball, and none gains.
+      // Each bounce loses a tenth to the dark coarse voxels outside the ball, and none gains light.
       EXPECT_GT(found, std::pow(0.85f, static_cast<float>(bounces)) * expected) << albedo << ' ' << bounces;
       EXPECT_LT(found, 1.02f * expected) << albedo << ' ' << bounces;
     }
   }
 }
 
-// The same with finer grids on a part of the wall that the eye sees: where one grid ends, no light is gained, and not
-// more is lost than in one grid that is as fine everywhere.
+// The same with finer grids on a visible part of the wall: where a grid ends, no light is gained, and no more is lost
+// than in a single grid that is equally fine everywhere.
 TEST_F(VoxelsTest, EnergyIsBoundedAcrossTheGridsOfAClipmap) {
   constexpr float albedo = 0.9f;
   const Scene scene = test::scene_from_text(view("0 0 .5  0 0 1  0 1 0", 80) +
@@ -222,7 +222,7 @@ Shape "sphere"
   }
 }
 
-// A room of 4 m with its lamp, alone and in the middle of a plain of 400 m.
+// A room of 4 m with its lamp, on its own and in the middle of a plain of 400 m.
 TEST_F(VoxelsTest, ARoomInAWidePlainIsLitAsAlone) {
   const std::string room = R"(
 LightSource "point" "rgb I" [3 3 3] "point3 from" [-1 2 0]
@@ -254,7 +254,7 @@ Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [2 0 -2  2 0 2  
   EXPECT_GT(difference(1), 0.4) << "one grid has voxels of 14 m";
 }
 
-// The eye of a plain moves: grids are cut anew when it has gone an eighth of one's edge, not before.
+// The eye moves over a plain. A grid is rebuilt when the eye has moved by an eighth of its width, not before.
 TEST_F(VoxelsTest, GridsFollowTheEyeBySteps) {
   const auto plain = [](const std::string& look_at) {
     return test::scene_from_text(view(look_at, 60) + R"(
@@ -277,7 +277,7 @@ Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-99 0 -99  99 0
   EXPECT_TRUE(cuts("8 2 0  8 0 3  0 1 0"));
 }
 
-// A wide room, dark at its other end, with the lamp in it moved from left to right.
+// A wide room, dark at the other end, with a lamp that moves from left to right.
 TEST_F(VoxelsTest, LightFollowsALampThatMoves) {
   const auto room = [](float x) {
     return test::scene_from_text(view("0 1 -5.5  0 1 0  0 1 0", 50) +
@@ -311,7 +311,8 @@ TEST_F(VoxelsTest, FramesAreTheSameFromRunToRun) {
   EXPECT_EQ(indirect_of(first, scene, cone_settings(2)).pixels, indirect_of(second, scene, cone_settings(2)).pixels);
 }
 
-// A metal ball in a white room without walls reflects what its lobe does, though no direction of the frame meets it.
+// A metal ball in a white environment reflects what its lobe does, although no direction of the frame hits the
+// environment.
 TEST_F(VoxelsTest, ConesOfNarrowLobesShowTheSky) {
   const Scene scene = test::scene_from_text(R"(
 LookAt 0 0 -4  0 0 0  0 1 0
@@ -331,7 +332,7 @@ Shape "sphere"
   }
 }
 
-// A pane of glass before a wall shows the wall's direct light, less what its two sides reflect.
+// A glass pane in front of a wall shows the wall's direct light, minus the reflection at its two sides.
 TEST_F(VoxelsTest, GlassShowsDirectLight) {
   const Scene scene = test::scene_from_text(R"(
 LookAt 0 0 -4  0 0 0  0 1 0
@@ -359,7 +360,8 @@ Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-4 -4 -1  0 -4 
     }
   }
   EXPECT_GT(beside, 0);
-  // 80 paths, of which .08 are reflected: five standard deviations are .15; .05 is for the slope of the light.
+  // 80 paths, of which .08 are reflected: five standard deviations are .15. Another .05 is for the gradient of the
+  // light.
   EXPECT_NEAR(through / beside, 0.92, 0.2);
 }
 

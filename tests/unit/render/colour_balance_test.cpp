@@ -34,7 +34,7 @@ RenderOptions spectral_options(const char* method, std::uint64_t passes, std::ui
   return options;
 }
 
-// The mean of the picture in red, green and blue.
+// Mean red, green and blue of the picture.
 std::array<double, 3> mean_of_grey(const Scene& scene, const RenderOptions& options) {
   const Image image = *select_layer(test::render_image(scene, options), "color");
   std::array<double, 3> mean{};
@@ -70,7 +70,7 @@ TEST(ColourBalance, PicturesAreBalanced) {
   EXPECT_NEAR(mean[0] / mean[2], 1, 0.03);
 }
 
-// Variance of the pixels over seeds, in parts of the squared mean.
+// Variance of the pixels over seeds, relative to the squared mean.
 double relative_variance(const Scene& scene, const char* method, ColorMode color) {
   constexpr std::uint64_t seeds = 16;
   RenderOptions options = test::options_for(method, 4);
@@ -95,8 +95,8 @@ double relative_variance(const Scene& scene, const char* method, ColorMode color
   return total;
 }
 
-// Without dispersion, equal passes have at most 1.15 times the noise of RGB. Found: 1.03 (path), .7 (bpm, which has two
-// eye paths a pass); with wavelengths in proportion to the eye's response 1.95 and 1.24.
+// Without dispersion, noise is at most 1.15 times that of RGB after equal passes. Measured: 1.03 (path), .7 (bpm, which
+// has two eye paths a pass); with wavelengths in proportion to the eye's response, 1.95 and 1.24.
 TEST(ColourBalance, SpectralPicturesAreAsSmoothAsThoseInRgb) {
   const Scene scene = test::scene_from_text(
       test::camera +
@@ -114,7 +114,7 @@ TEST(ColourBalance, SpectralPicturesAreAsSmoothAsThoseInRgb) {
         << method;
 }
 
-// The colour of a reflectance under D65 as pictures have it after these passes, without noise.
+// The colour of a reflectance under D65 in a picture after these passes, without noise.
 Rgb colour_after(std::uint64_t seed, std::uint64_t passes, float (*reflectance)(float)) {
   RenderState state;
   constexpr std::uint32_t sets = 2;
@@ -148,15 +148,16 @@ float largest_error(std::uint64_t passes, float (*reflectance)(float)) {
   return largest;
 }
 
-// Largest found: .060 after one pass, .021 after three, .0032 after four (blue of the blue one, whose own blue is .5).
+// Largest measured: .060 after one pass, .021 after three, .0032 after four (blue of the blue one, whose own blue is
+// .5).
 TEST(ColourBalance, StrongColoursAreNearlyRightAfterAnyNumberOfPasses) {
   for (float (*reflectance)(float) : {+red, +green, +blue})
     for (const std::uint64_t passes : {1, 2, 3, 4, 5, 6, 7, 8})
       EXPECT_LT(largest_error(passes, reflectance), passes == 1 ? 0.08f : passes % 4 == 0 ? 0.004f : 0.03f) << passes;
 }
 
-// As the mean of a picture of a grey room with two coloured walls: 1 % of .45. Largest found: .0010; with one set of
-// wavelengths a pass .03.
+// Relative to the mean of a picture of a grey room with two coloured walls: 1 % of .45. Largest measured: .0010; with
+// one set of wavelengths a pass, .03.
 TEST(ColourBalance, TheMeanOfARoomIsRightToOnePercentAfterAnyNumberOfPasses) {
   const auto room = [](float lambda) { return 0.4f + 0.15f * red(lambda) + 0.15f * green(lambda); };
   for (const std::uint64_t passes : {1, 2, 3, 4, 5, 6, 7, 8}) EXPECT_LT(largest_error(passes, room), 0.0045f) << passes;

@@ -14,7 +14,7 @@
 namespace lanthorn::default_method_test {
 namespace {
 
-// What a file names, and what -i calls it.
+// The method that a file names, and its name for -i.
 const std::map<std::string, std::string> of_pbrt{{"ambientocclusion", "path"},
                                                  {"bdpt", "bdpt"},
                                                  {"lightpath", "light"},
@@ -70,7 +70,7 @@ TEST(DefaultMethod, GivesWayToTheOptions) {
   }
 }
 
-// A number of photons for a pass of sppm says nothing of the light paths that auto needs.
+// The photon count of an sppm pass does not apply to the light paths of auto.
 TEST(DefaultMethod, PhotonsOfAFileAreNotForAutoUnlessTheFileNamesIt) {
   const auto light_paths = [](const std::string& integrator, const RenderOptions& options) {
     return plan_of("Integrator \"" + integrator + "\" \"integer photonsperiteration\" 1234", options).settings.photons;
@@ -96,7 +96,7 @@ TEST(DefaultMethod, PhotonsOfAFileAreNotForAutoUnlessTheFileNamesIt) {
   }
 }
 
-// The radius of the file's sppm is a parameter that auto does not have; -i sppm has it.
+// The radius of the file's sppm is a parameter that auto lacks; -i sppm uses it.
 TEST(DefaultMethod, ParametersOfAFileAreForTheMethodsThatHaveThem) {
   const std::string header = "Integrator \"sppm\" \"float radius\" 0.125";
   EXPECT_FALSE(plan_of(header).parameters.all().contains("radius"));

@@ -37,7 +37,7 @@ double relative_mse(const Image& a, const std::string& layer, const Image& refer
   return sum / static_cast<double>(truth.pixels.size());
 }
 
-// Picture and noise add up to the picture of the first half's passes alone.
+// Picture plus noise equals the picture of the first half's passes.
 TEST(DenoisedRender, NoiseIsWhatTheFirstHalfDiffersBy) {
   const SharedScene scene = box();
   for (const std::string method : {"path", "vcm"}) {
@@ -59,7 +59,7 @@ TEST(DenoisedRender, NoiseIsWhatTheFirstHalfDiffersBy) {
   }
 }
 
-// Surfaces are seen by way of mirrors and glass.
+// Surfaces are recorded behind mirrors and glass.
 TEST(DenoisedRender, PositionsAreThoseOfTheFirstSurfaceThatIsNoMirror) {
   const SharedScene scene = box();
   Session session(scene, options("path", 32));

@@ -22,7 +22,8 @@ namespace {
 
 std::atomic<int> running = 0, most_running = 0, cut_short = 0;
 
-// Passes that take a while and may overlap. They count how many of them run at once, and whose loops end too early.
+// Passes that take a while and may overlap. Counts how many run at the same time, and how many have loops that end too
+// early.
 class Sleeper : public Integrator {
  public:
   bool passes_may_overlap() const override { return true; }
@@ -70,7 +71,7 @@ const bool added = [] {
 
 struct Outcome {
   int at_once = 0;
-  std::vector<std::uint64_t> looks{};  // passes done whenever the loop reported progress
+  std::vector<std::uint64_t> looks{};  // completed passes whenever the loop reported progress
   RenderState state{};
 };
 Outcome run(const char* method, unsigned threads, const StopRule& rule) {
@@ -121,7 +122,7 @@ TEST(PassBatch, LeavesOutPassesThatTheStateHas) {
 }
 
 TEST(PassBatch, EndsWithinTheTime) {
-  // Passes take 20 ms, and two run at once.
+  // Passes take 20 ms, and two run at the same time.
   const Outcome timed = run("sleeper", 2, {.passes = {0, 1000}, .seconds = 0.1});
   EXPECT_GE(timed.state.pass_count(), 2u);
   EXPECT_LE(timed.state.pass_count(), 20u);

@@ -25,7 +25,7 @@ RenderStatistics statistics_of(std::uint64_t passes, double seconds) {
   return statistics;
 }
 
-// With noise alone, which falls as 1/sqrt(n).
+// An estimate of noise without bias; noise falls as 1/sqrt(n).
 ErrorEstimate noise(double bound) { return {.noise = bound, .bias = 0, .error = bound, .bound = bound, .doubt = ""}; }
 
 TEST(Progress, OfPassesCountsThoseOfThisCall) {
@@ -48,7 +48,7 @@ TEST(Progress, OfTimeIsTheTimeThatIsLeft) {
   EXPECT_DOUBLE_EQ(progress.seconds_left.value(), 30);
 }
 
-// Twice the bound of the error after 8 passes: 32 are needed, of which this call has done the last 10 of 12.
+// After 8 passes, the error is twice the bound: 32 passes are needed. This call has completed the last 10 of 12.
 TEST(Progress, OfABoundIsByThePassesThatItNeeds) {
   const StopRule stop{.passes = {0, endless}, .noise = 0.1};
   RenderStatistics statistics = statistics_of(10, 5);
@@ -62,7 +62,7 @@ TEST(Progress, OfABoundIsByThePassesThatItNeeds) {
   EXPECT_EQ(progress_of(stop, state_of({0, 12}), statistics).seconds_left, 0);
 }
 
-// The error is known of every render; only a bound that is asked for ends it.
+// Every render knows its error, but only a requested bound ends it.
 TEST(Progress, WithoutABoundTheErrorEndsNothing) {
   RenderStatistics statistics = statistics_of(10, 5);
   statistics.error = noise(0.2);

@@ -26,7 +26,7 @@ RenderOptions small(const std::string& integrator) {
   return options;
 }
 
-// The settings of a state are text that anybody can write: what follows them must be checked by itself.
+// Anybody can write the settings text of a state, so the data after it must be checked independently.
 TEST(Resume, StatesWhoseFilmIsNotThatOfTheirSettingsAreRefused) {
   const SharedScene scene = box();
   Session first(scene, small("probppm"));
@@ -75,7 +75,7 @@ TEST(Resume, StatesOfImpossibleRadiiAreRefused) {
       EXPECT_EQ(refusal([](auto&) {}), "no error");
       EXPECT_EQ(refusal([](auto& bytes) { bytes.pop_back(); }),
                 "a.state: damaged: its radii do not match the picture's pixels");
-      // The bytes of a NaN, of an infinity, of a negative number and of a large one, as float and as double.
+      // The bytes of a NaN, an infinity, a negative number and a large number, as float and as double.
       for (const int high : {0xff, 0x7f, 0xc0, 0x6f})
         EXPECT_EQ(
             refusal([&](auto& bytes) { std::fill(bytes.begin(), bytes.begin() + 8, static_cast<std::byte>(high)); }),

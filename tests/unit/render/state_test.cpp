@@ -23,7 +23,7 @@ namespace {
 using Bytes = std::vector<std::byte>;
 using nlohmann::json;
 
-// `settings` with the members of the JSON merge patch `patch`.
+// `settings` with the JSON merge patch `patch` applied.
 std::string patched(const std::string& settings, const std::string& patch) {
   json result = json::parse(settings);
   result.merge_patch(json::parse(patch));
@@ -195,7 +195,7 @@ TEST(State, DamageBehindARightChecksumNeverDoesHarm) {
   EXPECT_GT(errors, static_cast<int>(bytes.size() / 2));
 }
 
-/// A file whose header is the given text instead.
+/// A copy of a file with this text as its header.
 Bytes with_header(const std::string& header) {
   const Bytes bytes = encode_state(shard(0, 1));
   std::uint32_t old_size = 0;
@@ -343,7 +343,7 @@ TEST(MergeStates, ReadsFilesStraightIntoTheSum) {
   EXPECT_EQ(encode_state(sum), before);
 }
 
-// Sums stop at their limit, whichever way they are added.
+// Sums saturate, in whichever order they are added.
 TEST(MergeStates, SaturatesAsTheFilmDoes) {
   const test::TemporaryDir dir;
   RenderState a = shard(0, 3), b = shard(3, 7);
@@ -357,7 +357,7 @@ TEST(MergeStates, SaturatesAsTheFilmDoes) {
   EXPECT_EQ(encode_state(sum), encode_state(merge_states(a, b)));
 }
 
-// A film of many blocks, the last one of which is not full.
+// A film of many blocks, the last one incomplete.
 TEST(State, LargeFilmsAreSavedInBlocks) {
   RenderState state = shard(0, 1);
   state.film = Film(211, 97, 10, {.light = {"direct"}, .splats = true});
@@ -373,7 +373,7 @@ TEST(State, LargeFilmsAreSavedInBlocks) {
   EXPECT_EQ(encode_state(read), bytes);
 }
 
-// The sums of version 6 are planes of the whole film.
+// In version 6, the sums are planes of the whole film.
 Bytes in_version_6(const RenderState& state) {
   const Bytes bytes = encode_state(state);
   std::uint32_t header_bytes = 0;

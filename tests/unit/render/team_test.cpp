@@ -119,7 +119,7 @@ Result render_as(int rank, Network& network, const TeamRender& render) {
   return result;
 }
 
-// What rank 0 has in the end.
+// The state of rank 0 at the end.
 Result run(int size, const TeamRender& render) {
   Network network(size);
   std::vector<std::thread> others;
@@ -162,7 +162,7 @@ TEST(Team, AnyNumberOfProcessesRendersTheSameBytes) {
   }
 }
 
-// Whoever has rendered them.
+// Counts include all processes.
 TEST(Team, StatisticsCountTheRaysAndPhotonsOfAllProcesses) {
   const TeamRender render = of(small("probppm", 9));
   const RenderStatistics alone = run(1, render).statistics, shared = run(3, render).statistics;
@@ -283,7 +283,7 @@ TEST(Team, AProcessThatFailsIsNamed) {
   EXPECT_EQ(test::error_text([&] { run(2, render); }), "process 1 of 2: mesh.ply: cannot be read");
 }
 
-// Deals until there is nothing without a decision; returns the last answer.
+// Deals passes until no decision is pending; returns the last answer.
 Deal::Dealt deal_all(Deal& deal, std::vector<Deal::Dealt>& dealt) {
   for (;;) {
     const Deal::Dealt next = deal.next(0);
@@ -371,7 +371,7 @@ TEST(Gathering, WaitsForAllOfARound) {
             "sums of round 0 arrive after this process has passed that round on");
 }
 
-// Whatever comes first, and whoever has rendered nothing.
+// In any order of arrival, and with processes that have rendered nothing.
 TEST(Gathering, AddsTheSumsOfAllThatHaveSome) {
   std::vector<RenderState> states;
   RenderState all;
@@ -414,8 +414,7 @@ TEST(Gathering, DamagedSumsNameTheirProcess) {
             std::string::npos);
 }
 
-// A process that forgets a child would lose its sums, and one that waits for a child that does not exist would wait
-// for ever.
+// A process that forgets a child would lose its sums; one that waits for a missing child would wait for ever.
 TEST(Gathering, ATreeOnWhichProcessesDoNotAgreeIsNoticedWhenAllHaveJoined) {
   const auto said = [](std::uint64_t parent_of_third, std::uint64_t awaited_by_first) {
     return test::error_text([&] {

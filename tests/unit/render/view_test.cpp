@@ -21,7 +21,7 @@ RenderPlan render_by(const Scene& scene, const ViewDescription& view, const Rend
   return plan;
 }
 
-// One scene, seen from where another file's camera stands: the picture is that of the other file.
+// A scene rendered with the camera of another file gives the other file's picture.
 TEST(View, IsNoPartOfTheScene) {
   const Scene scene = test::scene_from_text(test::camera + test::box);
   const Scene other = test::scene_from_text(
@@ -40,7 +40,7 @@ TEST(View, IsNoPartOfTheScene) {
   }
 }
 
-// Passes of two views must not be added up. The file's own view is told by the file's hash.
+// Passes of two views must not be added up. The file's own view is identified by the file's hash.
 TEST(View, IsPartOfWhatAStateBelongsTo) {
   const Scene scene = test::scene_from_text(test::camera + test::box);
   const ViewDescription own = scene.description().view;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Lights as the scene builds them: their scales, and that surfaces and emitters agree.
+// The lights that a scene builds: their scales, and that surfaces and emitters agree.
 #include <gtest/gtest.h>
 
 #include <array>
