@@ -13,10 +13,10 @@
 
 namespace lanthorn {
 
-/// Axis along which a kd-tree splits a node: the one of
+/// How a kd-tree chooses the axis along which it splits a node.
 enum class SplitRule : std::uint8_t {
-  largest_extent,    ///< of the bounds of the node's points
-  largest_variance,  ///< of the coordinates of the node's points
+  largest_extent,    ///< the longest axis of the bounds of the node's points
+  largest_variance,  ///< the axis along which the node's points have the largest variance
 };
 
 /// Coordinates indexed by axis, because glm's operator[] branches.

@@ -50,7 +50,7 @@ inline Words operator+(Words a, const Words& b) {
   return a;
 }
 
-/// An empty folder with `tiny.pbrt` in which the program runs.
+/// A temporary folder that contains only `tiny.pbrt`, in which the program runs.
 class Cli : public testing::Test {
  protected:
   Cli() { dir_.write("tiny.pbrt", tiny_scene); }

@@ -142,7 +142,7 @@ TEST_F(Cli, VersionIsANumber) {
   const Ending ending = succeed({"--version"});
   EXPECT_TRUE(std::isdigit(static_cast<unsigned char>(ending.out.front()))) << ending.out;
   EXPECT_EQ(std::count(ending.out.begin(), ending.out.end(), '\n'), 1) << ending.out;
-  // The README says how to cite it.
+  // The README contains the text for citations.
   std::ifstream in(LANTHORN_SOURCE_DIR "/README.md");
   const std::string readme{std::istreambuf_iterator<char>(in), {}};
   EXPECT_TRUE(contains(readme, "{Version " + ending.out.substr(0, ending.out.size() - 1) + "}"));
@@ -236,7 +236,7 @@ void expect_plausible_statistics(const nlohmann::json& s, const std::string& int
   EXPECT_EQ(s["scene"]["triangles"], 6);
   EXPECT_EQ(s["settings"]["identity"]["integrator"], integrator);
   const int light_paths = s["photons_emitted"];
-  if (integrator == "auto")  // a quarter of 900, or another of its choices
+  if (integrator == "auto")  // a quarter of 900, or the other choices
     EXPECT_TRUE(light_paths == 225 || light_paths == 450 || light_paths == 900 || light_paths == 1800 ||
                 light_paths == 3600)
         << light_paths;
@@ -366,7 +366,7 @@ TEST_F(Cli, MeasuresConvergence) {
   const nlohmann::json report = json("c.json");
   ASSERT_EQ(report["points"].size(), 5u);
   EXPECT_EQ(report["points"][4]["passes"], 16);
-  EXPECT_LT(report["variance_slope"].get<double>(), -0.8);  // -1 of independent samples, less of stratified ones
+  EXPECT_LT(report["variance_slope"].get<double>(), -0.8);  // -1 for independent samples, smaller for stratified ones
   EXPECT_GT(report["points"][0]["rms_error"], report["points"][4]["rms_error"]);
   EXPECT_GT(fs::file_size(path("c.svg")), 500u);
   refuse(converge + Words{"9x8", "--reference", "reference.exr"}, "8 x 8");
@@ -689,7 +689,7 @@ TEST_F(Cli, CompareExitCodes) {
 TEST_F(Cli, DamagedScenesAreRenderedOrRefused) {
   std::mt19937 random(20261);  // portable, unlike the distributions of the standard library
   int refused = 0;
-  for (int i = 0; i < 30; ++i) {  // more, of whole scenes: tests/fuzz/mutate_scenes.py
+  for (int i = 0; i < 30; ++i) {  // more, for whole scenes: tests/fuzz/mutate_scenes.py
     std::string text = tiny_scene;
     const std::size_t changes = 1 + random() % 3;
     for (std::size_t k = 0; k < changes; ++k) {

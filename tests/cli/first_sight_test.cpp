@@ -81,7 +81,7 @@ float brightest(const fs::path& path) {
   return *std::max_element(image.pixels.begin(), image.pixels.end());
 }
 
-// A floor under a lamp of 0.01 cd, which a picture at exposure 0 would not show.
+// A floor under a lamp of 0.01 cd, which would be invisible at exposure 0.
 const char* const dim_model = R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 1]}],
   "nodes": [{"mesh": 0}, {"translation": [0, 0, 1], "extensions": {"KHR_lights_punctual": {"light": 0}}}],
   "extensions": {"KHR_lights_punctual": {"lights": [{"type": "point", "intensity": 0.01}]}},
@@ -192,7 +192,7 @@ TEST_F(FirstSight, AnimationsAreShownAtATime) {
     EXPECT_TRUE(contains(succeed(Words{"info", "moves.gltf"} + frame).out, "bounds     (6, 0, 0) to (7, 1, 0)"));
   refuse({"info", "moves.gltf", "--at", "frame=24"}, "--at frame=24: expected seconds such as 1.5, or a frame such as");
   refuse({"info", "tiny.pbrt", "--at", "1"}, "tiny.pbrt: --at, --frames: only glTF files have animations");
-  // Another time is another scene.
+  // Another time gives another scene.
   const Words words{"render", "moves.gltf", "-i", "path", "-r", "8x8", "-p", "1", "--at"};
   succeed(words + Words{"0", "-o", "a.state"});
   refuse(words + Words{"1", "-o", "b.state", "--resume", "a.state"}, "another");

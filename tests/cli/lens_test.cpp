@@ -70,7 +70,7 @@ TEST_F(Lens, FocusesOnWhatTheMiddleSees) {
   dir_.write("ball.pbrt", std::string("LookAt 0.2 .4 4.2  0.2 .4 0  0 1 0\nCamera \"perspective\"\n") +
                               std::string(tiny_scene).substr(std::string(tiny_scene).find("Film")));
   EXPECT_NEAR(lens_of(changed(*scene("ball.pbrt"), {.aperture = 8.0f})).focal_distance, 3.6f, 1e-4f);
-  // A model that is framed, in the units of the camera.
+  // A framed model, in units of the camera.
   const ViewDescription bar = changed(*scene("bar.obj"), {.aperture = 8.0f, .focus = LensChanges::Focus()});
   const Transform to_camera = camera_placement(bar).inverted();
   EXPECT_GT(lens_of(bar).focal_distance, 1);
@@ -119,7 +119,7 @@ TEST_F(Lens, OrbitsAroundTheMiddleOfTheScene) {
   expect_eye({180, 30}, {0, 1 + r * 0.5f, -r * std::sqrt(0.75f)});
   // The camera does not pass over the pole.
   EXPECT_GT(eye_of(changed(*tiny, {.orbit = Orbit{0, 200}})).z, 0);
-  // A model that is framed, in the right-handed world of OBJ files.
+  // A framed model, in the right-handed world of OBJ files.
   const SharedScene bar = scene("bar.obj");
   const Point before = eye_of(description_of(*bar).view) - Point(5, 0, 0),
               after = eye_of(changed(*bar, {.orbit = Orbit{90, 0}})) - Point(5, 0, 0);
@@ -135,7 +135,7 @@ TEST_F(Lens, ATurntableStaysEquallyFarAway) {
   const float distance = glm::length(eye_of(views[0]) - middle);
   for (const ViewDescription& view : views) {
     EXPECT_NEAR(glm::length(eye_of(view) - middle), distance, 1e-3f * distance);
-    // All corners are in the picture.
+    // All corners are inside the picture.
     const Transform to_camera = camera_placement(view).inverted();
     const float tangent = std::tan(0.5f * lens_of(view).fov * 3.14159f / 180);
     for (int corner = 0; corner < 8; ++corner) {

@@ -169,7 +169,8 @@ TEST_F(Manual, CompletionOffersEveryParameterOfTheIntegrator) {
     ASSERT_FALSE(parameters(integrator).empty());
     EXPECT_EQ(complete({"render", "-i", integrator, "tiny.pbrt", "--set", ""}), parameters(integrator));
   }
-  EXPECT_EQ(complete({"render", "--set", "chain"}), (Words{"chain-length="}));  // of mlt: no integrator is named
+  EXPECT_EQ(complete({"render", "--set", "chain"}),
+            (Words{"chain-length="}));  // a parameter of mlt: no integrator is named
   EXPECT_EQ(complete({"render", "--set", "chain-length", "=", "1"}), Words{});
   EXPECT_EQ(complete({"render", "--set", "chain-length", "=", "10", "ti"}), (Words{"tiny.pbrt"}));
 }

@@ -12,7 +12,7 @@ namespace {
 class Mpi : public Cli {
  protected:
   static Words launched(int processes, const Words& words) {
-    constexpr const char* limit = "60";  // seconds, of processes that wait for each other for ever
+    constexpr const char* limit = "60";  // seconds, for processes that wait for each other for ever
     return Words{"--oversubscribe",         "--allow-run-as-root", "--timeout", limit, "--bind-to", "none", "-n",
                  std::to_string(processes), LANTHORN_PROGRAM} +
            words;

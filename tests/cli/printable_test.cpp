@@ -11,7 +11,7 @@ namespace {
 // Sets a terminal's title, with 7-bit and 8-bit control characters; deletes; changes the writing direction; forges a
 // line.
 const std::string evil = "\x1b]0;x\x07\xc2\x9b\x33\x31m\x7f\xe2\x80\xae\r\nlanthorn: forged";
-// As a file's name and in a shell.
+// The text as a file name and in a shell.
 const std::string evil_name = "a\x1b[31m\xc2\x9b\x7f\xe2\x80\xae\n";
 
 class Printable : public Cli {

@@ -206,7 +206,7 @@ TEST_F(Safety, ConvergeShowsProgressAndKeepsWhatItHas) {
   const Words converge{"converge", "tiny.pbrt", "-i", "path", "-r", "32x32", "-p", "16", "--runs", "200"};
   ChildProcess child = start(converge + Words{"--json", "c.json", "--plot", "c.svg"});
   await(child, "render 1/200  pass 1/16");
-  // Two more lines of progress: a fifth of the renders, or twenty seconds.
+  // Two more progress lines: a fifth of the renders, or twenty seconds.
   const auto lines = [&] {
     const std::string said = child.err_so_far();
     return std::count(said.begin(), said.end(), '%');

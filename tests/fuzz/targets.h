@@ -10,7 +10,7 @@ namespace lanthorn::fuzz {
 
 /// The text is a pbrt-v4 scene. It may refer to a few small files kept in memory.
 void read_pbrt(std::string_view text);
-/// The text is a spectrum file and a lens file, read through scenes that name it.
+/// The text is used as a spectrum file and as a lens file, through scenes that refer to it.
 void read_tables(std::string_view text);
 /// The bytes are a PLY file.
 void read_ply(std::string_view bytes);

@@ -159,7 +159,7 @@ TEST(HttpServer, ConnectionsGoOnFromRequestToRequest) {
   HttpClient client(server.port());
   EXPECT_EQ(client.get("/a").body, "GET/a");
   EXPECT_EQ(client.post("/b", "xyz").body, "POST/bxyz");
-  // Two at once.
+  // Two requests at the same time.
   client.send("GET /c HTTP/1.1\r\n\r\nGET /d HTTP/1.1\r\nConnection: close\r\n\r\n");
   EXPECT_EQ(client.receive().body, "GET/c");
   EXPECT_EQ(client.receive().body, "GET/d");

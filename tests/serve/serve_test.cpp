@@ -47,7 +47,7 @@ class Serve : public Cli {
   Answer get(const std::string& resource) const { return client().get(root_ + resource); }
   int edit(const nlohmann::json& json) const { return client().post(root_ + "edit", json.dump()).status; }
 
-  // The finished picture of an edit.
+  // Waits for the finished picture of an edit.
   nlohmann::json picture_of(const nlohmann::json& change) const {
     const Answer answer = client().post(root_ + "edit", change.dump());
     EXPECT_EQ(answer.status, 200) << change << ' ' << answer.body;

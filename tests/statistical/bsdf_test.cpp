@@ -414,7 +414,7 @@ TEST(Energy, ClothGainsNothing) {
       const double noise = limit_of(48) * mean.error();
       EXPECT_LE(mean.mean(), 1.01 + noise) << wi.z << " alpha " << alpha;
       EXPECT_GT(mean.mean(), 0.6 - noise) << wi.z << " alpha " << alpha;
-      // The fibres alone.
+      // Only the fibres.
       const Cloth alone{{.reflectance = Spectrum(0), .f0 = Spectrum(0), .f90 = 0}, Spectrum(1), alpha};
       const Mean fibres = sampled_albedo(alone, wi, 40000, true);
       const auto expected = static_cast<double>(sheen_albedo(alpha, abs_cos_theta(wi)));

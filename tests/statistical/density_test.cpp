@@ -136,7 +136,7 @@ TEST(EstimateDensity, DifferentialCheckingKeepsBordersOfLight) {
       return static_cast<double>(estimate_density(map, q, settings, bring).light[0]);
     };
     double in_plain = 0, in_checked = 0, in_even = 0;
-    constexpr int queries = 17;  // that share photons
+    constexpr int queries = 17;  // that use the same photons
     for (int i = 0; i < queries; ++i) {
       const Point q(-2.5f, 0.5f * static_cast<float>(i) - 4, 0);
       in_plain += estimate(halves, q, 0) / queries;

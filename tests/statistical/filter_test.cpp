@@ -52,7 +52,7 @@ TEST(Filter, KnownValues) {
   EXPECT_NEAR(Filter(MitchellFilter{}).evaluate({1, 0}), 1.0f / 18 * 16 / 18, 1e-6);
   EXPECT_NEAR(Filter(SincFilter{}).evaluate({0, 0.5f}), 2 / std::numbers::pi * (3 / std::numbers::pi), 1e-6);
   EXPECT_LT(Filter(SincFilter{}).evaluate({1.5f, 0}), 0);
-  // Mitchell & Netravali's filters integrate to 1 over [-2, 2] whatever B and C.
+  // Mitchell & Netravali's filters integrate to 1 over [-2, 2] for all B and C.
   EXPECT_NEAR(Filter(MitchellFilter{{2, 2}, 0.7f, 0.2f}).integral(), 1, 1e-5);
 }
 
@@ -125,7 +125,7 @@ TEST(Filter, SamplesFollowTheFilter) {
   }
 }
 
-// Stratified and low-discrepancy numbers keep their structure only if the warp is monotonic without steps.
+// Stratified and low-discrepancy numbers keep their structure only if the warp is monotonic and continuous.
 TEST(Filter, SamplingIsContinuous) {
   for (const FilterShape& shape : shapes) {
     const Filter filter(shape);

@@ -19,10 +19,10 @@ namespace {
 
 const Normal oblique = normalize(Vec3(0.3f, -0.7f, 0.5f));
 
-/// From a small part of the hemisphere, and a little from everywhere.
+/// Photons from a small part of the hemisphere, and a few from everywhere.
 std::vector<DirectionGuide::Seen> uneven_light(const Frame& frame) {
   std::vector<DirectionGuide::Seen> light;
-  HashRng rng(3);  // a part of what is tested
+  HashRng rng(3);  // part of what is tested
   for (int i = 0; i < 100; ++i) light.push_back({frame.to_world(sample_cosine_hemisphere(rng.next2())), 0.3f});
   for (int i = 0; i < 100; ++i)
     light.push_back({frame.to_world(normalize(at_angles(55, 70) + 0.1f * sample_uniform_sphere(rng.next2()))), 1});

@@ -30,7 +30,7 @@ constexpr double slack = 2e-4;
 
 double limit_of(int checks) { return z_limit(sidak(false_alarm_rate, checks)); }
 
-/// Counts of surface points by voxel and by side of the normal.
+/// Numbers of surface points by voxel and by side of the normal.
 using Cells = std::map<int, detail::Cell>;
 int cell_of(const Bounds& box, const glm::dvec3& p, const glm::dvec3& n) {
   int cell = 0;
@@ -380,7 +380,7 @@ TEST(LightStatistics, IrradianceOfImagesByQuadrature) {
   }
 }
 
-/// A square that receives on one side.
+/// A square that receives light on one side.
 struct Receiver {
   Point centre;
   Frame frame;

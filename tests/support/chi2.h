@@ -25,8 +25,8 @@
 
 namespace lanthorn::test {
 
-/// What the tests need of a sampler: `sample(u1, u2)` returns an optional unit direction from three uniform numbers
-/// (empty: no sample), `pdf(direction)` its density per solid angle, whose integral is the probability of a sample.
+/// Interface of samplers: `sample(u1, u2)` returns an optional unit direction from three uniform numbers (empty: no
+/// sample); `pdf(direction)` returns its density per solid angle, whose integral is the probability of a sample.
 template <class Sample, class Pdf>
 struct DirectionSampler {
   Sample sample;
@@ -81,7 +81,7 @@ class Quadrature {
  public:
   explicit Quadrature(const Pdf& pdf) : pdf_(pdf) {}
 
-  /// The part where the pilot samples are, and the four strips around it.
+  /// The part that contains the pilot samples, and the four strips around it.
   double integrate(const Cell& c) const {
     const Angles& a = c.pilot_min;
     const Angles& b = c.pilot_max;
@@ -92,7 +92,7 @@ class Quadrature {
  private:
   double panel(const Angles& min, const Angles& max) const {
     if (min[0] >= max[0] || min[1] >= max[1]) return 0;
-    // Large panels are cut first, lest all the points miss a feature.
+    // Large panels are always divided, so that their points do not all miss a feature.
     const double size = std::max(max[0] - min[0], max[1] - min[1]);
     return refine(min, max, once(min, max), 1e-6, size > 0.4 ? 2 : 0, 9);
   }
@@ -200,7 +200,7 @@ class Partition {
     return c;
   }
 
-  /// The axis along which the samples lie farther apart, as lengths on the sphere.
+  /// The axis along which the samples extend farther, as lengths on the sphere.
   static int wider_axis(const std::vector<Angles>& pilot) {
     double sum_sin = 0;
     std::array<double, 2> mean{};
@@ -219,7 +219,7 @@ class Partition {
   std::vector<Cell> cells_;
 };
 
-/// The statistic over all cells; those that expect fewer than five counts are pooled.
+/// The statistic over all cells. Cells that expect fewer than five counts are pooled.
 inline ::testing::AssertionResult judge(const std::vector<Cell>& cells, const Chi2Options& options) {
   double statistic = 0;
   int terms = 0;
@@ -253,7 +253,8 @@ inline ::testing::AssertionResult judge(const std::vector<Cell>& cells, const Ch
 
 }  // namespace detail
 
-/// True if the samples follow the pdf. Failed draws are a cell of their own, which expects what the pdf lacks to 1.
+/// True if the samples follow the pdf. Failed draws form a cell of their own, whose expectation is 1 minus the integral
+/// of the pdf.
 template <class Sampler>
 ::testing::AssertionResult chi2_test(const Sampler& sampler, const Chi2Options& options = {}) {
   HashRng rng(options.seed);

@@ -30,12 +30,12 @@ inline std::string file_bytes(const std::filesystem::path& path) {
 
 /// How a program ended, and its output.
 struct Ending {
-  std::optional<int> exit_code;  ///< nothing if a signal ended it
+  std::optional<int> exit_code;  ///< nullopt if a signal ended it
   int signal = 0;
   std::string out, err;
 };
 
-/// A program that runs in `folder`; its output goes to files, so that it never waits for a reader.
+/// A program that runs in `folder`. Its output goes to files, so that it never waits for a reader.
 class ChildProcess {
  public:
   ChildProcess(const std::string& program, const std::vector<std::string>& arguments,
@@ -77,12 +77,12 @@ class ChildProcess {
   /// Its standard output or standard error so far.
   std::string out_so_far() const { return file_bytes(out_); }
   std::string err_so_far() const { return file_bytes(err_); }
-  /// Whether it has ended; does not wait.
+  /// True if it has ended; does not wait.
   bool has_ended() {
     if (!ended_) ended_ = waitpid(pid_, &status_, WNOHANG) == pid_;
     return ended_;
   }
-  /// Waits for its end; after two minutes it is killed.
+  /// Waits for its end; kills it after two minutes.
   Ending wait() {
     using namespace std::chrono_literals;
     const auto deadline = std::chrono::steady_clock::now() + 120s;

@@ -8,7 +8,7 @@
 
 namespace lanthorn::test {
 
-/// What the error of this call says; "no error" if there is none.
+/// Message of the Error that `call` throws; "no error" if it throws none.
 template <class Call>
 std::string error_text(const Call& call) {
   try {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// A glTF file of one triangle.
+// A glTF file with one triangle.
 #pragma once
 
 #include <variant>
@@ -13,7 +13,7 @@ namespace lanthorn::test {
 
 inline const std::vector<Point> corners = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
 
-/// A file with one mesh, placed once; `change` may alter its only primitive.
+/// A file with one mesh, placed once. `change` may change its only primitive.
 template <class Change>
 GltfWriter one_mesh(const Change& change) {
   GltfWriter file;

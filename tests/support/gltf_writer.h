@@ -41,7 +41,7 @@ class GltfWriter {
  public:
   nlohmann::json root = {{"asset", {{"version", "2.0"}, {"generator", "Lanthorn's tests"}}}};
 
-  /// Appends to one of the root's arrays; the index of the new element.
+  /// Appends to one of the root's arrays. Returns the index of the new element.
   std::size_t add(const std::string& array, nlohmann::json element) {
     root[array].push_back(std::move(element));
     return root[array].size() - 1;
@@ -89,7 +89,7 @@ class GltfWriter {
     return value;
   }
 
-  /// An accessor of positions, with the bounds that glTF asks for.
+  /// An accessor of positions, with the bounds that glTF requires.
   std::size_t positions(const std::vector<Point>& points) {
     const std::size_t index = accessor(flat(points), 3);
     Bounds bounds;
@@ -121,9 +121,9 @@ class GltfWriter {
     return index;
   }
 
-  /// The buffer, for files beside the JSON.
+  /// The buffer's bytes, for a separate file.
   const std::string& buffer() const { return buffer_; }
-  /// Text whose buffer is a data URI, or the file `uri` beside it.
+  /// JSON text whose buffer is a data URI, or the file `uri`.
   std::string text(const std::string& uri = "") const {
     nlohmann::json copy = root;
     if (!buffer_.empty())
@@ -131,7 +131,7 @@ class GltfWriter {
                           {"uri", uri.empty() ? "data:application/octet-stream;base64," + base64(buffer_) : uri}}};
     return copy.dump(1);
   }
-  /// The binary container.
+  /// The file as a binary container (.glb).
   std::string binary() const {
     nlohmann::json copy = root;
     if (!buffer_.empty()) copy["buffers"] = {{{"byteLength", buffer_.size()}}};
@@ -151,7 +151,7 @@ class GltfWriter {
   std::string buffer_;
 };
 
-/// Triangles of a sphere about the origin, outwards.
+/// Triangles of a sphere centred at the origin, facing outwards.
 struct SphereMesh {
   std::vector<Point> positions;
   std::vector<std::uint32_t> indices;

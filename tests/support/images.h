@@ -11,7 +11,7 @@
 
 namespace lanthorn::test {
 
-/// A PNG file (8-bit RGB) without a row of pixels.
+/// A PNG file (8-bit RGB) without any rows of pixels.
 inline std::string png_header(std::uint32_t width, std::uint32_t height) {
   const auto number = [](std::uint32_t n) {
     return std::string{static_cast<char>(n >> 24), static_cast<char>(n >> 16), static_cast<char>(n >> 8),
@@ -27,7 +27,7 @@ inline std::string png_header(std::uint32_t width, std::uint32_t height) {
          chunk("IDAT", no_data) + chunk("IEND", "");
 }
 
-/// A GIF file whose only picture has a map of colours and no pixels.
+/// A GIF file whose only picture has a colour map and no pixels.
 inline std::string gif_header(unsigned width, unsigned height) {
   const std::string size{static_cast<char>(width), static_cast<char>(width >> 8), static_cast<char>(height),
                          static_cast<char>(height >> 8)};

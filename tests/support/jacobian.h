@@ -18,7 +18,7 @@ namespace lanthorn::test {
 
 struct JacobianOptions {
   int points = 400;         ///< of the unit square
-  float step = 2e-3f;       ///< of the central differences
+  float step = 2e-3f;       ///< step of the central differences
   double tolerance = 0.03;  ///< relative
   /// Fraction of the points that must agree: differences across a seam of the warp (phi = 0, the diagonals of the
   /// concentric disk) do not.

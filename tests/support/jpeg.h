@@ -15,7 +15,7 @@
 
 namespace lanthorn::test {
 
-/// 8 x 8 pixels.
+/// A JPEG file of 8 x 8 pixels.
 inline std::string grey_jpeg() {
   const TemporaryDir dir;
   const std::string name = (dir.path() / "a.jpg").string();
@@ -33,8 +33,8 @@ inline std::string big_endian(std::size_t number) {
   return bytes;
 }
 
-/// An ICC profile (ICC.1:2004, 7.2 and 7.3) with 50 tags whose names are in no standard, and in no profile of another
-/// number. The header stands for their data.
+/// An ICC profile (ICC.1:2004, 7.2 and 7.3) with 50 tags whose names no standard defines, different for each number.
+/// The header serves as their data.
 inline std::string profile_of_unknown_tags(std::size_t number) {
   constexpr std::size_t tags = 50, header_bytes = 128;
   std::string table = big_endian(tags);

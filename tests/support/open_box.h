@@ -8,11 +8,11 @@
 
 namespace lanthorn::test {
 
-/// The head of a small picture of what lies in [-1, 1] x [0, 2] x [-1, 1], up to WorldBegin.
+/// Scene text up to WorldBegin, for a small picture of the space [-1, 1] x [0, 2] x [-1, 1].
 inline const std::string camera =
     "LookAt 0 1 4.4  0 1 0  0 1 0\nCamera \"perspective\" \"float fov\" [36]\n"
     "Film \"rgb\" \"integer xresolution\" [24] \"integer yresolution\" [24]\nPixelFilter \"box\"\nWorldBegin\n";
-/// A floor, a back wall, a red wall on the left and a ball of light under where the ceiling would be.
+/// A floor, a back wall, a red wall on the left, and a luminous ball below the position of the ceiling.
 inline const std::string box =
     "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [17 12 4]\nTranslate 0 1.7 0\n"
     "Shape \"sphere\" \"float radius\" [0.2]\nAttributeEnd\n"

@@ -10,7 +10,7 @@
 
 namespace lanthorn::test {
 
-/// A test with an OpenGL context of its own. Skipped, with the reason, where there is no OpenGL 4.5.
+/// A test with its own OpenGL context. Skipped, with the reason, if OpenGL 4.5 is missing.
 class OpenGl : public testing::Test {
  protected:
   void SetUp() override {

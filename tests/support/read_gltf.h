@@ -22,7 +22,7 @@ inline SceneDescription read_gltf(const std::string& bytes, std::optional<double
 inline SceneDescription read_gltf(const GltfWriter& file, std::optional<double> seconds = {}) {
   return read_gltf(file.text(), seconds);
 }
-/// What `read_gltf` throws.
+/// Message of the Error that `read_gltf` throws.
 template <class File>
 std::string gltf_error(const File& file, std::optional<double> seconds = {}) {
   return error_text([&] { read_gltf(file, seconds); });

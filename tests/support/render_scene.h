@@ -25,7 +25,7 @@
 
 namespace lanthorn::test {
 
-/// By the view that the scene's file describes.
+/// Renders with the view of the scene's file.
 inline RenderPlan plan_render(const Scene& scene, const RenderOptions& options) {
   return lanthorn::plan_render(scene, scene.description().view, options);
 }
@@ -50,7 +50,7 @@ inline Scene scene_from_text(const std::string& text, const std::filesystem::pat
   return Scene(read_pbrt_string(text, folder, "test scene"));
 }
 
-/// `integrator`: its name, and after colons parameters: "mlt:over=path". The seed is test::seed(number).
+/// `integrator`: its name, followed by parameters after colons: "mlt:over=path". The seed is test::seed(number).
 inline RenderOptions options_for(const std::string& integrator, std::uint64_t passes, std::uint64_t number = 0) {
   RenderOptions options;
   std::istringstream words(integrator);

@@ -18,7 +18,7 @@
 
 namespace lanthorn::test {
 
-/// Renders whose seeds count up from seed(first), all layers.
+/// Renders with consecutive seeds from seed(first), all layers.
 inline std::vector<Image> independent_renders(const Scene& scene, RenderOptions options, std::uint64_t runs,
                                               std::uint64_t first) {
   std::vector<Image> images;
@@ -95,7 +95,7 @@ inline ::testing::AssertionResult runs_agree(const Mean& a, const Mean& b, doubl
   return within(a.mean(), b.mean(), slack * std::fabs(b.mean()) + allowed) << ", standard error " << error;
 }
 
-/// Welch's t-test of each tile of two sets of renders, all tiles together at this rate.
+/// Welch's t-test of each tile of two sets of renders, with this false-alarm rate for all tiles together.
 inline ::testing::AssertionResult tiles_agree(const std::vector<Image>& a, const std::vector<Image>& b,
                                               double rate = false_alarm_rate) {
   const Comparison result = welch_tile_test(a, b);

@@ -13,7 +13,7 @@
 
 namespace lanthorn::test {
 
-/// A scene of these world-block directives; `head` goes before WorldBegin.
+/// A scene with these directives in its world block; `head` precedes WorldBegin.
 inline Scene world(const std::string& directives, const std::string& head = "", const std::string& folder = ".") {
   const std::string film = "Film \"rgb\" \"integer xresolution\" 64 \"integer yresolution\" 48\n";
   return Scene(read_pbrt_string(film + head + "\nWorldBegin\n" + directives, folder, "test scene"));
@@ -26,7 +26,7 @@ inline std::optional<SurfacePoint> look(const Scene& scene, const Point& origin,
   return scene.intersect({origin, normalize(direction), infinity, time}, white);
 }
 
-/// A ray from outside a ball through a random point of it.
+/// A ray from outside a ball through a random point in it.
 inline Ray random_ray(HashRng& rng, const Point& centre, float radius, float time = 0) {
   const Point from = centre + 2 * radius * sample_uniform_sphere(rng.next2());
   const Vec3 inside = sample_uniform_sphere(rng.next2()) * std::cbrt(rng.next());

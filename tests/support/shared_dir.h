@@ -9,9 +9,8 @@
 
 namespace lanthorn::test {
 
-/// The folder ../shared/NAME beside the source tree. Nothing if ../shared is not there: prints a loud line then, and
-/// the caller should GTEST_SKIP. If ../shared is there but NAME is not, the path comes back all the same, and using it
-/// fails.
+/// The folder ../shared/NAME beside the source tree. If ../shared is missing, prints a conspicuous line and returns
+/// nothing, and the caller should GTEST_SKIP. If only NAME is missing, returns the path, and using it fails.
 inline std::optional<std::filesystem::path> shared_dir(const char* name) {
   const auto shared = std::filesystem::path(LANTHORN_SOURCE_DIR).parent_path() / "shared";
   if (std::filesystem::is_directory(shared)) return shared / name;

@@ -22,7 +22,7 @@ inline std::uint64_t seed(std::uint64_t n) {
   return n + 1'000'003 * static_cast<std::uint64_t>(GTEST_FLAG_GET(random_seed));
 }
 
-/// The rate per check for which `checks` independent ones raise a false alarm at `rate` (Šidák 1967).
+/// The false-alarm rate per check that gives `rate` for `checks` independent checks together (Šidák 1967).
 inline double sidak(double rate, int checks) { return -std::expm1(std::log1p(-rate) / checks); }
 
 /// The value that |z| of a normal variable exceeds at this rate: 4.9 for 1e-6.

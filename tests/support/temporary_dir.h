@@ -12,7 +12,7 @@
 
 namespace lanthorn::test {
 
-/// A fresh folder that goes away with this object.
+/// A new folder, which the destructor deletes.
 class TemporaryDir {
  public:
   TemporaryDir() {

@@ -140,7 +140,7 @@ inline std::vector<Rgb> test_texels() {
   return texels;
 }
 
-/// These texels as an 8 x 8 environment, which lives as long as the program.
+/// The texels as an 8 x 8 environment, which exists until the program ends.
 inline const SphericalImage& test_environment() {
   static const SphericalImage image(SphereLayout::octahedral, 8, 8, test_texels());
   return image;
@@ -173,7 +173,7 @@ inline const ProjectionImage& test_slide() {
 
 inline SpectrumCurve test_colour() { return SpectrumCurve::illuminant({3, 2, 1}); }
 
-/// Brightness over the square that points are drawn from: 4 x 4 cells, up to 200 times as bright as the darkest.
+/// Brightness over the square from which points are sampled: 4 x 4 cells, up to 200 times as bright as the darkest.
 inline const PiecewiseConstant2d& test_brightness() {
   static const std::vector<float> cells{1, 0.1f, 2, 0.1f, 0.3f, 20, 0.1f, 1, 0.1f, 3, 0.5f, 0.1f, 4, 0.1f, 0.1f, 0.7f};
   static const PiecewiseConstant2d table(cells, 4, 4);
@@ -229,7 +229,7 @@ inline std::vector<NamedLight> test_lights() {
   all.push_back({"mirrored image infinite", infinite(test_environment(), turned * scale({-3, 3, 3}))});
   all.push_back({"stretched image infinite", infinite(test_environment(), turned * scale({1, 2, 0.5f}))});
   all.push_back({"equirectangular infinite", infinite(test_panorama(), turned)});
-  // Seen from the receivers of the tests, which are about the origin, in direction z.
+  // Seen from the tests' receivers, which are around the origin, in direction z.
   static const std::array<Point, 4> corners{Point(-1, -0.5f, 1.5f), Point(-1, 1.5f, 1.5f), Point(2, 1.5f, 1.5f),
                                             Point(2, -0.5f, 1.5f)};
   static const Sky panorama = infinite(test_panorama(), turned), grey = UniformInfiniteLight{test_colour(), scene};

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <filesystem>
-#include <iostream>  // NanoVDB forgets it
+#include <iostream>  // NanoVDB does not include it
 
 #include <nanovdb/util/GridBuilder.h>
 #include <nanovdb/util/IO.h>
@@ -12,8 +12,8 @@
 
 namespace lanthorn::test {
 
-/// Writes a NanoVDB file with a grid "density", made by NanoVDB itself: voxels 0 to `last` along each axis hold
-/// `value(index)`. Voxels are `voxel` metres wide; the first is at `origin`.
+/// Writes a NanoVDB file, using NanoVDB itself, with a grid "density": voxels 0 to `last` along each axis have the
+/// value `value(index)`. Voxels are `voxel` metres wide, and the first is at `origin`.
 template <class Value>
 void write_vdb(const std::filesystem::path& file, int last, float voxel, const Point& origin, Value&& value,
                nanovdb::io::Codec codec = nanovdb::io::Codec::NONE) {

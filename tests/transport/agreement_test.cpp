@@ -93,7 +93,7 @@ std::string hairs() {
   return text;
 }
 
-// With a radius as small as the others'.
+// With a radius as small as that of the others.
 const char* const photonmap = "photonmap:nearest=0:caustic-nearest=0:max-radius=0.012:gather=4:irradiance=estimated";
 const char* const reversephotonmap = "reversephotonmap:caustic-nearest=0:max-radius=0.012:gather=4";
 
@@ -145,7 +145,7 @@ const std::map<std::string, std::string>& scenes() {
       {"varied_room", test::varied_room},
       // Images, alpha and instances on emitters.
       {"emitters", read_file(test_scenes / "emitters.pbrt")},
-      // Curves, which are meshes where they emit.
+      // Curves; emitting ones are meshes.
       {"curve_lamps", read_file(test_scenes / "curve-lamps.pbrt")},
       // Shading normals far from the surface's, with all kinds of closures.
       {"relief", read_file(test_scenes / "relief.pbrt")}};
@@ -276,7 +276,7 @@ std::vector<Image> renders(const Scene& scene, const Case& c, const std::string&
   return test::select_layers(test::independent_renders(scene, options, runs, first_seed), "color");
 }
 
-// The same for all integrators that it is compared with.
+// The same for all integrators with which it is compared.
 const std::vector<Image>& reference_renders(const Scene& scene, const Case& c) {
   static std::map<std::tuple<std::string, ColorMode, std::uint64_t>, std::vector<Image>> known;
   std::vector<Image>& images = known[{c.scene, c.color, c.effort}];
@@ -332,7 +332,7 @@ TEST(Bidirectional, StrategiesAddUpToTheImage) {
         sum[i] += static_cast<double>(one.pixels[i]);
         light += static_cast<double>(one.pixels[i]);
       }
-      if (vertices > 2 || s == 0) {  // no light is joined to the lens itself
+      if (vertices > 2 || s == 0) {  // no light is connected to the lens itself
         EXPECT_GT(light, 0) << s << ", " << vertices - s;
       }
     }

@@ -45,7 +45,7 @@ Expected expected_of(const std::vector<Image>& renders, const Image& reference) 
   return {std::sqrt(variance), std::sqrt(bias2 - variance / runs), std::sqrt(error2)};
 }
 
-// Splats, too, are means over the passes.
+// Splats are means over the passes as well.
 RenderOptions options(std::uint64_t passes, std::uint64_t seed) {
   RenderOptions result = test::options_for("bdpt", passes, seed);
   result.photons = 100;

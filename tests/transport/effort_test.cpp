@@ -106,7 +106,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"glossy.pbrt", "vcm", 1, true}, Case{"glossy.pbrt", "bdpt", 0.25f, false},
                     Case{"glossy.pbrt", "path", 0, false}));
 
-// Eight passes of four light paths a pixel leave the radius where 32 passes of one do.
+// After eight passes of four light paths per pixel, the radius is that after 32 passes of one.
 TEST(Effort, RadiiDependOnThePhotonsOfAllPasses) {
   EXPECT_FLOAT_EQ(merge_radius_shrink(0.5, 7, 4), merge_radius_shrink(0.5, 31, 1));
   EXPECT_FLOAT_EQ(merge_radius_shrink(0.5, 31, 0.25), merge_radius_shrink(0.5, 7, 1));

@@ -298,7 +298,7 @@ TEST(LearnedEmission, SparesWhatIsOutshone) {
       "LightSource \"spot\" \"point3 from\" [-0.1 3 -0.07] \"point3 to\" [-0.1 0 -0.07] \"float coneangle\" [5] "
       "\"float conedeltaangle\" [1] \"float scale\" [2000]\n");
   const EmissionGuide guide = learned_for_caustics(scene);
-  // Over seeds the ratio of the medians is 20 with a standard deviation of 2.
+  // The ratio of the medians is 20, with a standard deviation of 2 over seeds.
   const auto median_towards = [&](const Point& ball) { return densities_towards(scene, guide, ball)[5000]; };
   EXPECT_TRUE(test::below(10 * median_towards({0.5f, 0.25f, 0}) / median_towards({0, 0.25f, 0}), 1));
 }
@@ -316,7 +316,7 @@ std::string court(bool in_a_large_world) {
          std::string(in_a_large_world ? test::patch("-300 -0.1 -300  300 -0.1 -300  -300 -0.1 300  300 -0.1 300") : "");
 }
 
-// Of the photons in the large world, one in 10 000 starts towards the court.
+// In the large world, one photon in 10 000 starts towards the court.
 TEST(AutomaticEmission, AimsWherePhotonsAreFew) {
   for (const bool in_a_large_world : {false, true}) {
     const Scene scene = test::scene_from_text(court(in_a_large_world));
@@ -428,7 +428,7 @@ TEST(LearnedEmission, LeavesScenesAloneWhereThereIsNothingToLearn) {
   }
 }
 
-// Without a guide two photons of a pass would start towards the court.
+// Without a guide, two photons per pass would start towards the court.
 TEST(AutomaticEmission, ShowsAPlaceInALargeWorldAsPathTracingDoes) {
   const Scene scene = test::scene_from_text(court(true));
   RenderOptions options = test::options_for("path", 64);
@@ -443,7 +443,7 @@ TEST(AutomaticEmission, ShowsAPlaceInALargeWorldAsPathTracingDoes) {
   }
 }
 
-// A room whose window shows sunlit ground, seen from inside.
+// A room with a window onto sunlit ground, seen from inside.
 const std::string room_with_a_window =
     "Film \"rgb\" \"integer xresolution\" [48] \"integer yresolution\" [27]\nPixelFilter \"box\"\n"
     "LookAt 0.5 1.6 -2.8  3 1.2 2.5  0 1 0\nCamera \"perspective\" \"float fov\" [60]\nWorldBegin\n"

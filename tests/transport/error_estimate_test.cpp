@@ -58,7 +58,7 @@ struct Runs {
     }
   }
 
-  // Root of the mean of min(1, square / (r² + .01 m²)).
+  // The root of the mean of min(1, square / (r² + .01 m²)).
   template <class Square>
   static double relative(const Image& truth, Square&& square) {
     double m = 0, sum = 0;

@@ -158,7 +158,7 @@ Texts scenes() {
   return all;
 }
 
-// What reads back from the scene is what fails.
+// The value that reading back the scene gives is the one that fails.
 void render_by(const std::string& integrator, const std::string& text, ColorMode color) {
   SCOPED_TRACE(integrator + ":\n" + text);
   RenderOptions options = test::options_for(integrator, 2);

@@ -60,7 +60,7 @@ TEST(Glow, ThinBallLightsThePlane) {
   }
 }
 
-/// By Welch's t-test per tile of a layer.
+/// Compares a layer by Welch's t-test per tile.
 void expect_agreement(const Scene& scene, const std::vector<std::string>& integrators, std::uint64_t passes,
                       const std::vector<std::string>& layers = {"color"}) {
   const std::vector<Image> path = test::independent_renders(scene, options("path", 8 * passes), 32, 100);

@@ -152,7 +152,7 @@ std::vector<Image> renders(const Scene& scene, const std::string& method, std::u
   return test::independent_renders(scene, options_for(method, passes), runs, first_seed);
 }
 
-// A ball of dispersive glass in a white world is white. One wavelength for all paths made it green.
+// A ball of dispersive glass in a white environment is white. A common wavelength for all paths made it green.
 TEST_F(Ispm, DispersiveGlassIsClear) {
   const Scene scene = test::scene_from_text(
       "LookAt 0 0 -8  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [8]\nPixelFilter \"box\"\n"

@@ -356,7 +356,7 @@ TEST_P(LayerOfMedia, HasAllLightThatComesOutOfThem) {
       test::patch("-2 -1 -2.5  0 -1 -2.5  -2 1 -2.5  0 1 -2.5") + "AttributeEnd\n" +
       test::patch("0 -1 -2.5  2 -1 -2.5  0 1 -2.5  2 1 -2.5"));
   for (const IntegratorInfo& info : integrator_registry()) {
-    if (info.name == "splitsum") continue;  // shades surfaces alone
+    if (info.name == "splitsum") continue;  // shades surfaces only
     RenderOptions o = options(info.name, 2);
     o.photons = info.name == "mlt" ? 2'000 : 5'000;
     o.max_depth = 8;

@@ -15,8 +15,8 @@
 namespace lanthorn::metropolis_test {
 namespace {
 
-// A point light of intensity pi in the middle of a unit sphere of albedo 1/2: radiance 1/2 after one scattering, and
-// half as much after each further one.
+// A point light of intensity pi at the centre of a unit sphere of albedo 1/2: radiance 1/2 after one scattering event,
+// and half as much after each further one.
 Scene lit_sphere(int side) {
   return test::scene_from_text(fmt::format(R"(
 LookAt 0 0 0.3  0 0 -1  0 1 0
@@ -63,7 +63,7 @@ double variance(const std::string& integrator, std::uint64_t passes, std::uint64
                   2);
 }
 
-// Over 32 runs the exponents had standard deviations of 0.2, so that 96 have 0.12.
+// Over 32 runs, the exponents had a standard deviation of 0.2, so over 96 it is 0.12.
 TEST(Metropolis, NoiseFallsWithPassesAndChains) {
   const std::string chains = "mlt:chain-length=32:bootstrap=0.5";
   const double one = variance(chains, 1, 64);

@@ -83,7 +83,7 @@ TEST(PhotonMap, PrecomputedIrradianceLeavesTheMean) {
   EXPECT_TRUE(test::runs_agree(test::paired_ratio(runs(scene, "photonmap", 1, "term.D"), estimated), 1, 0.015, 0.02));
 }
 
-// A wall without thickness between a lit room and a dark one; the floor ends at the wall.
+// An infinitely thin wall between a lit room and a dark one. The floor ends at the wall.
 TEST(PhotonMap, WallsDoNotLeak) {
   const std::string text =
       "LookAt 0 1 -3  0 1 0  0 1 0\nCamera \"perspective\" \"float fov\" [30]\n"

@@ -60,7 +60,7 @@ struct HitPoint {
   SurfaceVertex vertex() const { return {state, at, wi, wi_local, true}; }
 };
 
-// Keeps the first vertex of an eye path that can gather.
+// Keeps the first vertex of an eye path at which gathering is possible.
 struct KeepHitPoint {
   std::vector<HitPoint>& hits;
 
@@ -320,7 +320,7 @@ TEST(MovingThings, AreSmoothAfterSixteenPasses) {
       columns.add(sum);
     }
     ASSERT_GT(columns.mean(), 0) << integrator;
-    // Each of 64 rows sees the bar in a quarter of its times: 0.2 is expected.
+    // Each of 64 rows sees the bar in a quarter of its time samples: 0.2 is expected.
     EXPECT_TRUE(test::below(std::sqrt(columns.squared_error() * columns.count()) / columns.mean(), 0.5)) << integrator;
   }
 }
@@ -439,7 +439,7 @@ Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-1 0 -1 1 0 -1 
   }
 }
 
-// Seen from above: fins stand on the left half of a floor that few photons reach.
+// Seen from above: fins on the left half of a floor that few photons reach.
 TEST(AutoRadii, ShrinkBesideObstaclesWherePhotonsAreFew) {
   std::string text =
       "LookAt 0 4 0  0 0 0  0 0 -1\nCamera \"perspective\" \"float fov\" [28]\n"

@@ -51,7 +51,7 @@ void expect_equal_pictures(const std::string& text, const std::string& parameter
         << parameters << ", value " << i;
 }
 
-// All layers and terms of every pixel.
+// All layers and terms, for every pixel.
 TEST(ReversePhotonMap, IsPhotonMapWithTheSameRadii) {
   for (const ColorMode color : {ColorMode::rgb, ColorMode::spectral}) {
     expect_equal_pictures(test::varied_room, "max-radius=0.2", color);

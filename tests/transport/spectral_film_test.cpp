@@ -60,7 +60,7 @@ std::size_t first_bucket(const Image& image) {
   return static_cast<std::size_t>(found - image.channels.begin());
 }
 
-// Where passes share wavelengths, buckets have standard errors of up to 1.4 %: the largest of 66 deviations was 3.4 %.
+// If passes share wavelengths, buckets have standard errors of up to 1.4 %: the largest of 66 deviations was 3.4 %.
 TEST(SpectralFilm, EveryIntegratorFindsTheSpectrum) {
   const SpectralBuckets buckets{6, 400, 700};
   const Scene scene = disk_under_sky(buckets);

@@ -123,7 +123,7 @@ void Volume::expect_point_light() {
   const double share = static_cast<double>(gather_probability(HenyeyGreenstein{0.3f}));
   const double expected = integral(to_edge, [&](double t) {
     const double along = t - half, d2 = 1 + along * along, d = std::sqrt(d2);
-    // Light travels by (aside + along d) / d and on towards the eye, -d.
+    // Light travels along (aside + along d) / d, and on towards the eye along -d.
     const double cosine = -along / d, base = 1 + g * g - 2 * g * cosine;
     const double phase = (1 - g * g) / (4 * std::numbers::pi * base * std::sqrt(base));
     return sigma_s * phase * intensity / d2 * std::exp(-sigma_t * (t + d));
@@ -134,14 +134,14 @@ void Volume::expect_point_light() {
 
 TEST_P(Volume, PointLight) { expect_point_light(); }
 
-// Coefficients differ by colour: flux that passes a point is weighted.
+// Coefficients differ by colour, so the flux that passes a point is weighted.
 class ShortBeams : public Volume {};
 TEST_P(ShortBeams, PointLight) { expect_point_light(); }
 INSTANTIATE_TEST_SUITE_P(Estimators, ShortBeams, testing::Values("short-photon-beam", "short-beams"),
                          [](const auto& c) { return test::identifier(c.param); });
 
-// Collimated light that falls into a box of fog on a grid, whose density is 2 in its lower half, and rays through its
-// upper half, where the density is 1: sigma_s / (4 pi) E exp(-sigma_t (depth + t)).
+// Collimated light enters a box of fog on a grid with density 2 in the lower half; rays cross the upper half, with
+// density 1: sigma_s / (4 pi) E exp(-sigma_t (depth + t)).
 TEST_P(Volume, CollimatedLightOnAGrid) {
   const double sigma_s = 0.6, sigma_t = 0.8, irradiance = 3;
   const Scene scene = test::scene_from_text(
@@ -244,7 +244,7 @@ RenderOptions shrinking(const std::string& estimator, double alpha, float radius
   return o;
 }
 
-// The exponent of a quantity, by least squares over 4, 8, 16 and 32 passes in log-log: the squares of the octaves add
+// The exponent of a quantity, by least squares in log-log over 4, 8, 16 and 32 passes: the squares of the octaves add
 // up to 5.
 struct Slope {
   double exponent = 0;
@@ -296,7 +296,7 @@ TEST_P(Volume, VarianceFallsAtTheRateOfItsDimensions) {
     for (const test::Mean& mean : means[n]) variance += mean.squared_error();
     found.add(n, variance);
   }
-  // Over five seeds and four estimators at most 0.054 off, root mean square 0.025.
+  // At most 0.054 off over five seeds and four estimators, root mean square 0.025.
   EXPECT_TRUE(test::within(found.exponent, slope_of_theory(alpha, -1, 2), 0.15));
 }
 
@@ -360,7 +360,7 @@ TEST_P(Volume, BiasFallsAtTheRateOfItsDimensions) {
   Slope found;
   for (std::uint32_t n = 4; n <= passes; n *= 2)
     found.add(n, std::fabs(means[n].mean() - LightInFog::radiance(estimator())));
-  // Terms as r⁴ make it steeper by up to 0.05. Standard deviation over seeds: 0.015, in one dimension 0.04.
+  // Terms in r⁴ make it steeper by up to 0.05. Standard deviation over seeds: 0.015, in one dimension 0.04.
   const double limit = dimensions == 1 ? 0.3 : 0.13;
   EXPECT_TRUE(test::within(found.exponent, slope_of_theory(alpha, 2.0 / dimensions, 1), limit));
 }
@@ -395,7 +395,7 @@ TEST_P(Volume, WhiteFurnace) {
   o.set["volume-radius"] = kernel_dimensions(estimator()) == 3 ? "0.2" : "0.1";
   o.max_depth = 100;
   const test::Mean mean = test::mean_of_means(test::select_layers(runs(scene, o, 16, 1), "color"));
-  // Within a radius of the wall, a part of the kernel sees no photons.
+  // Within a radius of the wall, part of the kernel receives no photons.
   EXPECT_TRUE(test::runs_agree(mean, 1, 0.04, 0.2));
 }
 
@@ -428,7 +428,7 @@ const std::vector<Fog> fogs{
      48},
     {"in glass", "\"homogeneous\" \"rgb sigma_a\" [0.1 0.2 0.4] \"rgb sigma_s\" [1 2 1]", "dielectric"}};
 
-/// By t-tests of the whole picture, of `checks` in a test. Radii of 5 cm blur.
+/// By t-tests of the whole picture; `checks` is their number in a test. Radii of 5 cm blur.
 ::testing::AssertionResult agree(const std::vector<Image>& found, const std::vector<Image>& expected, int checks) {
   const auto mean = [](const std::vector<Image>& images) {
     return test::mean_of_means(test::select_layers(images, "color"));
@@ -457,7 +457,8 @@ TEST_P(Volume, AgreesWithPathTracing) {
     RenderOptions path = options("path", 16, 0), photons = options("probppm:volume=" + GetParam(), fog.passes, 3'000);
     path.max_depth = photons.max_depth = 8;
     if (kernel_dimensions(estimator()) == 3) photons.set["volume-radius"] = "0.1";
-    if (records_for(estimator()) == MediumRecords::beams) photons.passes = 3 * fog.passes;  // of fewer light paths each
+    if (records_for(estimator()) == MediumRecords::beams)
+      photons.passes = 3 * fog.passes;  // with fewer light paths each
     EXPECT_TRUE(agree(runs(scene, photons, 16, 200), runs(scene, path, 16, 100), 5)) << fog.name;
   }
 }
@@ -609,7 +610,7 @@ TEST(VolumeMethods, MergingBehindAWallDoesNotCount) {
   EXPECT_NEAR(mean_of("vcm:volume=point+beam+photon-beam+beams"), expected, 1e-5 * expected);
 }
 
-// Mean over all values of the variance of runs.
+// Mean over all values of the variance between runs.
 double variance_of(const std::vector<Image>& images) {
   const std::size_t count = images[0].pixels.size();
   double sum = 0;
@@ -659,7 +660,7 @@ std::array<float, 5> radii_in_fog(VolumeEstimator estimator, const std::string& 
   std::sort(radii.begin(), radii.end());
   return radii;
 }
-// The median in a beam of this half angle (degrees), 3.5 m from its source where the eye looks at it.
+// The median in a beam of this half angle (degrees), where the eye sees it, 3.5 m from its source.
 double radius_in_beam(VolumeEstimator estimator, double angle) {
   const std::string light = fmt::format(
       R"("spot" "point3 from" [-3.5 0 0] "point3 to" [0 0 0] "float coneangle" [{}] "float conedeltaangle" [{}])",
@@ -723,7 +724,7 @@ TEST(VolumeMethods, AgreeWithPathTracing) {
   }
 }
 
-// White fog, in which a light path leaves many photons.
+// White fog, in which each light path leaves many photons.
 Scene milk() {
   return test::scene_from_text(
       film +
