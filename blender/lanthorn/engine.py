@@ -46,7 +46,11 @@ class FinalRender:
         export = SceneExport()
         try:
             self.engine.update_stats("", "Exporting the scene")
+            export.bakes.size, export.bakes.frame = self.scene.lanthorn.bake_size, self.scene.frame_current
             parts = export.parts(self.depsgraph)
+            if export.bakes.are_missing:
+                self.engine.update_stats("", "Baking nodes that have no counterpart")
+            export.bake(parts)
             view = self.view_parts(export.report)
             motion.add_motion(self.engine, self.depsgraph, self.scene.camera, parts, view["camera"])
             changed, _ = export.changes(parts)
