@@ -83,6 +83,7 @@ class Bakes:
         self.folder = folder
         self.size, self.frame = 1024, 1  # texels along each side
         self._jobs = {}   # by path, those without an image
+        self._failed = set()
         self._thread = None
         self.problem = ""
 
@@ -93,7 +94,7 @@ class Bakes:
         size = domain.get("size") or max(self.size, min(LARGEST_FROM_IMAGES, largest))
         text = f"{tree_owner.name_full} {signature_of(output, textures.source)} {domain['key']} {size}"
         path = self._path(text, "exr")
-        if not os.path.exists(path):
+        if not os.path.exists(path) and path not in self._failed:
             self._jobs[path] = {"kind": "surface", "material": tree_owner.original, "groups": path_of_groups, "size": size,
                                 "node": output.node.name, "output": output.identifier, "path": path, "images": self._unsaved(images, textures), **domain["job"]()}
         return path
@@ -107,7 +108,7 @@ class Bakes:
     def world(self, world, signature):
         """The path of an .npz file with the world's `texels`, and `sun`: direction to it and irradiance, or empty."""
         path = self._path(f"{world.name_full} {signature} {self.size}", "npz")
-        if not os.path.exists(path):
+        if not os.path.exists(path) and path not in self._failed:
             self._jobs[path] = {"kind": "world", "world": world.original, "size": self.size, "path": path}
         return path
 
@@ -149,6 +150,8 @@ class Bakes:
 
         def wait():
             self._finish(process, paths)
+            if self.problem:
+                print(f"Lanthorn: {self.problem}", flush=True)
             self._thread = None
             tell()
         self._thread = threading.Thread(target=wait, daemon=True)
@@ -177,6 +180,7 @@ class Bakes:
             process.kill()
             output, _ = process.communicate()
         missing = [path for path in paths if not os.path.exists(path)]
+        self._failed.update(missing)
         self.problem = ""
         if missing:
             lines = output.strip().splitlines()

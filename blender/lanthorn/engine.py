@@ -159,7 +159,10 @@ class LanthornEngine(bpy.types.RenderEngine):
     def view_draw(self, context, depsgraph):
         if self._viewport is None:
             return
-        self._viewport.update_view(context)
+        if self._viewport.is_baked:
+            self._viewport.update_scene(context, depsgraph)
+        else:
+            self._viewport.update_view(context)
         gpu.state.blend_set("ALPHA_PREMULT")
         self.bind_display_space_shader(depsgraph.scene)
         self._viewport.draw(context.region.width, context.region.height)

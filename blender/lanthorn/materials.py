@@ -9,6 +9,8 @@ from .textures import Textures, is_native
 BLACK = [0.0, 0.0, 0.0]
 OPAQUE = 1.0
 HALFWAY = 0.5
+OLD_CLEARCOAT = 0.25  # Blender 3's factor
+SHEEN_ROUGHNESS = 0.5
 NO_SUBDIVISION = 1e9  # metres: no edge is as long
 
 
@@ -92,11 +94,11 @@ class Materials:
         look, medium, moved = self._look_of(material)
         is_seen = look.material is not None or not is_black(look.emission)
         node = look.material or ({"type": "diffuse", "reflectance": BLACK} if is_seen else {"type": "interface"})
-        if medium is not None:
-            self.parts["media"][name] = medium
-            node = {**node, "interior": name}
         self.parts["materials"][name] = node
         members = {"material": name}
+        if medium is not None:
+            self.parts["media"][name] = medium
+            members["inside_medium"] = name
         if not is_black(look.emission) and look.strength > 0:
             self.parts["area_lights"][name] = {"radiance": look.emission, "scale": look.strength, "two_sided": True}
             members["area_light"] = name
@@ -330,13 +332,45 @@ class Materials:
         if not isinstance(factor, dict) and factor > 1:
             self.report.note(owner, "Specular above 0.5 is taken as 0.5")
             factor = 1.0
-        return self._solid(node, owner, type="plastic", reflectance=self._albedo(node, owner, "Base Color"), eta=1.5,
-                           specular=factor, roughness=self._roughness(node, owner))
+        base = self._solid(node, owner, type="plastic", reflectance=self._albedo(node, owner, "Base Color"), eta=1.5,
+                           specular=factor, roughness=self._roughness(node, owner), **self._sheen(node, owner))
+        return self._coated(base, node, owner)
+
+    def _sheen(self, node, owner):
+        socket = node.inputs.get("Sheen") or node.inputs.get("Sheen Weight")
+        amount = self.textures.constant(socket, owner, "sheen")
+        if amount <= 0:
+            return {}
+        self.report.note(owner, "sheen is that of fibres, whose edge is softer")
+        rough = node.inputs.get("Sheen Roughness")
+        return {"sheen_color": [min(1.0, amount)] * 3, "sheen_roughness": rough.default_value if rough else SHEEN_ROUGHNESS}
+
+    def _coated(self, base, node, owner):
+        """Blender 3 adds a quarter of a reflection of index 1.5, Blender 4 has a layer."""
+        is_old = "Clearcoat" in node.inputs
+        amount = self.textures.number(node.inputs["Clearcoat" if is_old else "Coat Weight"], owner)
+        if amount == 0:
+            return base
+        roughness = self._roughness(node, owner, "Clearcoat Roughness" if is_old else "Coat Roughness")
+        eta = 1.5 if is_old else self._constant(node, owner, "Coat IOR", "the index of a coat")
+        if is_old:
+            amount = self._times(amount, OLD_CLEARCOAT)
+        relief = {name: base.pop(name) for name in ("normal_map", "displacement") if name in base}
+        inner = {name: value for name, value in base.items() if name not in {"sheen_color", "sheen_roughness"}}
+        coated = {"type": "coatedplastic", "base": {k: v for k, v in inner.items() if k != "type"},
+                  "coat": {"roughness": roughness, "thickness": 0.0, "eta": max(1.0001, eta)}, **relief}
+        return self._blend(lambda: {**base, **relief}, lambda: coated, amount, owner, "coat")
+
+    def _times(self, value, factor):
+        if not isinstance(value, dict):
+            return value * factor
+        name = f"{value['texture']}*{factor}"
+        self.parts["float_textures"][name] = {"type": "scale", "tex": value, "scale": factor}
+        return {"texture": name}
 
     def _note_principled(self, node, owner):
         for name, what in (("Subsurface", "subsurface scattering"), ("Subsurface Weight", "subsurface scattering"),
-                           ("Clearcoat", "the coat"), ("Coat Weight", "the coat"), ("Sheen", "sheen"),
-                           ("Sheen Weight", "sheen"), ("Anisotropic", "anisotropy")):
+                           ("Anisotropic", "anisotropy")):
             socket = node.inputs.get(name)
             if socket is not None and (socket.is_linked or socket.default_value > 0):
                 self.report.note(owner, f"{what} of a Principled BSDF is left out")

@@ -61,6 +61,32 @@ def textured(colorspace="sRGB", scale=(2, 1, 1), rotation=0.3):
     return make
 
 
+def volume(kind, surface=None, **inputs):
+    """A medium in the ball, with or without a surface."""
+    def make():
+        material = stage.node_material("test", surface or "ShaderNodeBsdfDiffuse", **({"IOR": 1.3} if surface else {}))
+        nodes, links = material.node_tree.nodes, material.node_tree.links
+        output = next(n for n in nodes if n.type == "OUTPUT_MATERIAL")
+        if surface is None:
+            nodes.remove(output.inputs["Surface"].links[0].from_node)
+        medium = nodes.new(kind)
+        for key, value in inputs.items():
+            medium.inputs[key.replace("_", " ")].default_value = value
+        links.new(medium.outputs[0], output.inputs["Volume"])
+        return material
+    return make
+
+
+def coat_of_fresnel():
+    """The idiom of a diffuse shader under a glossy one."""
+    material = mixed((DIFFUSE, {"Color": RED}), (GLOSSY, {"Roughness": 0.2}))()
+    nodes, links = material.node_tree.nodes, material.node_tree.links
+    fresnel = nodes.new("ShaderNodeFresnel")
+    fresnel.inputs["IOR"].default_value = 1.5
+    links.new(fresnel.outputs[0], next(n for n in nodes if n.type == "MIX_SHADER").inputs[0])
+    return material
+
+
 RED = (0.8, 0.2, 0.1, 1)
 DIFFUSE, GLOSSY, EMISSION = "ShaderNodeBsdfDiffuse", "ShaderNodeBsdfGlossy", "ShaderNodeEmission"
 PRINCIPLED, GLASS, HOLE = "ShaderNodeBsdfPrincipled", "ShaderNodeBsdfGlass", "ShaderNodeBsdfTransparent"
@@ -80,9 +106,21 @@ MATERIALS = {
     "principled": (shader(PRINCIPLED, **BASE, Roughness=0.4, Specular=0.5), 0.05),
     "principled-metal": (shader(PRINCIPLED, **BASE, Roughness=0.3, Metallic=1.0), 0.05),
     "principled-glass": (shader(PRINCIPLED, **BASE, Roughness=0.0, Transmission=1.0, IOR=1.45), 0.05),
+    "clearcoat": (shader(PRINCIPLED, **BASE, Roughness=0.5, Clearcoat=1.0, **{"Clearcoat Roughness": 0.1}), 0.05),
+    "sheen": (shader(PRINCIPLED, **BASE, Roughness=0.6, Sheen=0.5, **{"Sheen Tint": 0.0}), 0.05),
+    "coat-of-fresnel": (coat_of_fresnel, 0.05),
+    "absorption": (volume("ShaderNodeVolumeAbsorption", GLASS, Color=(0.2, 0.6, 0.9, 1), Density=1.0), TOLERANCE),
+    "scatter": (volume("ShaderNodeVolumeScatter", Color=(0.9, 0.6, 0.3, 1), Density=1.5, Anisotropy=0.3), TOLERANCE),
+    "smoke": (volume("ShaderNodeVolumePrincipled", Color=(0.3, 0.6, 0.9, 1), Density=1.5, Anisotropy=0.0,
+                     Absorption_Color=(0.2, 0.2, 0.2, 1)), TOLERANCE),
+    "glow": (volume("ShaderNodeVolumePrincipled", Color=(0.5, 0.5, 0.5, 1), Density=0.5, Emission_Strength=0.4,
+                    Emission_Color=(1, 0.5, 0.2, 1)), TOLERANCE),
     "texture": (textured(), TOLERANCE),
     "texture-linear": (textured(colorspace="Non-Color"), TOLERANCE),
 }
+
+
+ONLY = sys.argv[sys.argv.index("--") + 2:] if "--" in sys.argv else []  # names of materials; none: all
 
 
 class MaterialTest(unittest.TestCase):
@@ -103,11 +141,11 @@ class MaterialTest(unittest.TestCase):
     def test_each(self):
 
         rows = []
-        for name in MATERIALS:
+        for name in ONLY or MATERIALS:
             make, tolerance = MATERIALS[name]
             with self.subTest(name):
                 self.build(make)
-                cycles = stage.render("CYCLES", samples=192, max_bounces=24, transmission_bounces=24,
+                cycles = stage.render("CYCLES", samples=192, max_bounces=24, transmission_bounces=24, volume_bounces=24,
                                       blur_glossy=0, sample_clamp_indirect=0)
                 ours = stage.render("LANTHORN", method="vcm", noise=0, seconds=0, passes=48)
                 rows.append(numpy.concatenate([cycles, ours], axis=1))
@@ -125,5 +163,4 @@ class MaterialTest(unittest.TestCase):
 
 if __name__ == "__main__":
     stage.enable_addon()
-    arguments = sys.argv[sys.argv.index("--") + 2:] if "--" in sys.argv else []
-    unittest.main(argv=["test_materials", *arguments])
+    unittest.main(argv=["test_materials"])
