@@ -1,8 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The Lanthorn authors
 # SPDX-License-Identifier: Apache-2.0
 """Node materials as materials, emission and media of Lanthorn."""
+import math
 from dataclasses import dataclass
 
+from . import hair as fibres
 from . import media, presets
 from .textures import Textures, is_native
 
@@ -61,6 +63,13 @@ class Materials:
         else:
             triangles = surface.shape(slot, colors, is_welded="displacement" in members)
         return {"type": "triangles", **triangles, **members}
+
+    def fibre_members(self, material):
+        """What curves with this material need: material, area_light, alpha. Fibres have no texture coordinates."""
+        key = ("fibres", material.name_full if material is not None else "")
+        if key not in self._done:
+            self._done[key] = self._add(material, None, 0, False, " ".join(key))
+        return {k: v for k, v in self._done[key][0].items() if k != "displacement"}
 
     @staticmethod
     def _fills_unit_square(surface, slot):
@@ -291,6 +300,18 @@ class Materials:
         return Look(self._solid(node, owner, type="plastic", reflectance=BLACK, specular=0.0, sheen_roughness=0.5,
                                 sheen_color=self._albedo(node, owner)))
 
+    def hair(self, node, owner):
+        number = lambda name: self._constant(node, owner, name, f"{name} of hair")
+        made = {"type": "hair", "eta": max(1.0001, number("IOR")), "beta_m": number("Roughness"),
+                "beta_n": number("Radial Roughness"), "alpha": math.degrees(number("Offset"))}
+        if node.parametrization == "COLOR":
+            made["color"] = self._albedo(node, owner)
+        elif node.parametrization == "ABSORPTION":
+            made["sigma_a"] = self.textures.color(node.inputs["Absorption Coefficient"], owner)
+        else:
+            made["sigma_a"] = fibres.color_of_melanin(node, lambda socket: self.textures.constant(socket, owner, "melanin"))
+        return Look(made)
+
     def principled(self, node, owner):
         look = self._principled_base(node, owner)
         emission = node.inputs.get("Emission") or node.inputs["Emission Color"]
@@ -456,4 +477,4 @@ SHADERS = {"BSDF_DIFFUSE": Materials.diffuse, "BSDF_TRANSLUCENT": Materials.tran
            "BSDF_GLOSSY": Materials.glossy, "BSDF_ANISOTROPIC": Materials.glossy, "BSDF_GLASS": Materials.glass,
            "BSDF_REFRACTION": Materials.refraction, "SUBSURFACE_SCATTERING": Materials.subsurface,
            "BSDF_VELVET": Materials.velvet, "BSDF_PRINCIPLED": Materials.principled, "MIX_SHADER": Materials.mix,
-           "ADD_SHADER": Materials.add}
+           "ADD_SHADER": Materials.add, "BSDF_HAIR_PRINCIPLED": Materials.hair}

@@ -3,7 +3,7 @@
 """A depsgraph as the parts of a scene that `lanthorn link` takes."""
 import tempfile
 
-from . import camera, lights, meshes, world
+from . import camera, hair, lights, meshes, world
 from .bake import Bakes
 from .materials import Materials
 from .report import Report
@@ -29,7 +29,7 @@ class SceneExport:
         self.report = Report()
         self._images = ImageFiles(self.folder.name)
         self.bakes = Bakes(self.folder.name)
-        self._sent = empty_parts()
+        self._sent, self._is_viewport = empty_parts(), False
         self._surfaces = {}  # names and surface, by key; kept until `forget`
 
     def forget(self, depsgraph):
@@ -44,7 +44,7 @@ class SceneExport:
     def parts(self, depsgraph, space=None):
         """All objects, materials and lights that are seen; without the camera. `space`: of a viewport."""
         parts = empty_parts()
-        self.report = Report()
+        self.report, self._is_viewport = Report(), space is not None
         materials = Materials(parts, self.report, self._images, self.bakes)
         for instance in depsgraph.object_instances:
             if instance.show_self and (space is None or instance.object.visible_in_viewport_get(space)):
@@ -73,9 +73,6 @@ class SceneExport:
         """What objects have beside shape, place and material."""
         if not all(getattr(object, flag, True) for flag in VISIBILITIES):
             self.report.note(object.name, "is seen by all rays: ray visibility has no counterpart")
-        if any(system.settings.type == "HAIR" and system.settings.render_type == "PATH"
-               for system in object.particle_systems):
-            self.report.note(object.name, "hair is left out")
 
     def _add_instance(self, parts, materials, instance):
         object, matrix = instance.object, instance.matrix_world.copy()
@@ -87,10 +84,34 @@ class SceneExport:
             key = self._mesh_key(object)
             if key not in parts["objects"]:
                 parts["objects"][key] = self._shapes(key, object, materials, camera.rows(matrix))
+            self._add_hair(parts, materials, instance, name)
             if parts["objects"][key]["shapes"]:
                 parts["instances"][name] = {"object": key, "object_to_world": camera.rows(matrix)}
+        elif object.type == "CURVES":
+            self._add_curves(parts, materials, object, name, matrix)
         elif object.type not in IGNORED_TYPES:
             self.report.note(object.name, f"objects of the type {object.type} are left out")
+
+    def _add_hair(self, parts, materials, instance, name):
+        if instance.is_instance:
+            if len(instance.object.particle_systems):
+                self.report.note(instance.object.name, "hair of instances is left out")
+            return
+        object = instance.object
+        for system, slot, curves in hair.particle_shapes(object, self._is_viewport):
+            parts["shapes"][f"{name}/{system}"] = {**curves, **self._fibre_members(materials, object, slot)}
+
+    def _add_curves(self, parts, materials, object, name, matrix):
+        curves = hair.curves_shape(object)
+        if curves is not None:
+            key = f"{name}|CURVES"
+            parts["objects"][key] = {"shapes": [{**curves, **self._fibre_members(materials, object, 0)}]}
+            parts["instances"][name] = {"object": key, "object_to_world": camera.rows(matrix)}
+
+    @staticmethod
+    def _fibre_members(materials, object, slot):
+        slots = object.material_slots
+        return materials.fibre_members(slots[min(slot, len(slots) - 1)].material if len(slots) else None)
 
     @staticmethod
     def name_of(instance):
