@@ -7,11 +7,13 @@ import json
 import os
 import subprocess
 import threading
+import time
 
 import bpy
 import numpy
 
-TIMEOUT = 600  # seconds
+TIMEOUT = 600   # seconds
+PATIENCE = 0.1  # seconds between looks at whether the user cancels
 WORKER = os.path.join(os.path.dirname(os.path.abspath(__file__)), "bake_worker.py")
 LARGEST_FROM_IMAGES = 4096  # texels; a tree of larger images is baked with less detail
 UNTOLD = {"name", "label", "location", "width", "width_hidden", "height", "select", "show_options", "show_preview",
@@ -84,7 +86,8 @@ class Bakes:
         self.size, self.frame = 1024, 1  # texels along each side
         self._jobs = {}   # by path, those without an image
         self._failed = set()
-        self._thread = None
+        self._thread, self._is_closed = None, False
+        self._log = os.path.join(folder, "bake.log")
         self.problem = ""
 
     def image(self, tree_owner, output, path_of_groups, textures, domain):
@@ -137,10 +140,10 @@ class Bakes:
     def are_running(self):
         return self._thread is not None
 
-    def run(self):
+    def run(self, is_cancelled=lambda: False):
         """Bakes what is missing, and waits. `problem` says why something is still missing."""
         process, paths = self._start()
-        self._finish(process, paths)
+        self._finish(process, paths, is_cancelled)
 
     def run_beside(self, tell):
         """Bakes what is missing in a process beside this one, and calls `tell` from another thread at the end."""
@@ -149,13 +152,21 @@ class Bakes:
         process, paths = self._start()
 
         def wait():
-            self._finish(process, paths)
+            self._finish(process, paths, lambda: self._is_closed)
             if self.problem:
                 print(f"Lanthorn: {self.problem}", flush=True)
             self._thread = None
-            tell()
+            if not self._is_closed:
+                tell()
         self._thread = threading.Thread(target=wait, daemon=True)
         self._thread.start()
+
+    def close(self):
+        """Ends what runs."""
+        self._is_closed = True
+        thread = self._thread
+        if thread is not None:
+            thread.join()
 
     def _start(self):
         jobs = list(self._jobs.values())
@@ -170,24 +181,32 @@ class Bakes:
             json.dump({"library": library, "jobs": names, "frame": self.frame}, file)
         command = [bpy.app.binary_path, "-b", "--factory-startup", "--python-exit-code", "1", "-noaudio", "--python",
                    WORKER, "--", list_file]
-        return subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-                                text=True), [job["path"] for job in jobs]
+        with open(self._log, "w", encoding="utf-8") as log:
+            # The worker ends when the other end of its standard input is gone.
+            process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=log, stderr=subprocess.STDOUT)
+        return process, [job["path"] for job in jobs]
 
-    def _finish(self, process, paths):
-        try:
-            output, _ = process.communicate(timeout=TIMEOUT)
-        except subprocess.TimeoutExpired:
-            process.kill()
-            output, _ = process.communicate()
-        missing = [path for path in paths if not os.path.exists(path)]
-        self._failed.update(missing)
+    def _finish(self, process, paths, is_cancelled=lambda: False):
+        end = time.monotonic() + TIMEOUT
+        while True:
+            try:
+                process.wait(PATIENCE)
+                break
+            except subprocess.TimeoutExpired:
+                if time.monotonic() > end or is_cancelled():
+                    process.kill()
+        process.stdin.close()
         self.problem = ""
-        if missing:
-            lines = output.strip().splitlines()
-            self.problem = f"{len(missing)} of {len(paths)} images could not be baked: {lines[-1] if lines else 'no reason'}"
-            print(output)
         for path in paths:  # also those that cannot be had: they are not tried again
             self._jobs.pop(path, None)
+        missing = [path for path in paths if not os.path.exists(path)]
+        if missing and not is_cancelled():
+            self._failed.update(missing)
+            with open(self._log, encoding="utf-8", errors="replace") as log:
+                text = log.read()
+            print(text)
+            lines = [line for line in text.splitlines() if "Error" in line] or ["no reason was given"]
+            self.problem = f"{len(missing)} of {len(paths)} images could not be baked: {lines[-1]}"
 
     def replace_missing(self, parts):
         """Grey in the place of images that are not there."""

@@ -5,6 +5,7 @@ import json
 import math
 import os
 import sys
+import threading
 
 import bpy
 import numpy
@@ -204,7 +205,13 @@ def bake_world(job):
     bpy.data.objects.remove(camera)
 
 
+def end_with_parent():
+    sys.stdin.read()
+    os._exit(1)
+
+
 def main(list_file):
+    threading.Thread(target=end_with_parent, daemon=True).start()
     with open(list_file, encoding="utf-8") as file:
         work = json.load(file)
     scene = bpy.context.scene

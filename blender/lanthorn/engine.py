@@ -50,7 +50,9 @@ class FinalRender:
             parts = export.parts(self.depsgraph)
             if export.bakes.are_missing:
                 self.engine.update_stats("", "Baking nodes that have no counterpart")
-            export.bake(parts)
+            export.bake(parts, self.engine.test_break)
+            if self.engine.test_break():
+                return
             view = self.view_parts(export.report)
             motion.add_motion(self.engine, self.depsgraph, self.scene.camera, parts, view["camera"])
             changed, _ = export.changes(parts)

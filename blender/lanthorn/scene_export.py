@@ -39,6 +39,7 @@ class SceneExport:
             self._surfaces = {key: made for key, made in self._surfaces.items() if not names & made[0]}
 
     def close(self):
+        self.bakes.close()
         self.folder.cleanup()
 
     def parts(self, depsgraph, space=None):
@@ -54,10 +55,10 @@ class SceneExport:
             parts["lights"].update(world.lights_of_world(scene_world, self.report, self.bakes))
         return parts
 
-    def bake(self, parts):
+    def bake(self, parts, is_cancelled):
         """Makes the images that the parts refer to, and waits for them."""
         if self.bakes.are_missing:
-            self.bakes.run()
+            self.bakes.run(is_cancelled)
             if self.bakes.problem:
                 self.report.note("bake", f"{self.bakes.problem}: grey stands in")
         self.settle(parts)

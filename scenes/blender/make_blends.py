@@ -85,7 +85,7 @@ def lamp(kind, energy, location, rotation=(0, 0, 0), **members):
 
 def camera(location, rotation, lens=50):
     made = bpy.data.cameras.new("camera")
-    made.lens = lens
+    made.lens, made.clip_start = lens, 1e-3
     bpy.context.scene.camera = put("camera", made, location, rotation)
 
 

@@ -18,9 +18,8 @@ import make_blends
 OF_MEAN = 0.03     # of the mean of the picture
 OF_MEDIAN = 0.03   # the median difference of blocks, of the mean of the picture
 OF_WORST = 0.2     # nine blocks of ten differ by less
-LAMPS_SEEN = {"lamps"}  # the camera sees lamps, and in Cycles it does not
 CAUSTICS = {"glass-of-water", "ring", "pool", "lamp"}
-BRIGHTER = {"glass-of-water": 1.5, "ring": 1.0, "pool": 1.0, "lamp": 0.9}  # largest block, at least so many times Cycles'
+BRIGHTER = {"glass-of-water": 0.75, "ring": 0.9, "pool": 1.1, "lamp": 5.0}  # largest block, at least so many times Cycles'
 FOLDER = sys.argv[sys.argv.index("--") + 1] if sys.argv[-1] != "--" and "--" in sys.argv else None
 ONLY = sys.argv[sys.argv.index("--") + 2:] if "--" in sys.argv else []
 

@@ -160,7 +160,32 @@ class MaterialTest(unittest.TestCase):
             columns[1] = numpy.pad(columns[1], ((0, columns[0].shape[0] - columns[1].shape[0]), (0, 0), (0, 0)))
             stage.save_png(os.path.join(FOLDER, "materials.png"), *columns, exposure=0.8)
 
+    def test_measured_glass_and_metal(self):
+        """Presets give the index at the d line; the program takes them, and a film, in a spectral render."""
+        from lanthorn import presets
+        for name, (_, index, *_) in {**presets.GEMS, **presets.OTHERS}.items():
+            curve = presets.eta(name)
+            self.assertAlmostEqual(numpy.interp(587.6, curve["nm"], curve["values"]), index, places=3, msg=name)
+        curve = presets.of_abbe_number(1.6, 30)
+        d, f, c = (numpy.interp(nm, curve["nm"], curve["values"]) for nm in (587.6, 486.1, 656.3))
+        self.assertAlmostEqual((d - 1) / (f - c), 30, delta=0.2)
+        means = {}
+        for name, kind, members in (("glass", GLASS, {}), ("diamond", GLASS, {"glass": "DIAMOND"}),
+                                    ("flint", GLASS, {"glass": "LASF9", "film_thickness": 500}),
+                                    ("copper", GLOSSY, {"metal": "Cu"})):
+            def make():
+                material = stage.node_material("test", kind, Roughness=0.0)
+                for member, value in members.items():
+                    setattr(material.lanthorn, member, value)
+                return material
+            self.build(make)
+            picture = stage.render("LANTHORN", method="path", noise=0, seconds=0, passes=6, spectral=True)
+            means[name] = picture[24:52, 20:44, :3].mean(axis=(0, 1))
+        self.assertGreater(abs(means["diamond"] - means["glass"]).max(), 0.02)
+        self.assertGreater(abs(means["flint"] - means["glass"]).max(), 0.02)
+        self.assertGreater(means["copper"][0], 1.2 * means["copper"][2])
+
 
 if __name__ == "__main__":
     stage.enable_addon()
-    unittest.main(argv=["test_materials"])
+    unittest.main(argv=["test_materials", *(["MaterialTest.test_each"] if ONLY else [])])

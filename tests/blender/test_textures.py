@@ -167,6 +167,21 @@ class TextureTest(unittest.TestCase):
                 self.ball(make, closure)
                 self.compare(name)
 
+    def test_a_bake_that_fails_is_told_and_grey(self):
+        import lanthorn.bake
+        self.ball(*MATERIALS["ramp-of-noise-uv"])
+        worker, lanthorn.bake.WORKER = lanthorn.bake.WORKER, os.path.join(stage.ROOT, "there-is-no-worker.py")
+        told, note = [], lanthorn.report.Report.note
+        lanthorn.report.Report.note = lambda self, owner, text: (told.append(text), note(self, owner, text))
+        try:
+            picture = stage.render("LANTHORN", method="path", noise=0, seconds=0, passes=4)
+        finally:
+            lanthorn.bake.WORKER, lanthorn.report.Report.note = worker, note
+        self.assertTrue(any("1 of 1 images could not be baked" in text for text in told), told)
+        red, green, blue = picture[28:36, 28:36, :3].mean(axis=(0, 1))
+        self.assertAlmostEqual(red, green, delta=0.02)
+        self.assertAlmostEqual(red, blue, delta=0.02)
+
     def test_displacement(self):
         for method in ("BUMP", "DISPLACEMENT"):
             with self.subTest(method):
