@@ -129,7 +129,7 @@ class Materials:
         medium = media.medium(volume.node, material.name, self.textures, self.report) if volume is not None else None
         if surface is None:
             return (Look() if medium is not None else Look({"type": "diffuse", "reflectance": BLACK})), medium, {}
-        look = self._with_measured(self._look(surface.node, material.name), material)
+        look = self._with_measured(self._look_of_output(surface, material.name), material)
         return look, medium, self._displacement(output.inputs["Displacement"], material, look)
 
     @staticmethod
@@ -201,7 +201,13 @@ class Materials:
 
     def _input_look(self, socket, owner):
         source = self.textures.source(socket)
-        return self._look(source.node, owner) if source is not None else Look({"type": "diffuse", "reflectance": BLACK})
+        return self._look_of_output(source, owner) if source is not None else Look({"type": "diffuse", "reflectance": BLACK})
+
+    def _look_of_output(self, output, owner):
+        """Colours in the place of a shader emit, as in Cycles."""
+        if output.type == "SHADER":
+            return self._look(output.node, owner)
+        return Look(emission=self.textures.color_of(output, owner) or BLACK)
 
     def _count(self):
         """A number for each mix of a material, the same at each export."""

@@ -3,6 +3,7 @@
 """Volume shaders as homogeneous media."""
 
 BLACK = [0.0, 0.0, 0.0]
+LEAST_ABSORPTION = 1e-4  # per metre, of a volume that emits
 KINDS = {"VOLUME_ABSORPTION", "VOLUME_SCATTER", "PRINCIPLED_VOLUME", "EMISSION", "ADD_SHADER", "MIX_SHADER"}
 
 
@@ -76,7 +77,9 @@ def medium(node, owner, textures, report):
     made = _Volume(owner, textures, report).of(node)
     emission = made.pop("emission")
     if max(emission) > 0:
-        made["emission"] = emission
+        # Cycles has what a metre emits, Lanthorn the radiance of an infinitely deep medium: sigma_a times as much a metre.
+        made["sigma_a"] = [max(a, LEAST_ABSORPTION if e > 0 else 0) for a, e in zip(made["sigma_a"], emission)]
+        made["emission"] = [e / a if e > 0 else 0.0 for e, a in zip(emission, made["sigma_a"])]
     elif max(made["sigma_a"] + made["sigma_s"]) <= 0:
         return None
     return made

@@ -37,7 +37,7 @@ class Surface:
     def __init__(self, mesh, key, texspace=None):
         self.key, self.texspace = key, texspace
         self.object_name, self.to_world = key, None
-        self._stored, self._atlases = {}, {}
+        self._stored, self._atlases, self._shapes, self._bounds = {}, {}, {}, {}
         mesh.calc_loop_triangles()
         count, loops = len(mesh.loop_triangles), len(mesh.loops)
         self.is_empty = count == 0
@@ -71,7 +71,13 @@ class Surface:
 
     def shape(self, slot, color_name=None, is_welded=False):
         """The triangles of a slot as a mesh of Lanthorn, whose vertices are the corners of Blender's. Welded: one vertex
-        for all that are alike."""
+        for all that are alike. The same arrays at each call, so that nobody need compare them."""
+        key = slot, color_name, is_welded
+        if key not in self._shapes:
+            self._shapes[key] = self._shape(*key)
+        return self._shapes[key]
+
+    def _shape(self, slot, color_name, is_welded):
         triangles = self.triangles[self.slots == slot]
         colors = self.colors.get(color_name)
         if not self.is_smooth and self.uv_name is None and colors is None:
@@ -87,6 +93,12 @@ class Surface:
 
     def atlas_shape(self, slot, size):
         """As `shape`, with a place of its own in an image for each triangle."""
+        key = slot, size
+        if key not in self._shapes:
+            self._shapes[key] = self._atlas_shape(*key)
+        return self._shapes[key]
+
+    def _atlas_shape(self, slot, size):
         corners = self.triangles[self.slots == slot].reshape(-1)
         shape = {"positions": self.positions[self.vertices[corners]], "uvs": self._atlas(slot, size)[0].reshape(-1, 2),
                  "triangles": numpy.arange(len(corners), dtype=numpy.uint32).reshape(-1, 3)}
@@ -102,6 +114,11 @@ class Surface:
 
     def uv_bounds(self, slot):
         """The lowest and the highest texture coordinates of a slot; the unit square if it contains them."""
+        if slot not in self._bounds:
+            self._bounds[slot] = self._uv_bounds(slot)
+        return self._bounds[slot]
+
+    def _uv_bounds(self, slot):
         if self.uv_name is None:
             return numpy.zeros(2), numpy.ones(2)
         uvs = self.uv_layers[self.uv_name][self.triangles[self.slots == slot].reshape(-1)]

@@ -88,17 +88,17 @@ SOLID = {"TEX_NOISE", "TEX_VORONOI", "TEX_MUSGRAVE", "TEX_WAVE", "TEX_MAGIC", "T
 # Values of a place on an object, beside its texture coordinates.
 OF_A_PLACE = {"NEW_GEOMETRY", "AMBIENT_OCCLUSION", "BEVEL", "WIREFRAME", "TANGENT", "ATTRIBUTE", "PARTICLE_INFO",
               "HAIR_INFO", "OBJECT_INFO", "UVALONGSTROKE", "VERTEX_COLOR", "CURVES_INFO"}
-NATIVE = {"RGB", "VALUE", "BLACKBODY", "TEX_IMAGE", "MAPPING", "TEX_COORD", "UVMAP", "RGBTOBW", "SEPRGB",
-          "SEPARATE_COLOR", "NORMAL_MAP", "BUMP", "DISPLACEMENT"}
+NATIVE = {"RGB", "VALUE", "BLACKBODY", "TEX_IMAGE", "MAPPING", "TEX_COORD", "UVMAP", "NORMAL_MAP", "BUMP", "DISPLACEMENT"}
+# Values of a place in the world, not on the object.
+OF_THE_WORLD = {"NEW_GEOMETRY", "OBJECT_INFO", "CAMERA", "AMBIENT_OCCLUSION"}
+WORLD_OUTPUTS = {"Camera", "Window", "Reflection"}  # of Texture Coordinate
 SIDE_OF_A_CONSTANT = 4  # texels of the image of a tree that is the same everywhere
 
 
 def is_native(node):
-    """Whether a node's values need no image of their own."""
+    """Whether a node's values surely need no image of their own."""
     if node.type in {"MIX_RGB", "MIX"}:
-        return node.blend_type == "MIX" or node.blend_type == "MULTIPLY"
-    if node.type == "MATH":
-        return node.operation == "MULTIPLY" and not node.use_clamp
+        return node.blend_type in {"MIX", "MULTIPLY"} and getattr(node, "data_type", "RGBA") == "RGBA"
     return node.type in NATIVE or node.type in OF_THE_RAY or node.bl_idname.startswith(("ShaderNodeBsdf", "ShaderNodeVolume"))
 
 
@@ -156,7 +156,9 @@ class Textures:
             return None
         is_varying = any(node.type in OF_A_PLACE or node.type in SOLID or node.type in {"TEX_COORD", "TEX_IMAGE", "UVMAP"}
                          for node, _ in nodes)
-        domain, place = self._domain(is_number, is_varying)
+        is_of_world = any(node.type in OF_THE_WORLD or (node.type == "TEX_COORD" and (node.object or outputs & WORLD_OUTPUTS))
+                          for node, outputs in nodes)
+        domain, place = self._domain(is_number, is_varying, is_of_world)
         path = self.bakes.image(self.material, output, self._path_of_groups(output.node), self, domain)
         self.report.note(owner, f"{output.node.bl_label} has no counterpart: baked to an image")
         name = f"{self.prefix}/{os.path.basename(path)}"
@@ -168,13 +170,13 @@ class Textures:
         own = (output.node, {output.name})
         return [own, *self.nodes_behind(output.node.inputs)]
 
-    def _domain(self, is_number, is_varying):
+    def _domain(self, is_number, is_varying, is_of_world):
         """Where a bake takes place, and the members by which its image is put on."""
         surface, slot = self.surface, self.slot
         job = {"is_number": is_number, "object": surface.object_name}
         if self.is_atlas:
             mesh, size = surface.stored(self.bakes, slot)
-            if surface.to_world is not None:
+            if is_of_world:
                 job["to_world"] = surface.to_world
             return {"key": f"{mesh} {is_number} {job}", "size": size, "job": lambda: {**job, "mesh": mesh}}, {}
         low, high = surface.uv_bounds(slot)
@@ -224,8 +226,11 @@ class Textures:
     def color(self, socket, owner):
         """[r, g, b] or {"texture": name}."""
         output = self.source(socket)
-        if output is None:
-            return self._constant(socket)
+        made = self.color_of(output, owner) if output is not None else None
+        return made if made is not None else self._constant(socket)
+
+    def color_of(self, output, owner):
+        """The colour of an output; None, with a note, if there is no counterpart."""
         of_ray = self._of_the_ray(output, owner)
         if of_ray is not None:
             return [of_ray] * 3
@@ -234,10 +239,9 @@ class Textures:
             made = self._color_node(output, owner)
         if made is None:
             made = self._baked(output, False, owner)
-        if made is not None:
-            return made
-        self.report.note(owner, f"the node {output.node.bl_label} has no counterpart: the socket's own value is used")
-        return self._constant(socket)
+        if made is None:
+            self.report.note(owner, f"the node {output.node.bl_label} has no counterpart: the socket's own value is used")
+        return made
 
     def number(self, socket, owner):
         """A number or {"texture": name}."""

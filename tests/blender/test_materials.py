@@ -156,7 +156,7 @@ class MaterialTest(unittest.TestCase):
                 self.assertLess(abs(middle[1] / middle[0] - 1).max(), LARGEST_OF_BALL)
         if FOLDER:
             half = (len(rows) + 1) // 2
-            columns = [numpy.concatenate(part) for part in (rows[:half], rows[half:])]
+            columns = [numpy.concatenate(part) for part in (rows[:half], rows[half:] or [0 * rows[0]])]
             columns[1] = numpy.pad(columns[1], ((0, columns[0].shape[0] - columns[1].shape[0]), (0, 0), (0, 0)))
             stage.save_png(os.path.join(FOLDER, "materials.png"), *columns, exposure=0.8)
 
