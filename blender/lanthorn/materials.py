@@ -69,7 +69,19 @@ class Materials:
         key = ("fibres", material.name_full if material is not None else "")
         if key not in self._done:
             self._done[key] = self._add(material, None, 0, False, " ".join(key))
+            self._put_out(self._done[key][0], material)
         return {k: v for k, v in self._done[key][0].items() if k != "displacement"}
+
+    def _put_out(self, members, material):
+        """Fibres that emit would be lamps of many triangles each: they reflect the colour instead."""
+        lamp = members.pop("area_light", None)
+        if lamp is None:
+            return
+        self.report.note(material.name, "hair does not emit: it reflects the colour that it would emit")
+        if self.parts["materials"][members["material"]] == {"type": "diffuse", "reflectance": BLACK}:
+            color = self.parts["area_lights"][lamp]["radiance"]
+            self.parts["materials"][members["material"]] = {"type": "diffuse", "reflectance": clamped(color)}
+        del self.parts["area_lights"][lamp]
 
     @staticmethod
     def _fills_unit_square(surface, slot):
@@ -207,7 +219,7 @@ class Materials:
         """Colours in the place of a shader emit, as in Cycles."""
         if output.type == "SHADER":
             return self._look(output.node, owner)
-        return Look(emission=self.textures.color_of(output, owner) or BLACK)
+        return Look(emission=self.textures.color_of(output, owner) or [HALFWAY] * 3)
 
     def _count(self):
         """A number for each mix of a material, the same at each export."""
