@@ -46,7 +46,13 @@ class FinalRender:
         export = SceneExport()
         try:
             self.engine.update_stats("", "Exporting the scene")
+            export.bakes.size, export.bakes.frame = self.scene.lanthorn.bake_size, self.scene.frame_current
             parts = export.parts(self.depsgraph)
+            if export.bakes.are_missing:
+                self.engine.update_stats("", "Baking nodes that have no counterpart")
+            export.bake(parts, self.engine.test_break)
+            if self.engine.test_break():
+                return
             view = self.view_parts(export.report)
             motion.add_motion(self.engine, self.depsgraph, self.scene.camera, parts, view["camera"])
             changed, _ = export.changes(parts)
@@ -155,7 +161,10 @@ class LanthornEngine(bpy.types.RenderEngine):
     def view_draw(self, context, depsgraph):
         if self._viewport is None:
             return
-        self._viewport.update_view(context)
+        if self._viewport.is_baked:
+            self._viewport.update_scene(context, depsgraph)
+        else:
+            self._viewport.update_view(context)
         gpu.state.blend_set("ALPHA_PREMULT")
         self.bind_display_space_shader(depsgraph.scene)
         self._viewport.draw(context.region.width, context.region.height)

@@ -1,13 +1,19 @@
 # SPDX-FileCopyrightText: 2026 The Lanthorn authors
 # SPDX-License-Identifier: Apache-2.0
 """Node materials as materials, emission and media of Lanthorn."""
+import math
 from dataclasses import dataclass
 
-from .textures import Textures
+from . import hair as fibres
+from . import media, presets
+from .textures import Textures, is_native
 
 BLACK = [0.0, 0.0, 0.0]
 OPAQUE = 1.0
 HALFWAY = 0.5
+OLD_CLEARCOAT = 0.25  # Blender 3's factor
+SHEEN_ROUGHNESS = 0.5
+NO_SUBDIVISION = 1e9  # metres: no edge is as long
 
 
 @dataclass
@@ -28,55 +34,175 @@ def is_black(color):
     return color is None or (isinstance(color, list) and max(color) <= 0)
 
 
+# The index for which a Layer Weight node has the reflection that its Fresnel output names.
+def eta_of_blend(blend):
+    return 1 / (1 - min(0.999, max(0.0, blend)))
+
+
 class Materials:
     """Adds what a scene's materials need to its parts."""
 
-    def __init__(self, parts, report, images):
-        self.parts, self.report = parts, report
-        self.textures = Textures(parts, report, images)
-        self._done, self._mixes = {}, 0
+    def __init__(self, parts, report, images, bakes):
+        self.parts, self.report, self.bakes = parts, report, bakes
+        self.textures = Textures(parts, report, images, bakes)
+        self._done, self._kinds, self._mixes = {}, {}, 0
 
-    def shape_members(self, material):
-        """Returns what a shape with this shader needs: material, area_light, alpha."""
-        key = material.name_full if material is not None else ""
+    def shape(self, material, surface, slot):
+        """The triangles of a slot with their material, area_light, alpha."""
+        name = material.name_full if material is not None else ""
+        if name not in self._kinds:
+            self._kinds[name] = self._kind(material)
+        is_baked, is_atlas = self._kinds[name]
+        is_of_surface = is_atlas or (is_baked and not self._fills_unit_square(surface, slot))
+        key = (name, surface.key, slot) if is_of_surface else (name,)
         if key not in self._done:
-            self._done[key] = self._add(key, material)
-        return self._done[key]
+            self._done[key] = self._add(material, surface, slot, is_atlas, " on ".join(map(str, key)))
+        members, colors = self._done[key]
+        if is_atlas:
+            triangles = surface.atlas_shape(slot, self.bakes.size)
+        else:
+            triangles = surface.shape(slot, colors, is_welded="displacement" in members)
+        return {"type": "triangles", **triangles, **members}
 
-    def _add(self, key, material):
-        self.textures.groups, self._mixes = [], 0
+    def fibre_members(self, material):
+        """What curves with this material need: material, area_light, alpha. Fibres have no texture coordinates."""
+        key = ("fibres", material.name_full if material is not None else "")
+        if key not in self._done:
+            self._done[key] = self._add(material, None, 0, False, " ".join(key))
+            self._put_out(self._done[key][0], material)
+        return {k: v for k, v in self._done[key][0].items() if k != "displacement"}
+
+    def _put_out(self, members, material):
+        """Fibres that emit would be lamps of many triangles each: they reflect the colour instead."""
+        lamp = members.pop("area_light", None)
+        if lamp is None:
+            return
+        self.report.note(material.name, "hair does not emit: it reflects the colour that it would emit")
+        if self.parts["materials"][members["material"]] == {"type": "diffuse", "reflectance": BLACK}:
+            color = self.parts["area_lights"][lamp]["radiance"]
+            self.parts["materials"][members["material"]] = {"type": "diffuse", "reflectance": clamped(color)}
+        del self.parts["area_lights"][lamp]
+
+    @staticmethod
+    def _fills_unit_square(surface, slot):
+        low, high = surface.uv_bounds(slot)
+        return not low.any() and (high == 1).all()
+
+    def _output(self, material):
+        if material is None or not (material.use_nodes and material.node_tree):
+            return None
+        return material.node_tree.get_output_node("CYCLES") or material.node_tree.get_output_node("ALL")
+
+    def _kind(self, material):
+        """Whether a material needs images of its own, and whether triangle by triangle."""
+        output = self._output(material)
+        if output is None:
+            return False, False
+        self.textures.groups = []
+        nodes = [(node, outputs) for node, outputs in
+                 self.textures.nodes_behind([output.inputs["Surface"], output.inputs["Displacement"]])
+                 if node.type not in SHADERS]
+        is_baked = any(not is_native(node) for node, _ in nodes)
+        solid = {node.type for node, outputs in nodes if self.textures.is_solid(node, outputs)}
+        if not is_baked:
+            solid -= {"VERTEX_COLOR"}
+        return is_baked or bool(solid), bool(solid)
+
+    def _add(self, material, surface, slot, is_atlas, key):
         name = f"material {key}"
-        look, medium = self._look_of(material)
+        self.textures.begin(material, surface, slot, is_atlas, key)
+        self._mixes = 0
+        look, medium, moved = self._look_of(material)
         is_seen = look.material is not None or not is_black(look.emission)
         node = look.material or ({"type": "diffuse", "reflectance": BLACK} if is_seen else {"type": "interface"})
-        if medium is not None:
-            self.parts["media"][name] = medium
-            node = {**node, "interior": name}
         self.parts["materials"][name] = node
         members = {"material": name}
+        if medium is not None:
+            self.parts["media"][name] = medium
+            members["inside_medium"] = name
         if not is_black(look.emission) and look.strength > 0:
             self.parts["area_lights"][name] = {"radiance": look.emission, "scale": look.strength, "two_sided": True}
             members["area_light"] = name
         if is_seen and look.alpha != OPAQUE:
             members["alpha"] = look.alpha
-        return members
+        return {**members, **moved}, self.textures.uses_colors
 
     def _look_of(self, material):
+        """Look, medium, and what the shape needs of a displacement."""
         if material is None:
-            return Look({"type": "diffuse", "reflectance": [0.8] * 3}), None
+            return Look({"type": "diffuse", "reflectance": [0.8] * 3}), None, {}
         if not (material.use_nodes and material.node_tree):
-            return Look({"type": "diffuse", "reflectance": list(material.diffuse_color[:3])}), None
-        output = material.node_tree.get_output_node("CYCLES") or material.node_tree.get_output_node("ALL")
+            return Look({"type": "diffuse", "reflectance": list(material.diffuse_color[:3])}), None, {}
+        output = self._output(material)
         if output is None:
-            return Look({"type": "diffuse", "reflectance": BLACK}), None
+            return Look({"type": "diffuse", "reflectance": BLACK}), None, {}
         surface = self.textures.source(output.inputs["Surface"])
         volume = self.textures.source(output.inputs["Volume"])
-        medium = self._medium(volume.node, material.name) if volume is not None else None
-        if output.inputs["Displacement"].is_linked:
-            self.report.note(material.name, "displacement is left out")
+        medium = media.medium(volume.node, material.name, self.textures, self.report) if volume is not None else None
         if surface is None:
-            return (Look() if medium is not None else Look({"type": "diffuse", "reflectance": BLACK})), medium
-        return self._look(surface.node, material.name), medium
+            return (Look() if medium is not None else Look({"type": "diffuse", "reflectance": BLACK})), medium, {}
+        look = self._with_measured(self._look_of_output(surface, material.name), material)
+        return look, medium, self._displacement(output.inputs["Displacement"], material, look)
+
+    @staticmethod
+    def _with_measured(look, material):
+        """Index, dispersion and thin film, which are properties of the material."""
+        own, made = material.lanthorn, look.material
+        if made is None:
+            return look
+        if made["type"] == "dielectric":
+            if own.glass != "NONE":
+                made["eta"] = presets.eta(own.glass)
+            elif own.abbe > 0:
+                made["eta"] = presets.of_abbe_number(made["eta"], own.abbe)
+            if own.film_thickness > 0:
+                made["film"] = {"thickness": own.film_thickness, "eta": own.film_eta}
+        elif made["type"] == "conductor" and own.metal != "NONE":
+            made.pop("reflectance", None)
+            made.update(presets.metal(own.metal))
+        return look
+
+    def _displacement(self, socket, material, look):
+        """Cycles moves vertices, or bends normals, or both, as the material says."""
+        output = self.textures.source(socket)
+        if output is None:
+            return {}
+        node, method = output.node, getattr(material.cycles, "displacement_method", "BUMP")
+        method = getattr(material, "displacement_method", method)
+        if node.type != "DISPLACEMENT":
+            self.report.note(material.name, f"{node.bl_label} at the displacement has no counterpart: it is left out")
+            return {}
+        height = self.textures.number(node.inputs["Height"], material.name)
+        scale = self.textures.constant(node.inputs["Scale"], material.name, "the scale of a displacement")
+        if not isinstance(height, dict) or scale == 0:
+            return {}
+        moved = self._scaled(height, scale, node.inputs["Midlevel"].default_value if method != "BUMP" else 0)
+        if method == "BUMP":
+            self._bend(look.material, moved)
+            return {}
+        if self.textures.is_atlas:
+            self.report.note(material.name, "a displacement by other coordinates than UV's bends normals and moves nothing")
+            self._bend(look.material, self._scaled(height, scale, 0))
+            return {}
+        # Vertices move, as in Cycles without adaptive subdivision.
+        return {"displacement": {"height": moved, "edge_length": NO_SUBDIVISION}}
+
+    def _scaled(self, height, scale, middle):
+        """scale * (height - middle)."""
+        name = f"{height['texture']}*{scale}-{middle}"
+        self.parts["float_textures"][name] = {"type": "mix", "tex1": -scale * middle, "tex2": scale * (1 - middle),
+                                              "amount": height}
+        return {"texture": name}
+
+    def _bend(self, material, height):
+        """Bends the normals of all closures that have none of their own."""
+        if material is None:
+            return
+        if material["type"] == "mix":
+            for name in material["materials"]:
+                self._bend(self.parts["materials"][name], height)
+        elif material["type"] != "interface":
+            material.setdefault("displacement", height)
 
     def _look(self, node, owner):
         make = SHADERS.get(node.type)
@@ -87,7 +213,13 @@ class Materials:
 
     def _input_look(self, socket, owner):
         source = self.textures.source(socket)
-        return self._look(source.node, owner) if source is not None else Look({"type": "diffuse", "reflectance": BLACK})
+        return self._look_of_output(source, owner) if source is not None else Look({"type": "diffuse", "reflectance": BLACK})
+
+    def _look_of_output(self, output, owner):
+        """Colours in the place of a shader emit, as in Cycles."""
+        if output.type == "SHADER":
+            return self._look(output.node, owner)
+        return Look(emission=self.textures.color_of(output, owner) or [HALFWAY] * 3)
 
     def _count(self):
         """A number for each mix of a material, the same at each export."""
@@ -108,14 +240,17 @@ class Materials:
             made = self.textures.normal_map(source.node, owner)
             return {"normal_map": made} if made else {}
         if source.node.type == "BUMP":
-            height = self.textures.number(source.node.inputs["Height"], owner)
-            if isinstance(height, dict):
-                distance = source.node.inputs["Distance"].default_value * source.node.inputs["Strength"].default_value
-                name = f"{height['texture']}*{distance}"
-                self.parts["float_textures"][name] = {"type": "scale", "tex": height, "scale": distance}
-                return {"displacement": {"texture": name}}
+            return self._bump(source.node, owner)
         self.report.note(owner, f"the node {source.node.bl_label} at a normal has no counterpart")
         return {}
+
+    def _bump(self, node, owner):
+        height = self.textures.number(node.inputs["Height"], owner)
+        if not isinstance(height, dict):
+            return {}
+        distance = (self.textures.constant(node.inputs["Distance"], owner, "the distance of a bump")
+                    * self.textures.constant(node.inputs["Strength"], owner, "the strength of a bump"))
+        return {"displacement": self._scaled(height, -distance if node.invert else distance, 0)}
 
     def _roughness(self, node, owner, name="Roughness"):
         alpha = self.textures.squared(self.textures.number(node.inputs[name], owner), owner)
@@ -126,11 +261,7 @@ class Materials:
 
     def _constant(self, node, owner, name, what):
         """The number of an input that no texture can vary."""
-        value = self.textures.number(node.inputs[name], owner)
-        if isinstance(value, dict):
-            self.report.note(owner, f"{what} cannot vary over a surface: the socket's own value is used")
-            return node.inputs[name].default_value
-        return value
+        return self.textures.constant(node.inputs[name], owner, what)
 
     # Shaders.
 
@@ -148,8 +279,17 @@ class Materials:
         return Look(alpha=0.0)
 
     def emission(self, node, owner):
-        return Look(emission=self.textures.color(node.inputs["Color"], owner),
-                    strength=self._constant(node, owner, "Strength", "the strength of emission"))
+        emission, strength = self._emitted(node.inputs["Color"], node.inputs["Strength"], owner)
+        return Look(emission=emission, strength=strength)
+
+    def _emitted(self, color, strength, owner):
+        """Radiance and its factor."""
+        color, strength = self.textures.color(color, owner), self.textures.number(strength, owner)
+        if not isinstance(strength, dict):
+            return color, strength
+        name = f"{self.textures.prefix}/emission{self._count()}"
+        self.parts["spectrum_textures"][name] = {"type": "scale", "tex": color, "scale": strength}
+        return {"texture": name}, 1.0
 
     def glossy(self, node, owner):
         return Look(self._metal(node, owner, "Color"))
@@ -178,11 +318,22 @@ class Materials:
         return Look(self._solid(node, owner, type="plastic", reflectance=BLACK, specular=0.0, sheen_roughness=0.5,
                                 sheen_color=self._albedo(node, owner)))
 
+    def hair(self, node, owner):
+        number = lambda name: self._constant(node, owner, name, f"{name} of hair")
+        made = {"type": "hair", "eta": max(1.0001, number("IOR")), "beta_m": number("Roughness"),
+                "beta_n": number("Radial Roughness"), "alpha": math.degrees(number("Offset"))}
+        if node.parametrization == "COLOR":
+            made["color"] = self._albedo(node, owner)
+        elif node.parametrization == "ABSORPTION":
+            made["sigma_a"] = self.textures.color(node.inputs["Absorption Coefficient"], owner)
+        else:
+            made["sigma_a"] = fibres.color_of_melanin(node, lambda socket: self.textures.constant(socket, owner, "melanin"))
+        return Look(made)
+
     def principled(self, node, owner):
         look = self._principled_base(node, owner)
         emission = node.inputs.get("Emission") or node.inputs["Emission Color"]
-        strength = self._constant(node, owner, "Emission Strength", "the strength of emission")
-        color = self.textures.color(emission, owner)
+        color, strength = self._emitted(emission, node.inputs["Emission Strength"], owner)
         if strength > 0 and not is_black(color):
             look.emission, look.strength = color, strength
         look.alpha = self.textures.number(node.inputs["Alpha"], owner)
@@ -203,7 +354,7 @@ class Materials:
             return first()
         if amount == 1:
             return second()
-        names = [f"{owner}/{what}{i}" for i in range(2)]
+        names = [f"{self.textures.prefix}/{what}{i}" for i in range(2)]
         self.parts["materials"][names[0]], self.parts["materials"][names[1]] = first(), second()
         return {"type": "mix", "materials": names, "amount": amount}
 
@@ -220,18 +371,66 @@ class Materials:
         if not isinstance(factor, dict) and factor > 1:
             self.report.note(owner, "Specular above 0.5 is taken as 0.5")
             factor = 1.0
-        return self._solid(node, owner, type="plastic", reflectance=self._albedo(node, owner, "Base Color"), eta=1.5,
-                           specular=factor, roughness=self._roughness(node, owner))
+        base = self._solid(node, owner, type="plastic", reflectance=self._albedo(node, owner, "Base Color"), eta=1.5,
+                           specular=factor, roughness=self._roughness(node, owner), **self._sheen(node, owner))
+        return self._coated(base, node, owner)
+
+    def _sheen(self, node, owner):
+        socket = node.inputs.get("Sheen") or node.inputs.get("Sheen Weight")
+        amount = self.textures.constant(socket, owner, "sheen")
+        if amount <= 0:
+            return {}
+        self.report.note(owner, "sheen is that of fibres, whose edge is softer")
+        rough = node.inputs.get("Sheen Roughness")
+        return {"sheen_color": [min(1.0, amount)] * 3, "sheen_roughness": rough.default_value if rough else SHEEN_ROUGHNESS}
+
+    def _coated(self, base, node, owner):
+        """Blender 3 adds a quarter of a reflection of index 1.5, Blender 4 has a layer."""
+        is_old = "Clearcoat" in node.inputs
+        amount = self.textures.number(node.inputs["Clearcoat" if is_old else "Coat Weight"], owner)
+        if amount == 0:
+            return base
+        roughness = self._roughness(node, owner, "Clearcoat Roughness" if is_old else "Coat Roughness")
+        eta = 1.5 if is_old else self._constant(node, owner, "Coat IOR", "the index of a coat")
+        if is_old:
+            amount = self._times(amount, OLD_CLEARCOAT)
+        relief = {name: base.pop(name) for name in ("normal_map", "displacement") if name in base}
+        inner = {name: value for name, value in base.items() if name not in {"sheen_color", "sheen_roughness"}}
+        coated = {"type": "coatedplastic", "base": {k: v for k, v in inner.items() if k != "type"},
+                  "coat": {"roughness": roughness, "thickness": 0.0, "eta": max(1.0001, eta)}, **relief}
+        return self._blend(lambda: {**base, **relief}, lambda: coated, amount, owner, "coat")
+
+    def _times(self, value, factor):
+        if not isinstance(value, dict):
+            return value * factor
+        name = f"{value['texture']}*{factor}"
+        self.parts["float_textures"][name] = {"type": "scale", "tex": value, "scale": factor}
+        return {"texture": name}
 
     def _note_principled(self, node, owner):
         for name, what in (("Subsurface", "subsurface scattering"), ("Subsurface Weight", "subsurface scattering"),
-                           ("Clearcoat", "the coat"), ("Coat Weight", "the coat"), ("Sheen", "sheen"),
-                           ("Sheen Weight", "sheen"), ("Anisotropic", "anisotropy")):
+                           ("Anisotropic", "anisotropy")):
             socket = node.inputs.get(name)
             if socket is not None and (socket.is_linked or socket.default_value > 0):
                 self.report.note(owner, f"{what} of a Principled BSDF is left out")
 
+    def _coat_of_fresnel(self, node, owner):
+        """Diffuse under a reflection that a Fresnel or Layer Weight node mixes in: plastic. None if it is not that."""
+        factor = self.textures.source(node.inputs[0])
+        first, second = (self.textures.source(socket) for socket in node.inputs[1:3])
+        if factor is None or factor.node.type not in {"FRESNEL", "LAYER_WEIGHT"} or first is None or second is None:
+            return None
+        if first.node.type != "BSDF_DIFFUSE" or second.node.type != "BSDF_GLOSSY":
+            return None
+        eta = self._constant(factor.node, owner, "IOR", "the index") if factor.node.type == "FRESNEL" else \
+            eta_of_blend(self._constant(factor.node, owner, "Blend", "the blend"))
+        return Look(self._solid(second.node, owner, type="plastic", eta=max(1.0001, eta),
+                                reflectance=self._albedo(first.node, owner), roughness=self._roughness(second.node, owner)))
+
     def mix(self, node, owner):
+        coated = self._coat_of_fresnel(node, owner)
+        if coated is not None:
+            return coated
         amount = self.textures.number(node.inputs[0], owner)
         if amount in (0, 1):
             return self._input_look(node.inputs[1 + int(amount)], owner)
@@ -290,28 +489,10 @@ class Materials:
         self._add_emission(look, second, 1, owner)
         return look
 
-    # Media.
-
-    def _medium(self, node, owner):
-        if node.type not in {"VOLUME_ABSORPTION", "VOLUME_SCATTER", "PRINCIPLED_VOLUME"}:
-            self.report.note(owner, f"the volume shader {node.bl_label} has no counterpart: it is left out")
-            return None
-        if any(socket.is_linked for socket in node.inputs):
-            self.report.note(owner, "a volume is the same everywhere: its sockets' own values are used")
-        color = list(node.inputs["Color"].default_value[:3])
-        density = node.inputs["Density"].default_value
-        absorbed = [density * max(0.0, 1 - c) for c in color]
-        if node.type == "VOLUME_ABSORPTION":
-            return {"sigma_a": absorbed, "sigma_s": BLACK}
-        scattered = [density * c for c in color]
-        if node.type == "VOLUME_SCATTER":
-            return {"sigma_a": BLACK, "sigma_s": scattered, "g": node.inputs["Anisotropy"].default_value}
-        return {"sigma_a": absorbed, "sigma_s": scattered, "g": node.inputs["Anisotropy"].default_value}
-
 
 SHADERS = {"BSDF_DIFFUSE": Materials.diffuse, "BSDF_TRANSLUCENT": Materials.translucent,
            "BSDF_TRANSPARENT": Materials.transparent, "EMISSION": Materials.emission,
            "BSDF_GLOSSY": Materials.glossy, "BSDF_ANISOTROPIC": Materials.glossy, "BSDF_GLASS": Materials.glass,
            "BSDF_REFRACTION": Materials.refraction, "SUBSURFACE_SCATTERING": Materials.subsurface,
            "BSDF_VELVET": Materials.velvet, "BSDF_PRINCIPLED": Materials.principled, "MIX_SHADER": Materials.mix,
-           "ADD_SHADER": Materials.add}
+           "ADD_SHADER": Materials.add, "BSDF_HAIR_PRINCIPLED": Materials.hair}

@@ -3,6 +3,8 @@
 """Evaluated meshes as arrays."""
 import numpy
 
+from . import atlas
+
 
 def _get(collection, name, count, dtype):
     values = numpy.empty(count, dtype=dtype)
@@ -21,35 +23,148 @@ def _is_smooth(mesh):
     return bool(_get(mesh.polygons, "use_smooth", len(mesh.polygons), bool).any())
 
 
+def _corner_colors(mesh, attribute, vertices):
+    """Linear colours and alpha of the corners; None for domains without corners."""
+    if attribute.domain not in {"POINT", "CORNER"} or not len(attribute.data):
+        return None
+    colors = _get(attribute.data, "color", 4 * len(attribute.data), numpy.float32).reshape(-1, 4)
+    return colors[vertices] if attribute.domain == "POINT" else colors
+
+
+class Surface:
+    """A mesh: a copy of what shapes and bakes need, so that Blender's may go."""
+
+    def __init__(self, mesh, key, texspace=None):
+        self.key, self.texspace = key, texspace
+        self.object_name, self.to_world = key, None
+        self._stored, self._atlases, self._shapes, self._bounds = {}, {}, {}, {}
+        mesh.calc_loop_triangles()
+        count, loops = len(mesh.loop_triangles), len(mesh.loops)
+        self.is_empty = count == 0
+        if self.is_empty:
+            return
+        self.vertices = _get(mesh.loops, "vertex_index", loops, numpy.int32)
+        self.positions = _get(mesh.vertices, "co", 3 * len(mesh.vertices), numpy.float32).reshape(-1, 3)
+        self.is_smooth = _is_smooth(mesh)
+        self.triangles = _get(mesh.loop_triangles, "loops", 3 * count, numpy.int32).reshape(-1, 3)
+        self.slots = _get(mesh.loop_triangles, "material_index", count, numpy.int32)
+        self.normals = _corner_normals(mesh, loops) if self.is_smooth else None
+        # Not before: the normals add a layer, which moves the others.
+        self.uv_layers = {layer.name: _get(layer.data, "uv", 2 * loops, numpy.float32).reshape(-1, 2)
+                          for layer in mesh.uv_layers}
+        shown = next((layer.name for layer in mesh.uv_layers if layer.active_render), None)
+        self.uv_name = shown if shown is not None else next(iter(self.uv_layers), None)
+        colors = {a.name: _corner_colors(mesh, a, self.vertices) for a in mesh.color_attributes}
+        self.colors = {name: values for name, values in colors.items() if values is not None}
+        active = mesh.color_attributes.active_color
+        self.color_name = active.name if active is not None and active.name in self.colors else None
+
+    def stored(self, bakes, slot):
+        """The path of the file with `atlas_arrays`, and the size of the image for them."""
+        key = slot, bakes.size
+        if key not in self._stored:
+            self._stored[key] = bakes.store(self.atlas_arrays(slot, bakes.size)), self._atlas(slot, bakes.size)[1]
+        return self._stored[key]
+
+    def used_slots(self):
+        return [] if self.is_empty else [int(slot) for slot in numpy.unique(self.slots)]
+
+    def shape(self, slot, color_name=None, is_welded=False):
+        """The triangles of a slot as a mesh of Lanthorn, whose vertices are the corners of Blender's. Welded: one vertex
+        for all that are alike. The same arrays at each call, so that nobody need compare them."""
+        key = slot, color_name, is_welded
+        if key not in self._shapes:
+            self._shapes[key] = self._shape(*key)
+        return self._shapes[key]
+
+    def _shape(self, slot, color_name, is_welded):
+        triangles = self.triangles[self.slots == slot]
+        colors = self.colors.get(color_name)
+        if not self.is_smooth and self.uv_name is None and colors is None:
+            return _subset(self.vertices[triangles], {"positions": self.positions})
+        corners = {"positions": self.positions[self.vertices]}
+        if self.is_smooth:
+            corners["normals"] = self.normals
+        if self.uv_name is not None:
+            corners["uvs"] = self.uv_layers[self.uv_name]
+        if colors is not None:
+            corners["colors"] = colors
+        return _subset(_welded(triangles, self.vertices, corners) if is_welded else triangles, corners)
+
+    def atlas_shape(self, slot, size):
+        """As `shape`, with a place of its own in an image for each triangle."""
+        key = slot, size
+        if key not in self._shapes:
+            self._shapes[key] = self._atlas_shape(*key)
+        return self._shapes[key]
+
+    def _atlas_shape(self, slot, size):
+        corners = self.triangles[self.slots == slot].reshape(-1)
+        shape = {"positions": self.positions[self.vertices[corners]], "uvs": self._atlas(slot, size)[0].reshape(-1, 2),
+                 "triangles": numpy.arange(len(corners), dtype=numpy.uint32).reshape(-1, 3)}
+        if self.is_smooth:
+            shape["normals"] = self.normals[corners]
+        return shape
+
+    def _atlas(self, slot, size):
+        if (slot, size) not in self._atlases:
+            points = self.positions[self.vertices[self.triangles[self.slots == slot]]]
+            self._atlases[slot, size] = atlas.places(points, size)
+        return self._atlases[slot, size]
+
+    def uv_bounds(self, slot):
+        """The lowest and the highest texture coordinates of a slot; the unit square if it contains them."""
+        if slot not in self._bounds:
+            self._bounds[slot] = self._uv_bounds(slot)
+        return self._bounds[slot]
+
+    def _uv_bounds(self, slot):
+        if self.uv_name is None:
+            return numpy.zeros(2), numpy.ones(2)
+        uvs = self.uv_layers[self.uv_name][self.triangles[self.slots == slot].reshape(-1)]
+        low, high = uvs.min(axis=0).astype(numpy.float64), uvs.max(axis=0).astype(numpy.float64)
+        low, high = numpy.floor(numpy.minimum(low, 0) + 1e-4), numpy.ceil(numpy.maximum(high, 1) - 1e-4)
+        return low, high
+
+    def atlas_arrays(self, slot, size):
+        """What bake_worker.py needs to bake the slot."""
+        chosen = self.triangles[self.slots == slot]
+        corners = chosen.reshape(-1)
+        used, inverse = numpy.unique(self.vertices[corners], return_inverse=True)
+        arrays = {"vertices": self.positions[used], "triangles": inverse.reshape(-1, 3), "is_smooth": self.is_smooth,
+                  "atlas": self._atlas(slot, size)[0].reshape(-1, 2)}
+        names = sorted(self.uv_layers, key=lambda name: name != self.uv_name)
+        arrays.update({f"uv:{name}": self.uv_layers[name][corners] for name in names})
+        arrays.update({f"color:{name}": values[corners] for name, values in self.colors.items()})
+        if self.texspace is not None:
+            arrays["texspace"] = numpy.array(self.texspace)
+        else:
+            low, high = self.positions.min(axis=0), self.positions.max(axis=0)
+            arrays["texspace"] = numpy.array([(low + high) / 2, numpy.maximum((high - low) / 2, 1e-6)])
+        return arrays
+
+    def square_arrays(self, low, high):
+        """A square whose texture coordinates are those between two corners, and which fills its image."""
+        uvs = numpy.array([[low[0], low[1]], [high[0], low[1]], [high[0], high[1]], [low[0], low[1]],
+                           [high[0], high[1]], [low[0], high[1]]], dtype=numpy.float32)
+        unit = numpy.array([[0, 0], [1, 0], [1, 1], [0, 0], [1, 1], [0, 1]], dtype=numpy.float32)
+        vertices = numpy.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], dtype=numpy.float32)
+        names = list(self.uv_layers) or ["UVMap"]
+        return {"vertices": vertices, "triangles": numpy.array([[0, 1, 2], [0, 2, 3]]), "is_smooth": False, "atlas": unit,
+                **{f"uv:{name}": uvs for name in names}}
+
+
+def _welded(triangles, vertices, corners):
+    """The triangles with the first of all corners that are alike."""
+    columns = [vertices[:, None].astype(numpy.float64)]
+    columns += [numpy.round(values, 5) for name, values in corners.items() if name != "positions"]
+    _, first, inverse = numpy.unique(numpy.concatenate(columns, axis=1), axis=0, return_index=True, return_inverse=True)
+    return first[inverse.reshape(-1)][triangles]
+
+
 def _subset(triangles, corners):
     """The triangles with the corners that they have alone."""
     used, inverse = numpy.unique(triangles, return_inverse=True)
     part = {name: values[used] for name, values in corners.items()}
     part["triangles"] = inverse.reshape(-1, 3).astype(numpy.uint32)
     return part
-
-
-def triangle_meshes(mesh):
-    """The triangles of each material slot: a dict from the slot's index to a mesh of Lanthorn, whose vertices are
-    the corners of Blender's."""
-    mesh.calc_loop_triangles()
-    count = len(mesh.loop_triangles)
-    if count == 0:
-        return {}
-    loops = len(mesh.loops)
-    vertices = _get(mesh.loops, "vertex_index", loops, numpy.int32)
-    positions = _get(mesh.vertices, "co", 3 * len(mesh.vertices), numpy.float32).reshape(-1, 3)
-    is_smooth = _is_smooth(mesh)
-    triangles = _get(mesh.loop_triangles, "loops", 3 * count, numpy.int32).reshape(-1, 3)
-    slots = _get(mesh.loop_triangles, "material_index", count, numpy.int32)
-    if not is_smooth and mesh.uv_layers.active is None:
-        corners = {"positions": positions}
-        triangles = vertices[triangles]
-    else:
-        corners = {"positions": positions[vertices]}
-        if is_smooth:
-            corners["normals"] = _corner_normals(mesh, loops)
-        uvs = mesh.uv_layers.active  # not before: the normals add a layer, which moves the others
-        if uvs is not None:
-            corners["uvs"] = _get(uvs.data, "uv", 2 * loops, numpy.float32).reshape(-1, 2)
-    return {int(slot): _subset(triangles[slots == slot], corners) for slot in numpy.unique(slots)}

@@ -41,7 +41,7 @@ class LANTHORN_RENDER_PT_method(LanthornPanel, bpy.types.Panel):
     def draw(self, context):
         layout, settings = self.layout, context.scene.lanthorn
         layout.use_property_split = True
-        for name in ("method", "passes", "spectral", "max_depth", "clamp", "seed"):
+        for name in ("method", "passes", "spectral", "max_depth", "clamp", "seed", "bake_size"):
             layout.prop(settings, name)
 
 
@@ -56,6 +56,26 @@ class LANTHORN_VIEWLAYER_PT_passes(LanthornPanel, bpy.types.Panel):
             layout.prop(layer, name)
         for name in ("use_caustic", "use_direct", "use_indirect", "use_media", "use_error"):
             layout.prop(layer.lanthorn, name)
+
+
+class LANTHORN_MATERIAL_PT_measured(LanthornPanel, bpy.types.Panel):
+    bl_label = "Measured Glass and Metal"
+    bl_context = "material"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context):
+        return context.material is not None and super().poll(context)
+
+    def draw(self, context):
+        layout, own = self.layout, context.material.lanthorn
+        layout.use_property_split = True
+        layout.prop(own, "glass")
+        column = layout.column()
+        column.active = own.glass == "NONE"
+        column.prop(own, "abbe")
+        for name in ("film_thickness", "film_eta", "metal"):
+            layout.prop(own, name)
 
 
 class LANTHORN_LIGHT_PT_lamp(LanthornPanel, bpy.types.Panel):
@@ -84,7 +104,8 @@ class LANTHORN_LIGHT_PT_lamp(LanthornPanel, bpy.types.Panel):
                 layout.prop(light, "size_y")
 
 
-CLASSES = (LANTHORN_RENDER_PT_quality, LANTHORN_RENDER_PT_method, LANTHORN_VIEWLAYER_PT_passes, LANTHORN_LIGHT_PT_lamp)
+CLASSES = (LANTHORN_RENDER_PT_quality, LANTHORN_RENDER_PT_method, LANTHORN_VIEWLAYER_PT_passes, LANTHORN_MATERIAL_PT_measured,
+           LANTHORN_LIGHT_PT_lamp)
 
 
 def _shared_panels():

@@ -3,7 +3,8 @@
 """A depsgraph as the parts of a scene that `lanthorn link` takes."""
 import tempfile
 
-from . import camera, lights, meshes, world
+from . import camera, hair, lights, meshes, world
+from .bake import Bakes
 from .materials import Materials
 from .report import Report
 from .textures import ImageFiles
@@ -27,39 +28,52 @@ class SceneExport:
         self.folder = tempfile.TemporaryDirectory(prefix="lanthorn-")
         self.report = Report()
         self._images = ImageFiles(self.folder.name)
-        self._sent = empty_parts()
-        self._meshes = {}  # triangles by material slot, by key; kept until `forget`
+        self.bakes = Bakes(self.folder.name)
+        self._sent, self._is_viewport = empty_parts(), False
+        self._surfaces = {}  # names and surface, by key; kept until `forget`
 
     def forget(self, depsgraph):
         """Drops the meshes that have changed since the last export."""
         names = {update.id.name_full for update in depsgraph.updates if update.is_updated_geometry}
         if names:
-            self._meshes = {key: made for key, made in self._meshes.items() if not names & made[0]}
+            self._surfaces = {key: made for key, made in self._surfaces.items() if not names & made[0]}
 
     def close(self):
+        self.bakes.close()
         self.folder.cleanup()
 
     def parts(self, depsgraph, space=None):
         """All objects, materials and lights that are seen; without the camera. `space`: of a viewport."""
         parts = empty_parts()
-        self.report = Report()
-        materials = Materials(parts, self.report, self._images)
+        self.report, self._is_viewport = Report(), space is not None
+        materials = Materials(parts, self.report, self._images, self.bakes)
         for instance in depsgraph.object_instances:
             if instance.show_self and (space is None or instance.object.visible_in_viewport_get(space)):
                 self._add_instance(parts, materials, instance)
         scene_world = depsgraph.scene_eval.world
-        light = world.light_of_world(scene_world, self.report) if scene_world is not None else None
-        if light is not None:
-            parts["lights"]["world"] = light
+        if scene_world is not None:
+            parts["lights"].update(world.lights_of_world(scene_world, self.report, self.bakes))
         return parts
+
+    def bake(self, parts, is_cancelled):
+        """Makes the images that the parts refer to, and waits for them."""
+        if self.bakes.are_missing:
+            self.bakes.run(is_cancelled)
+            if self.bakes.problem:
+                self.report.note("bake", f"{self.bakes.problem}: grey stands in")
+        self.settle(parts)
+
+    def settle(self, parts):
+        """Puts grey in the place of images that are not there."""
+        baked = parts["lights"].pop(world.BAKED, None)
+        if baked is not None:
+            parts["lights"].update(world.lights_of_bake(baked["path"]))
+        self.bakes.replace_missing(parts)
 
     def _note_object(self, object):
         """What objects have beside shape, place and material."""
         if not all(getattr(object, flag, True) for flag in VISIBILITIES):
             self.report.note(object.name, "is seen by all rays: ray visibility has no counterpart")
-        if any(system.settings.type == "HAIR" and system.settings.render_type == "PATH"
-               for system in object.particle_systems):
-            self.report.note(object.name, "hair is left out")
 
     def _add_instance(self, parts, materials, instance):
         object, matrix = instance.object, instance.matrix_world.copy()
@@ -70,11 +84,35 @@ class SceneExport:
             self._note_object(object)
             key = self._mesh_key(object)
             if key not in parts["objects"]:
-                parts["objects"][key] = self._shapes(key, object, materials)
+                parts["objects"][key] = self._shapes(key, object, materials, camera.rows(matrix))
+            self._add_hair(parts, materials, instance, name)
             if parts["objects"][key]["shapes"]:
                 parts["instances"][name] = {"object": key, "object_to_world": camera.rows(matrix)}
+        elif object.type == "CURVES":
+            self._add_curves(parts, materials, object, name, matrix)
         elif object.type not in IGNORED_TYPES:
             self.report.note(object.name, f"objects of the type {object.type} are left out")
+
+    def _add_hair(self, parts, materials, instance, name):
+        if instance.is_instance:
+            if len(instance.object.particle_systems):
+                self.report.note(instance.object.name, "hair of instances is left out")
+            return
+        object = instance.object
+        for system, slot, curves in hair.particle_shapes(object, self._is_viewport):
+            parts["shapes"][f"{name}/{system}"] = {**curves, **self._fibre_members(materials, object, slot)}
+
+    def _add_curves(self, parts, materials, object, name, matrix):
+        curves = hair.curves_shape(object)
+        if curves is not None:
+            key = f"{name}|CURVES"
+            parts["objects"][key] = {"shapes": [{**curves, **self._fibre_members(materials, object, 0)}]}
+            parts["instances"][name] = {"object": key, "object_to_world": camera.rows(matrix)}
+
+    @staticmethod
+    def _fibre_members(materials, object, slot):
+        slots = object.material_slots
+        return materials.fibre_members(slots[min(slot, len(slots) - 1)].material if len(slots) else None)
 
     @staticmethod
     def name_of(instance):
@@ -91,21 +129,29 @@ class SceneExport:
         is_shared = object.type == "MESH" and not object.modifiers and object.data is not None
         return f"{object.data.name_full if is_shared else object.name_full}|{object.type}|{slots}"
 
-    def _shapes(self, key, object, materials):
-        if key not in self._meshes:
-            names = {object.name_full, object.data.name_full}
-            self._meshes[key] = names, self._triangles(object)
+    def _shapes(self, key, object, materials, to_world):
+        if key not in self._surfaces:
+            self._surfaces[key] = {object.name_full, object.data.name_full}, self._surface(key, object)
         slots, shapes = object.material_slots, []
-        for slot, triangles in sorted(self._meshes[key][1].items()):
+        surface = self._surfaces[key][1]
+        if surface is None:
+            return {"shapes": []}
+        surface.object_name, surface.to_world = object.name, to_world
+        for slot in surface.used_slots():
             material = slots[min(slot, len(slots) - 1)].material if len(slots) else None
-            shapes.append({"type": "triangles", **triangles, **materials.shape_members(material)})
+            shapes.append(materials.shape(material, surface, slot))
         return {"shapes": shapes}
 
     @staticmethod
-    def _triangles(object):
+    def _surface(key, object):
+        """None if there is no mesh."""
         mesh = object.to_mesh()
+        data = object.original.data
+        texspace = None
+        if object.type == "MESH" and not object.modifiers:
+            texspace = [list(data.texspace_location), list(data.texspace_size)]
         try:
-            return meshes.triangle_meshes(mesh) if mesh is not None else {}
+            return meshes.Surface(mesh, key, texspace) if mesh is not None else None
         finally:
             object.to_mesh_clear()
 

@@ -6,6 +6,8 @@ import shutil
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty, StringProperty
 
+from . import presets
+
 # The methods that a user may choose, as `lanthorn list` names them.
 METHODS = [("auto", "Automatic", "The method that a pilot finds best for each part of the picture"),
            ("vcm", "Vertex connection and merging", "All kinds of light"),
@@ -30,6 +32,9 @@ class LanthornSceneSettings(bpy.types.PropertyGroup):
                            default=0, min=0)
     clamp: FloatProperty(name="Clamp", description="Limit of what a path adds to a pixel; 0: none", default=0, min=0)
     seed: IntProperty(name="Seed", default=0, min=0)
+    bake_size: IntProperty(name="Baked Textures", default=1024, min=16, max=8192, subtype="PIXEL",
+                           description="Width and height of the images in which node trees are baked that have no "
+                                       "counterpart; a world's is half as high")
 
     def options(self):
         """The options of `lanthorn link`."""
@@ -53,6 +58,20 @@ class LanthornSceneSettings(bpy.types.PropertyGroup):
         options.pop("passes", None)
         options["noise"] = min(options.get("noise", 0.02), 0.02)
         return options
+
+
+class LanthornMaterialSettings(bpy.types.PropertyGroup):
+    """What Blender's nodes do not have; of the material's Glass, Glossy or Principled node."""
+    glass: EnumProperty(name="Index", items=presets.GLASS_ITEMS, default="NONE",
+                        description="Measured index of refraction and dispersion, instead of the node's")
+    abbe: FloatProperty(name="Abbe Number", default=0, min=0, soft_max=90, precision=1,
+                        description="Dispersion around the node's index: about 60 for crown glass, 30 for flint; 0: none. "
+                                    "Seen in spectral renders")
+    film_thickness: FloatProperty(name="Thin Film", default=0, min=0, soft_max=1000, precision=0,
+                                  description="Thickness of a film on the outside, in nanometres; 0: none")
+    film_eta: FloatProperty(name="Film Index", default=1.33, min=1, soft_max=2.5, precision=3)
+    metal: EnumProperty(name="Metal", items=presets.METAL_ITEMS, default="NONE",
+                        description="Measured index and absorption, instead of the node's colour")
 
 
 class LanthornLayerSettings(bpy.types.PropertyGroup):
@@ -84,17 +103,18 @@ def program_path():
     return shutil.which(bpy.path.abspath(named) if named else "lanthorn")
 
 
-CLASSES = (LanthornSceneSettings, LanthornLayerSettings, LanthornPreferences)
+CLASSES = (LanthornSceneSettings, LanthornMaterialSettings, LanthornLayerSettings, LanthornPreferences)
 
 
 def register():
     for c in CLASSES:
         bpy.utils.register_class(c)
     bpy.types.Scene.lanthorn = PointerProperty(type=LanthornSceneSettings)
+    bpy.types.Material.lanthorn = PointerProperty(type=LanthornMaterialSettings)
     bpy.types.ViewLayer.lanthorn = PointerProperty(type=LanthornLayerSettings)
 
 
 def unregister():
-    del bpy.types.ViewLayer.lanthorn, bpy.types.Scene.lanthorn
+    del bpy.types.ViewLayer.lanthorn, bpy.types.Material.lanthorn, bpy.types.Scene.lanthorn
     for c in reversed(CLASSES):
         bpy.utils.unregister_class(c)

@@ -79,12 +79,126 @@ class ImageFiles:
         return self._written[key]
 
 
-class Textures:
-    """Adds textures to the parts of a scene. The values of sockets are numbers, lists, or references to textures."""
+# Nodes whose values depend on the ray that meets the surface, or on the light path: what is taken for each output.
+OF_THE_RAY = {"FRESNEL": None, "LAYER_WEIGHT": None, "CAMERA": 0.0, "LIGHT_PATH": 0.0, "OBJECT_INFO": None}
+TRUE_RAYS = {"Is Camera Ray"}
+# Textures of three dimensions, which are put on by Generated coordinates unless others are given.
+SOLID = {"TEX_NOISE", "TEX_VORONOI", "TEX_MUSGRAVE", "TEX_WAVE", "TEX_MAGIC", "TEX_GRADIENT", "TEX_WHITE_NOISE",
+         "TEX_BRICK", "TEX_CHECKER", "TEX_POINTDENSITY", "TEX_IES"}
+# Values of a place on an object, beside its texture coordinates.
+OF_A_PLACE = {"NEW_GEOMETRY", "AMBIENT_OCCLUSION", "BEVEL", "WIREFRAME", "TANGENT", "ATTRIBUTE", "PARTICLE_INFO",
+              "HAIR_INFO", "OBJECT_INFO", "UVALONGSTROKE", "VERTEX_COLOR", "CURVES_INFO"}
+NATIVE = {"RGB", "VALUE", "BLACKBODY", "TEX_IMAGE", "MAPPING", "TEX_COORD", "UVMAP", "NORMAL_MAP", "BUMP", "DISPLACEMENT"}
+# Values of a place in the world, not on the object.
+OF_THE_WORLD = {"NEW_GEOMETRY", "OBJECT_INFO", "CAMERA", "AMBIENT_OCCLUSION"}
+WORLD_OUTPUTS = {"Camera", "Window", "Reflection"}  # of Texture Coordinate
+SIDE_OF_A_CONSTANT = 4  # texels of the image of a tree that is the same everywhere
 
-    def __init__(self, parts, report, images):
-        self.parts, self.report, self.images = parts, report, images
+
+def is_native(node):
+    """Whether a node's values surely need no image of their own."""
+    if node.type in {"MIX_RGB", "MIX"}:
+        return node.blend_type in {"MIX", "MULTIPLY"} and getattr(node, "data_type", "RGBA") == "RGBA"
+    return node.type in NATIVE or node.type in OF_THE_RAY or node.bl_idname.startswith(("ShaderNodeBsdf", "ShaderNodeVolume"))
+
+
+def mean_fresnel(eta):
+    """The share of even light from all sides that a smooth dielectric surface reflects (Egan and Hilgeman 1973)."""
+    eta = max(1.0, 1 / eta if 0 < eta < 1 else eta)
+    return max(0.0, -1.4399 / eta**2 + 0.7099 / eta + 0.6681 + 0.0636 * eta)
+
+
+class Textures:
+    """Adds textures to the parts of a scene. The values of sockets are numbers, lists, or references to textures. What
+    no texture can do is baked to an image, by texture coordinates, or triangle by triangle where a node asks for other
+    coordinates (then no image can keep its own place, and all of a material's are baked)."""
+
+    def __init__(self, parts, report, images, bakes):
+        self.parts, self.report, self.images, self.bakes = parts, report, images, bakes
         self.groups = []  # group nodes that were entered
+        self.uses_colors = None  # of vertices, by their name
+
+    def begin(self, material, surface, slot, is_atlas, prefix):
+        """What follows is about this material on a slot of this surface. Names of parts begin with the prefix."""
+        self.material, self.surface, self.slot = material, surface, slot
+        self.is_atlas, self.prefix = is_atlas, prefix
+        self.groups, self.uses_colors = [], None
+
+    def nodes_behind(self, sockets):
+        """All nodes from which these sockets get values, in the order in which they are met, with the output used."""
+        met, waiting = {}, list(sockets)
+        while waiting:
+            output = self.source(waiting.pop(0))
+            if output is None:
+                continue
+            key = (output.node.id_data.name, output.node.name)
+            if key not in met:
+                met[key] = output.node, set()
+                waiting += list(output.node.inputs)
+            met[key][1].add(output.name)
+        return list(met.values())
+
+    @staticmethod
+    def is_solid(node, outputs):
+        """Whether a node's values depend on more than texture coordinates."""
+        if node.type == "TEX_COORD":
+            return bool(outputs - {"UV"})
+        if node.type == "TEX_IMAGE":
+            return node.projection != "FLAT"
+        return node.type in OF_A_PLACE or (node.type in SOLID and not node.inputs["Vector"].is_linked)
+
+    def _baked(self, output, is_number, owner):
+        """An image of what the tree at this socket makes; None if it cannot be baked."""
+        nodes = self.nodes_behind_output(output)
+        of_ray = [node for node, _ in nodes if node.type in OF_THE_RAY and node.type != "OBJECT_INFO"]
+        absent = [n for n, _ in nodes if n.type in {"VERTEX_COLOR", "ATTRIBUTE"} and self._color_name(n) is None]
+        if self.surface is None or of_ray or absent:
+            return None
+        is_varying = any(node.type in OF_A_PLACE or node.type in SOLID or node.type in {"TEX_COORD", "TEX_IMAGE", "UVMAP"}
+                         for node, _ in nodes)
+        is_of_world = any(node.type in OF_THE_WORLD or (node.type == "TEX_COORD" and (node.object or outputs & WORLD_OUTPUTS))
+                          for node, outputs in nodes)
+        domain, place = self._domain(is_number, is_varying, is_of_world)
+        path = self.bakes.image(self.material, output, self._path_of_groups(output.node), self, domain)
+        self.report.note(owner, f"{output.node.bl_label} has no counterpart: baked to an image")
+        name = f"{self.prefix}/{os.path.basename(path)}"
+        texture = {"type": "image", "filename": path, "encoding": "linear", "wrap": "clamp", **place}
+        self.parts["float_textures" if is_number else "spectrum_textures"][name] = texture
+        return {"texture": name}
+
+    def nodes_behind_output(self, output):
+        own = (output.node, {output.name})
+        return [own, *self.nodes_behind(output.node.inputs)]
+
+    def _domain(self, is_number, is_varying, is_of_world):
+        """Where a bake takes place, and the members by which its image is put on."""
+        surface, slot = self.surface, self.slot
+        job = {"is_number": is_number, "object": surface.object_name}
+        if self.is_atlas:
+            mesh, size = surface.stored(self.bakes, slot)
+            if is_of_world:
+                job["to_world"] = surface.to_world
+            return {"key": f"{mesh} {is_number} {job}", "size": size, "job": lambda: {**job, "mesh": mesh}}, {}
+        low, high = surface.uv_bounds(slot)
+        extent = high - low
+        mesh = self.bakes.store(surface.square_arrays(low, high))
+        place = {}
+        if low.any() or (extent != 1).any():
+            place = {"mapping": {"type": "uv", "linear": [[1 / extent[0], 0], [0, 1 / extent[1]]],
+                                 "offset": [float(-low[0] / extent[0]), float(-low[1] / extent[1])]}}
+        domain = {"key": f"{mesh} {is_number}", "job": lambda: {**job, "mesh": mesh}}
+        if not is_varying:
+            domain["size"] = SIDE_OF_A_CONSTANT
+        return domain, place
+
+    def _path_of_groups(self, node):
+        """The names of the group nodes that lead from the material's tree to that of the node."""
+        path, tree = [], node.id_data
+        while tree != self.material.node_tree:
+            group = next(g for g in reversed(self.groups) if g.node_tree == tree)
+            path.insert(0, group.name)
+            tree = group.id_data
+        return path
 
     def source(self, socket):
         """The output socket that feeds `socket`, through reroutes and groups; None if nothing does."""
@@ -112,19 +226,76 @@ class Textures:
     def color(self, socket, owner):
         """[r, g, b] or {"texture": name}."""
         output = self.source(socket)
-        if output is None:
-            return self._constant(socket)
-        made = self._color_node(output, owner)
-        if made is not None:
-            return made
-        self.report.note(owner, f"the node {output.node.bl_label} has no counterpart: the socket's own value is used")
-        return self._constant(socket)
+        made = self.color_of(output, owner) if output is not None else None
+        return made if made is not None else self._constant(socket)
+
+    def color_of(self, output, owner):
+        """The colour of an output; None, with a note, if there is no counterpart."""
+        of_ray = self._of_the_ray(output, owner)
+        if of_ray is not None:
+            return [of_ray] * 3
+        made = None
+        if not self.is_atlas or not self._is_texture(output):
+            made = self._color_node(output, owner)
+        if made is None:
+            made = self._baked(output, False, owner)
+        if made is None:
+            self.report.note(owner, f"the node {output.node.bl_label} has no counterpart: the socket's own value is used")
+        return made
 
     def number(self, socket, owner):
         """A number or {"texture": name}."""
         output = self.source(socket)
         if output is None:
             return self._number(socket)
+        of_ray = self._of_the_ray(output, owner)
+        if of_ray is not None:
+            return of_ray
+        made = None
+        if not self.is_atlas or not self._is_texture(output):
+            made = self._number_node(output, owner)
+        if made is None:
+            made = self._baked(output, True, owner)
+        if made is not None:
+            return made
+        self.report.note(owner, f"the node {output.node.bl_label} has no counterpart: the socket's own value is used")
+        return self._number(socket)
+
+    def constant(self, socket, owner, what):
+        """The number of a socket that no texture can vary."""
+        output = self.source(socket)
+        if output is None:
+            return self._number(socket)
+        made = self._of_the_ray(output, owner)
+        if made is None and not self._is_texture(output):
+            made = self._number_node(output, owner)
+        if made is None or isinstance(made, dict):
+            self.report.note(owner, f"{what} cannot vary over a surface: the socket's own value is used")
+            return self._number(socket)
+        return made
+
+    def _is_texture(self, output):
+        return output.node.type not in {"RGB", "VALUE", "BLACKBODY"}
+
+    def _of_the_ray(self, output, owner):
+        """A constant in the place of a value that depends on the ray; None if it does not."""
+        node = output.node
+        if node.type not in OF_THE_RAY:
+            return None
+        if node.type == "OBJECT_INFO":
+            return None
+        if node.type == "FRESNEL":
+            value = mean_fresnel(self._number(node.inputs["IOR"]))
+        elif node.type == "LAYER_WEIGHT":
+            blend = min(0.999, self._number(node.inputs["Blend"]))
+            value = mean_fresnel(1 / (1 - blend)) if output.name == "Fresnel" else blend
+        else:
+            value = 1.0 if output.name in TRUE_RAYS else 0.0
+        self.report.note(owner, f"{node.bl_label} depends on the ray: its mean, or the value for the camera, stands in")
+        return value
+
+    def _number_node(self, output, owner):
+        """None if there is no counterpart."""
         node = output.node
         if node.type == "VALUE":
             return output.default_value
@@ -132,17 +303,15 @@ class Textures:
             return self._image(node, owner, is_color=False, channel="Alpha" if output.name == "Alpha" else None)
         if node.type in {"RGBTOBW", "SEPRGB", "SEPARATE_COLOR"}:
             inner = self.source(node.inputs[0])
-            if inner is not None and inner.node.type == "TEX_IMAGE":
+            is_rgb = getattr(node, "mode", "RGB") == "RGB"
+            if is_rgb and inner is not None and inner.node.type == "TEX_IMAGE" and inner.name == "Color":
                 channel = None if node.type == "RGBTOBW" else output.name
                 return self._image(inner.node, owner, is_color=False, channel=channel)
         if node.type == "RGB":
             return sum(output.default_value[:3]) / 3
         if node.type == "MATH":
-            made = self._math(node, owner)
-            if made is not None:
-                return made
-        self.report.note(owner, f"the node {node.bl_label} has no counterpart: the socket's own value is used")
-        return self._number(socket)
+            return self._math(node, owner)
+        return None
 
     @staticmethod
     def _constant(socket):
@@ -161,46 +330,62 @@ class Textures:
         if node.type == "VALUE":
             return [output.default_value] * 3
         if node.type == "TEX_IMAGE":
-            return self._image(node, owner, is_color=True)
+            return self._image(node, owner, is_color=True) if output.name == "Color" else None
         if node.type == "TEX_CHECKER":
-            return self._checker(node, owner)
+            return self._checker(node, owner) if output.name == "Color" else None
         if node.type in {"MIX_RGB", "MIX"}:
             return self._mix(node, owner)
-        if node.type in {"VERTEX_COLOR", "ATTRIBUTE"}:
-            return None
+        if node.type in {"VERTEX_COLOR", "ATTRIBUTE"} and output.name == "Color":
+            return self._vertex_colors(node)
         if node.type == "BLACKBODY":
             return {"blackbody": node.inputs["Temperature"].default_value}
         return None
 
+    def _color_name(self, node):
+        """The colours of the surface's vertices that a node names; None if there are none."""
+        name = node.layer_name if node.type == "VERTEX_COLOR" else node.attribute_name
+        name = name or self.surface.color_name
+        return name if name in self.surface.colors else None
+
+    def _vertex_colors(self, node):
+        name = self._color_name(node) if self.surface is not None else None
+        if name is None or self.uses_colors not in (None, name):
+            return None
+        self.uses_colors = name
+        self.parts["spectrum_textures"]["vertex colours"] = {"type": "vertexcolor"}
+        return {"texture": "vertex colours"}
+
     def _mapping(self, node, owner):
-        """Of (u, v), for the vector of a texture node."""
+        """Of (u, v), for the vector of a texture node; None if that is something else."""
         output = self.source(node.inputs["Vector"])
         mapping = {}
         if output is not None and output.node.type == "MAPPING":
+            if any(self.source(socket) is not None for socket in list(output.node.inputs)[1:]):
+                return None
             linear, offset = linear_map(output.node)
             mapping = {"type": "uv", "linear": linear, "offset": offset}
             output = self.source(output.node.inputs["Vector"])
-        if output is not None and not (output.node.type == "UVMAP" or output.name == "UV"):
-            self.report.note(owner, f"textures by {output.name} coordinates are put on by UV")
-        return mapping
+        is_by_uv = output is None or output.node.type == "UVMAP" or (output.node.type == "TEX_COORD" and output.name == "UV")
+        return mapping if is_by_uv else None
 
-    def _name(self, owner, node, suffix):
-        tree = node.id_data.name
-        return f"{owner}/{tree}/{node.name}{suffix}"
+    def _name(self, node, suffix):
+        return f"{self.prefix}/{node.id_data.name}/{node.name}{suffix}"
 
     def _image(self, node, owner, is_color, channel=None):
+        mapping = self._mapping(node, owner)
+        if mapping is None:
+            return None
         if node.image is None:
             return [1, 0, 1] if is_color else 0.0
         filename = self.images.path_of(node.image)
         if filename is None:
             self.report.note(owner, f"the image {node.image.name} is not there: magenta stands in")
             return [1, 0, 1] if is_color else 0.0
-        name = self._name(owner, node, f":{channel}" if channel else "")
+        name = self._name(node, f":{channel}" if channel else "")
         wraps = {"REPEAT": "repeat", "EXTEND": "clamp", "CLIP": "black", "MIRROR": "mirror"}
         texture = {"type": "image", "filename": filename, "wrap": wraps.get(node.extension, "repeat"),
                    "filter": "point" if node.interpolation == "Closest" else "bilinear",
                    "encoding": "srgb" if node.image.colorspace_settings.name == "sRGB" else "linear"}
-        mapping = self._mapping(node, owner)
         if mapping:
             texture["mapping"] = mapping
         if channel:
@@ -209,9 +394,11 @@ class Textures:
         return {"texture": name}
 
     def _checker(self, node, owner):
-        name = self._name(owner, node, "")
-        scale = node.inputs["Scale"].default_value
+        name = self._name(node, "")
         mapping = self._mapping(node, owner)
+        if mapping is None or not node.inputs["Vector"].is_linked or node.inputs["Scale"].is_linked:
+            return None
+        scale = node.inputs["Scale"].default_value
         linear = [[scale * x for x in row] for row in mapping.get("linear", [[1, 0], [0, 1]])]
         offset = [scale * x for x in mapping.get("offset", [0, 0])]
         self.parts["spectrum_textures"][name] = {
@@ -226,22 +413,31 @@ class Textures:
             factor, first, second = node.inputs[0], node.inputs[6], node.inputs[7]
         else:
             factor, first, second = node.inputs[:3]
-        name = self._name(owner, node, "")
+        if node.blend_type not in {"MIX", "MULTIPLY"} or getattr(node, "use_clamp", False):
+            return None
+        name = self._name(node, "")
+        if node.blend_type == "MULTIPLY" and (factor.is_linked or factor.default_value != 1):
+            return None
         one, two, amount = self.color(first, owner), self.color(second, owner), self.number(factor, owner)
         if node.blend_type == "MIX":
             self.parts["spectrum_textures"][name] = {"type": "mix", "tex1": one, "tex2": two, "amount": amount}
-        elif node.blend_type == "MULTIPLY" and amount == 1:
-            self.parts["spectrum_textures"][name] = {"type": "scalebyspectrum", "tex": one, "scale": two}
         else:
-            return None
+            self.parts["spectrum_textures"][name] = {"type": "scalebyspectrum", "tex": one, "scale": two}
         return {"texture": name}
 
     def _math(self, node, owner):
+        if node.operation not in {"ADD", "SUBTRACT", "MULTIPLY", "DIVIDE", "MINIMUM", "MAXIMUM"} or node.use_clamp:
+            return None
+        is_textured = any(fed is not None and self._is_texture(fed) for fed in map(self.source, node.inputs[:2]))
+        if is_textured and node.operation != "MULTIPLY":
+            return None
         one, two = (self.number(socket, owner) for socket in node.inputs[:2])
         if isinstance(one, dict) or isinstance(two, dict):
             if node.operation != "MULTIPLY":
                 return None
-            name = self._name(owner, node, "")
+            if not isinstance(one, dict):
+                one, two = two, one
+            name = self._name(node, "")
             self.parts["float_textures"][name] = {"type": "scale", "tex": one, "scale": two}
             return {"texture": name}
         operations = {"ADD": one + two, "SUBTRACT": one - two, "MULTIPLY": one * two,
@@ -259,13 +455,23 @@ class Textures:
     def normal_map(self, node, owner):
         """The normal map of a Normal Map node; None if there is none."""
         output = self.source(node.inputs["Color"])
-        if output is None or output.node.type != "TEX_IMAGE" or output.node.image is None:
+        if output is None:
             return None
+        strength = self.constant(node.inputs["Strength"], owner, "the strength of a normal map")
+        if node.space != "TANGENT" or self.is_atlas:
+            self.report.note(owner, "a normal map in other coordinates than UV's is left out")
+            return None
+        mapping = self._mapping(output.node, owner) if output.node.type == "TEX_IMAGE" else None
+        if mapping is None or output.node.image is None:
+            baked = self._baked(output, False, owner)
+            if baked is None:
+                return None
+            texture = self.parts["spectrum_textures"].pop(baked["texture"])
+            return {"image": {k: v for k, v in texture.items() if k != "type"}, "strength": strength}
         filename = self.images.path_of(output.node.image)
         if filename is None:
             return None
         image = {"filename": filename, "encoding": "linear"}
-        mapping = self._mapping(output.node, owner)
         if mapping:
             image["mapping"] = mapping
-        return {"image": image, "strength": node.inputs["Strength"].default_value}
+        return {"image": image, "strength": strength}

@@ -26,7 +26,8 @@ class Viewport:
         self._answer, self._texture = None, None
         self.problem = ""
         self.status = "Loading"
-        self._export = SceneExport()
+        self._export, self._said = SceneExport(), set()
+        self.is_baked = False  # images have come since the scene was sent
         self._view = None
         self._thread = threading.Thread(target=self._run, daemon=True)
         self._is_started = False
@@ -34,8 +35,16 @@ class Viewport:
     # Blender's side.
 
     def update_scene(self, context, depsgraph):
+        self.is_baked = False
         self._export.forget(depsgraph)
-        changed, gone = self._export.changes(self._export.parts(depsgraph, context.space_data))
+        bakes = self._export.bakes
+        bakes.size, bakes.frame = context.scene.lanthorn.bake_size, context.scene.frame_current
+        parts = self._export.parts(depsgraph, context.space_data)
+        if bakes.are_missing:  # grey stands in until they are there
+            bakes.run_beside(self._tell_of_bakes)
+        self._export.settle(parts)
+        self._say(self._export.report.lines())
+        changed, gone = self._export.changes(parts)
         self.update_view(context, changed, gone)
 
     def update_view(self, context, changed=None, gone=None):
@@ -53,8 +62,17 @@ class Viewport:
             self._is_started = True
             self._thread.start()
 
-    def notes(self):
-        return self._export.report.lines()
+    def _say(self, lines):
+        """On the terminal, each once: a viewport has no reports."""
+        for line in lines:
+            if line not in self._said:
+                self._said.add(line)
+                print(f"Lanthorn: {line}", flush=True)
+
+    def _tell_of_bakes(self):
+        """Called by another thread."""
+        self.is_baked = True
+        self._redraw()
 
     def draw(self, width, height):
         with self._lock:

@@ -61,6 +61,32 @@ def textured(colorspace="sRGB", scale=(2, 1, 1), rotation=0.3):
     return make
 
 
+def volume(kind, surface=None, **inputs):
+    """A medium in the ball, with or without a surface."""
+    def make():
+        material = stage.node_material("test", surface or "ShaderNodeBsdfDiffuse", **({"IOR": 1.3} if surface else {}))
+        nodes, links = material.node_tree.nodes, material.node_tree.links
+        output = next(n for n in nodes if n.type == "OUTPUT_MATERIAL")
+        if surface is None:
+            nodes.remove(output.inputs["Surface"].links[0].from_node)
+        medium = nodes.new(kind)
+        for key, value in inputs.items():
+            medium.inputs[key.replace("_", " ")].default_value = value
+        links.new(medium.outputs[0], output.inputs["Volume"])
+        return material
+    return make
+
+
+def coat_of_fresnel():
+    """The idiom of a diffuse shader under a glossy one."""
+    material = mixed((DIFFUSE, {"Color": RED}), (GLOSSY, {"Roughness": 0.2}))()
+    nodes, links = material.node_tree.nodes, material.node_tree.links
+    fresnel = nodes.new("ShaderNodeFresnel")
+    fresnel.inputs["IOR"].default_value = 1.5
+    links.new(fresnel.outputs[0], next(n for n in nodes if n.type == "MIX_SHADER").inputs[0])
+    return material
+
+
 RED = (0.8, 0.2, 0.1, 1)
 DIFFUSE, GLOSSY, EMISSION = "ShaderNodeBsdfDiffuse", "ShaderNodeBsdfGlossy", "ShaderNodeEmission"
 PRINCIPLED, GLASS, HOLE = "ShaderNodeBsdfPrincipled", "ShaderNodeBsdfGlass", "ShaderNodeBsdfTransparent"
@@ -80,9 +106,21 @@ MATERIALS = {
     "principled": (shader(PRINCIPLED, **BASE, Roughness=0.4, Specular=0.5), 0.05),
     "principled-metal": (shader(PRINCIPLED, **BASE, Roughness=0.3, Metallic=1.0), 0.05),
     "principled-glass": (shader(PRINCIPLED, **BASE, Roughness=0.0, Transmission=1.0, IOR=1.45), 0.05),
+    "clearcoat": (shader(PRINCIPLED, **BASE, Roughness=0.5, Clearcoat=1.0, **{"Clearcoat Roughness": 0.1}), 0.05),
+    "sheen": (shader(PRINCIPLED, **BASE, Roughness=0.6, Sheen=0.5, **{"Sheen Tint": 0.0}), 0.05),
+    "coat-of-fresnel": (coat_of_fresnel, 0.05),
+    "absorption": (volume("ShaderNodeVolumeAbsorption", GLASS, Color=(0.2, 0.6, 0.9, 1), Density=1.0), TOLERANCE),
+    "scatter": (volume("ShaderNodeVolumeScatter", Color=(0.9, 0.6, 0.3, 1), Density=1.5, Anisotropy=0.3), TOLERANCE),
+    "smoke": (volume("ShaderNodeVolumePrincipled", Color=(0.3, 0.6, 0.9, 1), Density=1.5, Anisotropy=0.0,
+                     Absorption_Color=(0.2, 0.2, 0.2, 1)), TOLERANCE),
+    "glow": (volume("ShaderNodeVolumePrincipled", Color=(0.5, 0.5, 0.5, 1), Density=0.5, Emission_Strength=0.4,
+                    Emission_Color=(1, 0.5, 0.2, 1)), TOLERANCE),
     "texture": (textured(), TOLERANCE),
     "texture-linear": (textured(colorspace="Non-Color"), TOLERANCE),
 }
+
+
+ONLY = sys.argv[sys.argv.index("--") + 2:] if "--" in sys.argv else []  # names of materials; none: all
 
 
 class MaterialTest(unittest.TestCase):
@@ -103,11 +141,11 @@ class MaterialTest(unittest.TestCase):
     def test_each(self):
 
         rows = []
-        for name in MATERIALS:
+        for name in ONLY or MATERIALS:
             make, tolerance = MATERIALS[name]
             with self.subTest(name):
                 self.build(make)
-                cycles = stage.render("CYCLES", samples=192, max_bounces=24, transmission_bounces=24,
+                cycles = stage.render("CYCLES", samples=192, max_bounces=24, transmission_bounces=24, volume_bounces=24,
                                       blur_glossy=0, sample_clamp_indirect=0)
                 ours = stage.render("LANTHORN", method="vcm", noise=0, seconds=0, passes=48)
                 rows.append(numpy.concatenate([cycles, ours], axis=1))
@@ -118,12 +156,36 @@ class MaterialTest(unittest.TestCase):
                 self.assertLess(abs(middle[1] / middle[0] - 1).max(), LARGEST_OF_BALL)
         if FOLDER:
             half = (len(rows) + 1) // 2
-            columns = [numpy.concatenate(part) for part in (rows[:half], rows[half:])]
+            columns = [numpy.concatenate(part) for part in (rows[:half], rows[half:] or [0 * rows[0]])]
             columns[1] = numpy.pad(columns[1], ((0, columns[0].shape[0] - columns[1].shape[0]), (0, 0), (0, 0)))
             stage.save_png(os.path.join(FOLDER, "materials.png"), *columns, exposure=0.8)
+
+    def test_measured_glass_and_metal(self):
+        """Presets give the index at the d line; the program takes them, and a film, in a spectral render."""
+        from lanthorn import presets
+        for name, (_, index, *_) in {**presets.GEMS, **presets.OTHERS}.items():
+            curve = presets.eta(name)
+            self.assertAlmostEqual(numpy.interp(587.6, curve["nm"], curve["values"]), index, places=3, msg=name)
+        curve = presets.of_abbe_number(1.6, 30)
+        d, f, c = (numpy.interp(nm, curve["nm"], curve["values"]) for nm in (587.6, 486.1, 656.3))
+        self.assertAlmostEqual((d - 1) / (f - c), 30, delta=0.2)
+        means = {}
+        for name, kind, members in (("glass", GLASS, {}), ("diamond", GLASS, {"glass": "DIAMOND"}),
+                                    ("flint", GLASS, {"glass": "LASF9", "film_thickness": 500}),
+                                    ("copper", GLOSSY, {"metal": "Cu"})):
+            def make():
+                material = stage.node_material("test", kind, Roughness=0.0)
+                for member, value in members.items():
+                    setattr(material.lanthorn, member, value)
+                return material
+            self.build(make)
+            picture = stage.render("LANTHORN", method="path", noise=0, seconds=0, passes=6, spectral=True)
+            means[name] = picture[24:52, 20:44, :3].mean(axis=(0, 1))
+        self.assertGreater(abs(means["diamond"] - means["glass"]).max(), 0.02)
+        self.assertGreater(abs(means["flint"] - means["glass"]).max(), 0.02)
+        self.assertGreater(means["copper"][0], 1.2 * means["copper"][2])
 
 
 if __name__ == "__main__":
     stage.enable_addon()
-    arguments = sys.argv[sys.argv.index("--") + 2:] if "--" in sys.argv else []
-    unittest.main(argv=["test_materials", *arguments])
+    unittest.main(argv=["test_materials", *(["MaterialTest.test_each"] if ONLY else [])])

@@ -107,6 +107,32 @@ class RenderTest(unittest.TestCase):
         bevel.count, bevel.relative_offset_displace = 2, (0, 1.1, 0.3)
         self.compare_blocks("instances")
 
+    def hairy_ball(self, parametrization):
+        stage.empty_scene(64, 64).world.color = (0.7, 0.7, 0.7)
+        stage.add_camera((0, -4, 0.3), (math.radians(88), 0, 0), lens=50)
+        stage.add_light("SUN", 3, rotation=(0.7, 0.3, 0.2), angle=0)
+        ball = stage.add_ball(0.6, (0, 0, 0), stage.diffuse("skin", (0.5, 0.3, 0.2)))
+        material = stage.node_material("hair", "ShaderNodeBsdfHairPrincipled")
+        next(n for n in material.node_tree.nodes if n.type == "BSDF_HAIR_PRINCIPLED").parametrization = parametrization
+        ball.data.materials.append(material)
+        ball.modifiers.new("hair", "PARTICLE_SYSTEM")
+        settings = ball.particle_systems[0].settings
+        settings.type, settings.count, settings.hair_length, settings.hair_step = "HAIR", 800, 0.5, 4
+        settings.material, settings.render_step = 2, 3
+        settings.root_radius, settings.tip_radius, settings.radius_scale = 1.0, 0.5, 0.03
+
+    def test_hair(self):
+        for parametrization, tolerance in (("COLOR", 0.05), ("MELANIN", 0.05)):
+            self.hairy_ball(parametrization)
+            cycles = stage.render("CYCLES", samples=48)
+            ours = stage.render("LANTHORN", method="path", noise=0, seconds=0, passes=48)
+            if FOLDER:
+                stage.save_png(os.path.join(FOLDER, f"hair-{parametrization.lower()}.png"), cycles, ours)
+            ratio = ours[:, :, :3].mean() / cycles[:, :, :3].mean()
+            middle = [p[16:48, 16:48, :3].mean(axis=(0, 1)) for p in (cycles, ours)]
+            print(f"hair {parametrization}: lanthorn / cycles {ratio:.4f}; of the middle {middle[1] / middle[0]}")
+            self.assertAlmostEqual(ratio, 1, delta=tolerance)
+
     def render_pass(self, engine, name):
         """Makes the compositor show a pass as the picture."""
         scene = bpy.context.scene

@@ -1,0 +1,222 @@
+# SPDX-FileCopyrightText: 2026 The Lanthorn authors
+# SPDX-License-Identifier: Apache-2.0
+"""Images of node trees that have no counterpart. Cycles evaluates them in a Blender of its own (bake_worker.py): the
+running one renders, and can neither bake nor be changed meanwhile."""
+import hashlib
+import json
+import os
+import subprocess
+import threading
+import time
+
+import bpy
+import numpy
+
+TIMEOUT = 600   # seconds
+PATIENCE = 0.1  # seconds between looks at whether the user cancels
+WORKER = os.path.join(os.path.dirname(os.path.abspath(__file__)), "bake_worker.py")
+LARGEST_FROM_IMAGES = 4096  # texels; a tree of larger images is baked with less detail
+UNTOLD = {"name", "label", "location", "width", "width_hidden", "height", "select", "show_options", "show_preview",
+          "hide", "show_texture", "use_custom_color", "color", "dimensions", "bl_idname", "bl_label", "bl_description",
+          "bl_icon", "bl_width_default", "bl_width_min", "bl_width_max", "bl_height_default", "bl_height_min",
+          "bl_height_max", "bl_static_type", "type", "rna_type", "parent", "internal_links", "inputs", "outputs"}
+
+
+def _plain(value):
+    """A property's value as text that says whether it has changed."""
+    if isinstance(value, (bool, int, float, str)) or value is None:
+        return str(value)
+    if isinstance(value, bpy.types.Image):
+        return f"{value.name_full} {value.filepath} {value.colorspace_settings.name} {value.is_dirty} {tuple(value.size)}"
+    if isinstance(value, bpy.types.ID):
+        return value.name_full
+    if isinstance(value, bpy.types.ColorRamp):
+        elements = [(e.position, *e.color) for e in value.elements]
+        return f"{value.interpolation} {value.color_mode} {value.hue_interpolation} {elements}"
+    if isinstance(value, bpy.types.CurveMapping):
+        return str([[(*p.location, p.handle_type) for p in curve.points] for curve in value.curves])
+    try:
+        return str(list(value))
+    except TypeError:
+        return ""
+
+
+def signature_of(output, source, done=None):
+    """Text that is the same as long as the values of this socket are. `source`: Textures.source."""
+    done = {} if done is None else done
+    node = output.node
+    key = (node.id_data.name, node.name)
+    if key in done:
+        return f"{done[key]}.{output.identifier}"
+    done[key] = str(len(done))
+    parts = [node.type, output.identifier]
+    parts += [f"{p.identifier}={_plain(getattr(node, p.identifier))}" for p in node.bl_rna.properties
+              if p.identifier not in UNTOLD]
+    for socket in node.inputs:
+        fed = source(socket)
+        if fed is not None:
+            parts.append(f"{socket.identifier}<{signature_of(fed, source, done)}>")
+        elif hasattr(socket, "default_value"):
+            parts.append(f"{socket.identifier}={_plain(socket.default_value)}")
+    return "(" + " ".join(parts) + ")"
+
+
+def images_behind(output, source, done=None):
+    """The images from which a socket gets values."""
+    done = set() if done is None else done
+    node, images = output.node, []
+    if (node.id_data.name, node.name) in done:
+        return images
+    done.add((node.id_data.name, node.name))
+    if node.type in {"TEX_IMAGE", "TEX_ENVIRONMENT"} and node.image is not None:
+        images.append(node.image)
+    for socket in node.inputs:
+        fed = source(socket)
+        if fed is not None:
+            images += images_behind(fed, source, done)
+    return images
+
+
+class Bakes:
+    """The images that parts of a scene refer to. They lie in a folder under names that say what is in them, so that
+    none is baked twice."""
+
+    def __init__(self, folder):
+        self.folder = folder
+        self.size, self.frame = 1024, 1  # texels along each side
+        self._jobs = {}   # by path, those without an image
+        self._failed = set()
+        self._thread, self._is_closed = None, False
+        self._log = os.path.join(folder, "bake.log")
+        self.problem = ""
+
+    def image(self, tree_owner, output, path_of_groups, textures, domain):
+        """The path of an image of this socket's values. `domain`: a member `key` and one `job`, see bake_worker.py."""
+        images = images_behind(output, textures.source)
+        largest = max([0, *(side for image in images for side in image.size)])
+        size = domain.get("size") or max(self.size, min(LARGEST_FROM_IMAGES, largest))
+        text = f"{tree_owner.name_full} {signature_of(output, textures.source)} {domain['key']} {size}"
+        path = self._path(text, "exr")
+        if not os.path.exists(path) and path not in self._failed:
+            self._jobs[path] = {"kind": "surface", "material": tree_owner.original, "groups": path_of_groups, "size": size,
+                                "node": output.node.name, "output": output.identifier, "path": path, "images": self._unsaved(images, textures), **domain["job"]()}
+        return path
+
+    @staticmethod
+    def _unsaved(images, textures):
+        """Files for images that the .blend would not contain."""
+        return {image.name: textures.images.path_of(image) for image in images
+                if image.packed_file is None and (image.is_dirty or image.source == "GENERATED")}
+
+    def world(self, world, signature):
+        """The path of an .npz file with the world's `texels`, and `sun`: direction to it and irradiance, or empty."""
+        path = self._path(f"{world.name_full} {signature} {self.size}", "npz")
+        if not os.path.exists(path) and path not in self._failed:
+            self._jobs[path] = {"kind": "world", "world": world.original, "size": self.size, "path": path}
+        return path
+
+    def _path(self, text, extension):
+        return os.path.join(self.folder, f"bake-{hashlib.md5(text.encode()).hexdigest()}.{extension}")
+
+    def store(self, arrays):
+        """Writes the arrays of a mesh, once. Returns the path."""
+        digest = hashlib.md5()
+        for name, values in sorted(arrays.items()):
+            digest.update(name.encode())
+            digest.update(numpy.ascontiguousarray(values).tobytes())
+        path = os.path.join(self.folder, f"mesh-{digest.hexdigest()}.npz")
+        if not os.path.exists(path):
+            numpy.savez(path, **arrays)
+        return path
+
+    def is_missing(self, path):
+        return path in self._jobs
+
+    @property
+    def are_missing(self):
+        return bool(self._jobs)
+
+    @property
+    def are_running(self):
+        return self._thread is not None
+
+    def run(self, is_cancelled=lambda: False):
+        """Bakes what is missing, and waits. `problem` says why something is still missing."""
+        process, paths = self._start()
+        self._finish(process, paths, is_cancelled)
+
+    def run_beside(self, tell):
+        """Bakes what is missing in a process beside this one, and calls `tell` from another thread at the end."""
+        if self._thread is not None:
+            return
+        process, paths = self._start()
+
+        def wait():
+            self._finish(process, paths, lambda: self._is_closed)
+            if self.problem:
+                print(f"Lanthorn: {self.problem}", flush=True)
+            self._thread = None
+            if not self._is_closed:
+                tell()
+        self._thread = threading.Thread(target=wait, daemon=True)
+        self._thread.start()
+
+    def close(self):
+        """Ends what runs."""
+        self._is_closed = True
+        thread = self._thread
+        if thread is not None:
+            thread.join()
+
+    def _start(self):
+        jobs = list(self._jobs.values())
+        library, names = os.path.join(self.folder, "nodes.blend"), []
+        blocks = {job.get("material") or job["world"] for job in jobs}
+        bpy.data.libraries.write(library, blocks, path_remap="ABSOLUTE", compress=False)
+        for job in jobs:
+            plain = {k: v for k, v in job.items() if k not in {"material", "world"}}
+            names.append({**plain, "owner": (job.get("material") or job["world"]).name})
+        list_file = os.path.join(self.folder, "jobs.json")
+        with open(list_file, "w", encoding="utf-8") as file:
+            json.dump({"library": library, "jobs": names, "frame": self.frame}, file)
+        command = [bpy.app.binary_path, "-b", "--factory-startup", "--python-exit-code", "1", "-noaudio", "--python",
+                   WORKER, "--", list_file]
+        with open(self._log, "w", encoding="utf-8") as log:
+            # The worker ends when the other end of its standard input is gone.
+            process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=log, stderr=subprocess.STDOUT)
+        return process, [job["path"] for job in jobs]
+
+    def _finish(self, process, paths, is_cancelled=lambda: False):
+        end = time.monotonic() + TIMEOUT
+        while True:
+            try:
+                process.wait(PATIENCE)
+                break
+            except subprocess.TimeoutExpired:
+                if time.monotonic() > end or is_cancelled():
+                    process.kill()
+        process.stdin.close()
+        self.problem = ""
+        for path in paths:  # also those that cannot be had: they are not tried again
+            self._jobs.pop(path, None)
+        missing = [path for path in paths if not os.path.exists(path)]
+        if missing and not is_cancelled():
+            self._failed.update(missing)
+            with open(self._log, encoding="utf-8", errors="replace") as log:
+                text = log.read()
+            print(text)
+            lines = [line for line in text.splitlines() if "Error" in line] or ["no reason was given"]
+            self.problem = f"{len(missing)} of {len(paths)} images could not be baked: {lines[-1]}"
+
+    def replace_missing(self, parts):
+        """Grey in the place of images that are not there."""
+        for table, grey in (("float_textures", 0.5), ("spectrum_textures", [0.5] * 3)):
+            for name, texture in parts[table].items():
+                if self._is_absent(texture.get("filename")):
+                    parts[table][name] = {"type": "constant", "value": grey}
+        for name, material in parts["materials"].items():
+            if self._is_absent(material.get("normal_map", {}).get("image", {}).get("filename")):
+                parts["materials"][name] = {k: v for k, v in material.items() if k != "normal_map"}
+
+    def _is_absent(self, filename):
+        return filename is not None and os.path.dirname(filename) == self.folder and not os.path.exists(filename)
