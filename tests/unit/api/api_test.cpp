@@ -280,7 +280,7 @@ TEST(Api, PhotonsAreArrays) {
 // Beams into a box, as the user sends them: the same for any number of threads.
 TEST(Api, PhotonsStartWhereTheUserSays) {
   const SharedScene scene = load(box);
-  const std::vector<lanthorn::PhotonStart> starts(5000, {{{0, 0, 0}, {0.1f, -1, 0.2f}}, {1, 2, 3}});
+  const std::vector<lanthorn::PhotonStart> starts(5000, {{{0, 1, 0}, {0.1f, -1, 0.2f}}, {1, 2, 3}});
   const auto trace = [&](unsigned threads) {
     const lanthorn::ThreadLimit limit(threads);
     return lanthorn::trace_photons(*scene, lanthorn::description_of(*scene).view, small("probppm"), starts, 0,
