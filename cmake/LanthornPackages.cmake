@@ -17,6 +17,7 @@ set(CPACK_INSTALL_CMAKE_PROJECTS "${CMAKE_BINARY_DIR};lanthorn;ALL;/")
 foreach(folder IN LISTS LANTHORN_PACKAGE_LIBRARIES)
   list(APPEND CPACK_INSTALL_CMAKE_PROJECTS "${folder};lanthorn;library;/")
 endforeach()
+set(CPACK_COMPONENTS_LIBRARY library)  # of these folders; without it, they are installed beside all packages, into none
 set(CPACK_PRE_BUILD_SCRIPTS ${CMAKE_CURRENT_LIST_DIR}/DebianFiles.cmake)
 
 set(CPACK_DEB_COMPONENT_INSTALL ON)

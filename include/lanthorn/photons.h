@@ -3,10 +3,12 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "lanthorn/color.h"
+#include "lanthorn/rays.h"
 #include "lanthorn/render_options.h"
 #include "lanthorn/scene.h"
 #include "lanthorn/vec.h"
@@ -30,6 +32,7 @@ struct Photons {
   std::vector<Rgb> powers{};            ///< watts, linear Rec.709; negative for wavelengths outside the gamut
   std::vector<std::int32_t> depths{};   ///< number of the photon's scattering event along its light path; direct: 1
   std::vector<PhotonClass> classes{};
+  std::vector<std::uint32_t> starts{};  ///< number of the PhotonStart; empty if lights emitted the photons
 
   std::size_t size() const { return positions.size(); }
 };
@@ -39,7 +42,19 @@ struct Photons {
 Photons trace_photons(const Scene& scene, const ViewDescription& view, const RenderOptions& options, std::uint32_t pass,
                       bool direct);
 
-/// The photons as a binary, little-endian PLY file whose header names the properties.
+/// A light path that the user sends off, in place of a light.
+struct PhotonStart {
+  SceneRay ray{};
+  Rgb power{1, 1, 1};  ///< watts, linear Rec.709
+};
+/// Traces one light path from each start through the pass with this number: its random numbers, its part of the shutter
+/// interval and, with spectral colours, its wavelengths. Of the options, `seed`, `max_depth` and `color` count. The
+/// lights of the scene emit nothing. A path starts in the medium that the shapes around it bound, or in vacuum. The
+/// same for any number of threads. Throws Error as `intersect`, and for powers that are negative or not finite.
+Photons trace_photons(const Scene& scene, const ViewDescription& view, const RenderOptions& options,
+                      std::span<const PhotonStart> starts, std::uint32_t pass, bool direct);
+
+/// A binary, little-endian PLY file: its header names the properties.
 std::string encode_ply(const Photons& photons);
 
 }  // namespace lanthorn

@@ -13,6 +13,7 @@
 #include "lanthorn/error_estimate.h"
 #include "lanthorn/image.h"
 #include "lanthorn/image_file.h"
+#include "lanthorn/rays.h"
 #include "lanthorn/render_options.h"
 #include "lanthorn/scene.h"
 #include "lanthorn/state.h"
@@ -47,7 +48,14 @@ py::dict dict_of_description(const SceneDescription& description, const ViewDesc
 SeenScene edited(const SeenScene& scene, const py::dict& edits);
 EnvironmentChoice environment_of(py::handle data);
 
-/// `values` as an array that shares the memory of `owner`, which keeps them alive.
+/// The rows of an array of shape (n, 3), or (3,) for one. Throws Error with its `name`.
+std::vector<Vec3> vectors_of(py::handle data, const char* name);
+/// One of `values` stands for all, as numpy broadcasts.
+inline const Vec3& of_all(const std::vector<Vec3>& values, std::size_t i) { return values[values.size() == 1 ? 0 : i]; }
+/// Rays from arrays of which one row stands for all.
+std::vector<SceneRay> rays_of(const py::object& origins, const py::object& directions);
+
+/// `values` as an array that shares the memory of `owner`, which holds them.
 template <class Scalar, class T>
 py::array writable_array(const std::vector<T>& values, py::handle owner) {
   // NOLINTNEXTLINE(bugprone-sizeof-expression): T may be Scalar

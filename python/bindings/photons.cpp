@@ -3,15 +3,40 @@
 // Photons as arrays.
 #include "lanthorn/photons.h"
 
+#include <optional>
+#include <string>
+#include <vector>
+
 #include "bindings.h"
 
 namespace lanthorn::python {
 
 namespace {
 
-Photons trace(const SeenScene& scene, std::uint32_t pass, bool direct, const py::kwargs& keywords) {
+// The light paths that the user sends off; empty if there are none, and lights do.
+std::optional<std::vector<PhotonStart>> starts_of(const py::object& origins, const py::object& directions,
+                                                  const py::object& powers) {
+  if (origins.is_none() && directions.is_none() && powers.is_none()) return {};
+  if (origins.is_none() || directions.is_none()) throw Error("origins, directions: expected both, or none of them");
+  const std::vector<SceneRay> rays = rays_of(origins, directions);
+  const std::vector<Vec3> watts = powers.is_none() ? std::vector<Vec3>{Vec3(1)} : vectors_of(powers, "powers");
+  if (watts.size() != rays.size() && watts.size() != 1)
+    throw Error("powers: expected as many rows as there are rays, or one, got " + std::to_string(watts.size()) +
+                " for " + std::to_string(rays.size()));
+  std::vector<PhotonStart> starts(rays.size());
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const Vec3& power = of_all(watts, i);
+    starts[i] = {rays[i], {power.x, power.y, power.z}};
+  }
+  return starts;
+}
+
+Photons trace(const SeenScene& scene, const py::object& origins, const py::object& directions, const py::object& powers,
+              std::uint32_t pass, bool direct, const py::kwargs& keywords) {
   const RenderOptions options = options_of(keywords);
+  const std::optional<std::vector<PhotonStart>> starts = starts_of(origins, directions, powers);
   const py::gil_scoped_release release;
+  if (starts) return trace_photons(*scene.scene, scene.view, options, *starts, pass, direct);
   return trace_photons(*scene.scene, scene.view, options, pass, direct);
 }
 
@@ -43,6 +68,8 @@ void bind_photons(py::module_& module) {
           "(n,) int32: scattering events up to and including the photon's own; 1: straight from the light.")
       .def_property_readonly("classes", &column<std::uint8_t, &Photons::classes>,
                              "(n,) uint8: DIRECT, CAUSTIC or INDIRECT.")
+      .def_property_readonly("starts", &column<std::uint32_t, &Photons::starts>,
+                             "(n,) uint32: row of `origins` whose path the photon is of; (0,) if lights sent it.")
       .def("__repr__",
            [](const Photons& p) {
              return "<lanthorn.Photons " + std::to_string(p.size()) + " of " + std::to_string(p.light_paths) +
@@ -52,10 +79,13 @@ void bind_photons(py::module_& module) {
   const py::object type = module.attr("Photons");
   type.attr("CAUSTIC") = 1;
   type.attr("INDIRECT") = 2;
-  module.def(
-      "trace_photons", &trace, py::arg("scene"), py::kw_only(), py::arg("pass_number") = 0, py::arg("direct") = true,
-      "Traces the Photons of a pass; they do not depend on the number of threads. direct: include those that come\n"
-      "straight from a light. Further keywords are options as of Session (integrator, photons, seed, max_depth ...).");
+  module.def("trace_photons", &trace, py::arg("scene"), py::kw_only(), py::arg("origins") = py::none(),
+             py::arg("directions") = py::none(), py::arg("powers") = py::none(), py::arg("pass_number") = 0,
+             py::arg("direct") = true,
+             "Traces the Photons of a pass; the same for any number of threads. direct: with those that come straight\n"
+             "from a light. Further keywords are options as of Session (integrator, photons, seed, max_depth ...).\n\n"
+             "origins, directions: (n, 3), metres; n light paths start there, in place of those of the lights.\n"
+             "powers: (n, 3), what each carries, watts in linear Rec.709; default: 1. One row stands for all.");
 }
 
 }  // namespace lanthorn::python

@@ -12,28 +12,11 @@ namespace lanthorn::python {
 
 namespace {
 
-std::vector<Vec3> vectors(py::handle data, const char* name) {
-  Reader reader;
-  std::vector<Vec3> values;
-  reader.at(name, [&] { read(reader, data, values); });
-  return values;
-}
-
-// A single value applies to all rows, as in numpy's broadcasting.
-const Vec3& of_all(const std::vector<Vec3>& values, std::size_t i) { return values[values.size() == 1 ? 0 : i]; }
-
 std::size_t common_size(const std::vector<Vec3>& a, const std::vector<Vec3>& b, const char* names) {
   if (a.size() == b.size() || b.size() == 1) return a.size();
   if (a.size() == 1) return b.size();
   throw Error(std::string(names) + ": expected equal numbers of rows, or one, got " + std::to_string(a.size()) +
               " and " + std::to_string(b.size()));
-}
-
-std::vector<SceneRay> rays_of(const py::object& origins, const py::object& directions) {
-  const std::vector<Vec3> o = vectors(origins, "origins"), d = vectors(directions, "directions");
-  std::vector<SceneRay> rays(common_size(o, d, "origins, directions"));
-  for (std::size_t i = 0; i < rays.size(); ++i) rays[i] = {of_all(o, i), of_all(d, i)};
-  return rays;
 }
 
 template <class Scalar, class T>
@@ -94,14 +77,14 @@ SurfaceBsdf bsdf_of_material(const py::dict& material) {
 
 template <class Scalar, class Result, class Function>
 py::array over_pairs(const py::object& wi, const py::object& wo, Function&& function) {
-  const std::vector<Vec3> from = vectors(wi, "wi"), to = vectors(wo, "wo");
+  const std::vector<Vec3> from = vectors_of(wi, "wi"), to = vectors_of(wo, "wo");
   std::vector<Result> results(common_size(from, to, "wi, wo"));
   for (std::size_t i = 0; i < results.size(); ++i) results[i] = function(of_all(from, i), of_all(to, i));
   return array_of<Scalar>(std::move(results));
 }
 
 py::dict samples_of(const SurfaceBsdf& bsdf, const py::object& wi, const py::object& u) {
-  const std::vector<Vec3> from = vectors(wi, "wi"), numbers = vectors(u, "u");
+  const std::vector<Vec3> from = vectors_of(wi, "wi"), numbers = vectors_of(u, "u");
   const std::size_t count = common_size(from, numbers, "wi, u");
   std::vector<Vec3> wo(count);
   std::vector<Rgb> weight(count);
@@ -160,7 +143,32 @@ void bind_bsdf(py::module_& module) {
       "The Bsdf of the nearest surface along a ray; None if the ray hits nothing.");
 }
 
+bool is_one_row(py::handle data) {
+  if (!py::isinstance<py::sequence>(data) || py::len(data) != 3) return false;
+  const py::object first = data[py::int_(0)];
+  return PyNumber_Check(first.ptr()) != 0 && PySequence_Check(first.ptr()) == 0;
+}
+
 }  // namespace
+
+std::vector<Vec3> vectors_of(py::handle data, const char* name) {
+  Reader reader;
+  std::vector<Vec3> values;
+  reader.at(name, [&] {
+    if (is_one_row(data))
+      read(reader, data, values.emplace_back());
+    else
+      read(reader, data, values);
+  });
+  return values;
+}
+
+std::vector<SceneRay> rays_of(const py::object& origins, const py::object& directions) {
+  const std::vector<Vec3> o = vectors_of(origins, "origins"), d = vectors_of(directions, "directions");
+  std::vector<SceneRay> rays(common_size(o, d, "origins, directions"));
+  for (std::size_t i = 0; i < rays.size(); ++i) rays[i] = {of_all(o, i), of_all(d, i)};
+  return rays;
+}
 
 void bind_rays(py::module_& module) {
   module.def(

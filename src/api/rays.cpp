@@ -2,9 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lanthorn/rays.h"
 
-#include <fmt/format.h>
-
-#include <cmath>
 #include <utility>
 
 #include "base/parallel.h"
@@ -13,6 +10,7 @@
 #include "path/radiance_along.h"
 #include "scene/medium_around.h"
 #include "scene/scene.h"
+#include "scene/scene_ray.h"
 #include "surface/bsdf.h"
 
 namespace lanthorn {
@@ -21,19 +19,6 @@ namespace {
 
 // An arbitrary wavelength: without dispersion, it does not affect RGB.
 const Wavelengths middle_wavelength = Wavelengths::rgb(0.5f);
-
-Ray ray_in_scene(const Scene& scene, const SceneRay& ray, std::size_t index) {
-  const float length = glm::length(ray.direction);
-  const Point origin = Point(DVec3(ray.origin) - scene.description().origin);
-  const bool is_usable = std::isfinite(length) && length > 0 && std::isfinite(glm::dot(origin, Vec3(1)));
-  if (!is_usable)
-    throw Error(fmt::format(
-        "ray {}: expected finite numbers and a direction that is not 0, got origin ({}, {}, {}) "
-        "and direction ({}, {}, {})",
-        index, ray.origin.x, ray.origin.y, ray.origin.z, ray.direction.x, ray.direction.y, ray.direction.z));
-  const description::Camera& camera = scene.description().view.camera;
-  return {origin, ray.direction / length, infinity, camera.shutter_open};
-}
 
 std::vector<Ray> rays_in_scene(const Scene& scene, std::span<const SceneRay> rays) {
   std::vector<Ray> all;

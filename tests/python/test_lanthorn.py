@@ -97,6 +97,10 @@ class Loading(unittest.TestCase):
         self.assertIn('no entry named "flor"', message_of(lambda d: d["shapes"][0].update(material="flor")))
         self.assertIn("lights[0].from: expected 3 numbers", message_of(lambda d: d["lights"][0].update({"from": [1, 2]})))
         self.assertIn("film.width: expected a whole number", message_of(lambda d: d["film"].update(width="wide")))
+        self.assertIn(
+            'shapes[0].area_light: expected an entry of "area_lights", by its index or name, got {',
+            message_of(lambda d: d["shapes"][0].update(area_light={"radiance": [1, 1, 1]})),
+        )
 
     def test_description_goes_round(self):
         data = floor_and_lamp()
@@ -364,6 +368,50 @@ class Light(unittest.TestCase):
         self.assertTrue((photons.classes == photons.CAUSTIC).any())
         again = lanthorn.trace_photons(scene, integrator="probppm", photons=5000, direct=False)
         self.assertEqual(len(again), (photons.depths > 1).sum())
+
+    def test_photons_from_starts_of_ones_own(self):
+        scene = lanthorn.load_dict(floor_and_lamp())  # a diffuse floor at y = 0
+        generator = np.random.default_rng(3)
+        origins = np.column_stack([generator.uniform(-0.5, 0.5, 5000), np.full(5000, 0.5), generator.uniform(-0.5, 0.5, 5000)])
+        photons = lanthorn.trace_photons(scene, origins=origins, directions=[0.3, -1, 0], powers=[1, 2, 3], max_depth=2)
+        first = photons.depths == 1
+        self.assertEqual(photons.light_paths, 5000)
+        np.testing.assert_array_equal(photons.starts[first], np.arange(5000))
+        np.testing.assert_allclose(photons.positions[first], origins + [0.15, -0.5, 0], atol=1e-5)
+        np.testing.assert_allclose(photons.powers[first], np.tile([1, 2, 3], (5000, 1)), rtol=1e-6)
+        np.testing.assert_allclose(photons.directions[first], np.tile([-0.3, 1, 0] / np.sqrt(1.09), (5000, 1)), atol=1e-6)
+        np.testing.assert_array_equal(photons.classes == photons.DIRECT, first)
+        self.assertEqual(len(lanthorn.trace_photons(scene, origins=origins, directions=[0, 1, 0])), 0)
+
+    def test_photons_through_a_lens_of_ones_own(self):
+        # A ball of glass bends rays near its axis to the focus at n R / (2 (n - 1)) from its centre.
+        scene = lanthorn.load_dict({
+            "materials": [{"type": "dielectric", "eta": 1.5}, {"type": "diffuse"}],
+            "shapes": [{"type": "sphere", "radius": 1, "material": 0},
+                       {"type": "disk", "radius": 3, "material": 1, "object_to_world": lanthorn.translate((0, 0, -1.5))}],
+        })
+        offsets = np.random.default_rng(4).uniform(-0.05, 0.05, (2000, 2))
+        photons = lanthorn.trace_photons(
+            scene, origins=np.column_stack([offsets, np.full(2000, 2)]), directions=[0, 0, -1], powers=[0.001] * 3, max_depth=3
+        )
+        self.assertGreater(len(photons), 1000)
+        self.assertTrue((photons.classes == photons.CAUSTIC).all())
+        self.assertLess(np.linalg.norm(photons.positions[photons.depths == 3][:, :2], axis=1).max(), 1e-3)
+        # Of the power, what is not reflected at both surfaces comes straight through: (1 - .04)^2, drawn by chance.
+        self.assertAlmostEqual(photons.powers[photons.depths == 3][:, 0].sum() / 2, 0.96**2, delta=5 * 0.006)
+
+    def test_wrong_starts_of_photons(self):
+        scene = lanthorn.load_dict(floor_and_lamp())
+        for wrong, message in (
+            ({"origins": [0, 1, 0]}, "expected both"),
+            ({"powers": [1, 1, 1]}, "expected both"),
+            ({"origins": [0, 1, 0], "directions": [0, 0, 0]}, "ray 0: expected"),
+            ({"origins": np.zeros((3, 3)), "directions": np.ones((2, 3))}, "equal numbers of rows"),
+            ({"origins": [0, 1, 0], "directions": [0, -1, 0], "powers": [1, -1, 1]}, "light path 0: expected a power"),
+            ({"origins": [0, 1, 0], "directions": [0, -1, 0], "powers": np.ones((2, 3))}, "powers: expected"),
+        ):
+            with self.assertRaisesRegex(lanthorn.Error, message):
+                lanthorn.trace_photons(scene, **wrong)
 
     def test_radiance_in_a_furnace(self):
         scene = lanthorn.load_dict(furnace(albedo=0.5, light=0.5))

@@ -62,7 +62,10 @@ void refuse_other_keys(Reader& reader, const Dict& data, const Keys& known) {
 }
 
 void read_reference(Reader& reader, const Value& data, const char* table, Index& out) {
-  if (data.as<std::string>() == nullptr) return read(reader, data, out);
+  if (data.as<std::string>() == nullptr) {
+    if (!number_of(data)) reader.fail("an entry of \"" + std::string(table) + "\", by its index or name", data);
+    return read(reader, data, out);
+  }
   const std::string& name = *data.as<std::string>();
   const std::map<std::string, Index>& known = reader.names[table];
   if (const auto found = known.find(name); found != known.end()) {

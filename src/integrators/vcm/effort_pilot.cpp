@@ -137,6 +137,8 @@ class Pilot {
   void trace_light(const VcmPass& pass);
   void add(std::span<const SeenLight> seen);
   void trace_eye(const VcmPass& pass, const VcmPass& other);
+  // Returns the light that comes by caustics.
+  float trace_eye_path(const VcmPass& pass, const VcmPass& other, std::size_t cell, PathMoments& moments) const;
   void add(EffortBlock& block, std::size_t cell, const PathMoments& moments, float caustic);
 
   RenderJob job_;
@@ -214,27 +216,31 @@ void Pilot::add(std::span<const SeenLight> seen) {
   });
 }
 
+// Sums of all candidates take some kilobytes: those of one cell at a time stay in the core's own cache.
 void Pilot::trace_eye(const VcmPass& pass, const VcmPass& other) {
-  const PixelWindow cells = measured_.grid.cells();
-  const std::size_t count = pixel_count(cells);
-  std::vector<PathMoments> of_cells(count, PathMoments(measured_.candidates));
-  std::vector<float> caustic(count);
-  for_each_pixel(cells, [&](const PixelPlace& cell, RayCounts& counts) {
-    Sampler sampler = Sampler::for_pixel(pass.job.settings.seed, Stream::pilot_camera, cell.index, pass.number);
-    const PathDraw draw = pass.draw_of_eye_path(sampler);
-    const EyeStart start = start_eye_path(pass.job.view, measured_.grid.pixel_of(cell), draw.time, sampler);
-    LightLayers layers(draw.w), other_layers(draw.w);
-    const PathContext path{pass.job.scene, draw.w, sampler, counts, {pass.max_depth(), settings_.roulette_depth}};
-    const RayCounts before = counts;
-    PathMoments& moments = of_cells[cell.index];
-    walk_from_camera(path, start.camera, pass.job.view.medium,
-                     TwoSets{moments, EyeVisitor(path, pass, start.raster, layers, &moments),
-                             EyeVisitor(path, other, start.raster, other_layers, &moments)});
-    moments.work.rays = 2 * static_cast<double>(counts.walk - before.walk);
-    caustic[cell.index] = flux_of(layers.light(PathClass::caustic), false, draw.w);
+  for_each_cell_by_blocks([&](EffortBlock& block, std::size_t cell) {
+    stop_point();
+    PathMoments moments(measured_.candidates);
+    const float caustic = trace_eye_path(pass, other, cell, moments);
+    add(block, cell, moments, caustic);
   });
-  for_each_cell_by_blocks(
-      [&](EffortBlock& block, std::size_t cell) { add(block, cell, of_cells[cell], caustic[cell]); });
+}
+
+float Pilot::trace_eye_path(const VcmPass& pass, const VcmPass& other, std::size_t cell, PathMoments& moments) const {
+  const auto index = static_cast<std::uint32_t>(cell);
+  const int width = measured_.grid.cells().width(), x = static_cast<int>(cell) % width,
+            y = static_cast<int>(cell) / width;
+  Sampler sampler = Sampler::for_pixel(pass.job.settings.seed, Stream::pilot_camera, index, pass.number);
+  const PathDraw draw = pass.draw_of_eye_path(sampler);
+  const EyeStart start = start_eye_path(pass.job.view, measured_.grid.pixel_of({x, y, index}), draw.time, sampler);
+  LightLayers layers(draw.w), other_layers(draw.w);
+  RayCounts counts;
+  const PathContext path{pass.job.scene, draw.w, sampler, counts, {pass.max_depth(), settings_.roulette_depth}};
+  walk_from_camera(path, start.camera, pass.job.view.medium,
+                   TwoSets{moments, EyeVisitor(path, pass, start.raster, layers, &moments),
+                           EyeVisitor(path, other, start.raster, other_layers, &moments)});
+  moments.work.rays = 2 * static_cast<double>(counts.walk);
+  return flux_of(layers.light(PathClass::caustic), false, draw.w);
 }
 
 void Pilot::add(EffortBlock& block, std::size_t cell, const PathMoments& moments, float caustic) {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numeric>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "base/parallel.h"
@@ -70,7 +71,7 @@ class LightSubdivision {
     std::vector<std::uint32_t> all(targets_.size());
     std::iota(all.begin(), all.end(), 0u);
     std::vector<Open> level;
-    open(Cell{}, all, level);
+    open(Cell{}, met_by(Cell{}, all), level);
     while (!level.empty() && level.size() <= most_cells && entries(level) <= entries_per_cell * most_cells)
       level = halve(level);
     EmissionGuide::OfLight result{.numbers = {}, .relevance = 0};
@@ -166,22 +167,43 @@ class LightSubdivision {
     return best;
   }
 
-  void open(const Cell& cell, const std::vector<std::uint32_t>& near, std::vector<Open>& level) {
-    std::vector<std::uint32_t> met = near;
+  // Those targets that the cell's photons can hit.
+  std::vector<std::uint32_t> met_by(const Cell& cell, const std::vector<std::uint32_t>& targets) const {
+    std::vector<std::uint32_t> met = targets;
     if (const std::optional<EmittedBeam> beam = beam_of(cell))
       std::erase_if(met, [&](std::uint32_t i) { return !may_meet(*beam, targets_[i]); });
+    return met;
+  }
+
+  void open(const Cell& cell, std::vector<std::uint32_t>&& met, std::vector<Open>& level) {
     nodes_.push_back({cell, 0, 0, 0});
     if (!met.empty()) level.push_back({static_cast<std::uint32_t>(nodes_.size() - 1), std::move(met)});
   }
 
+  // How a cell is halved, and what both halves meet.
+  struct Halves {
+    std::uint32_t axis = 0;
+    std::array<std::vector<std::uint32_t>, 2> met;
+  };
+
   std::vector<Open> halve(const std::vector<Open>& level) {
+    std::vector<Halves> halves(level.size());
+    constexpr std::size_t chunk = 16;
+    parallel_chunks(level.size(), chunk, [&](std::size_t, std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const Cell& cell = nodes_[level[i].node].cell;
+        Halves& of = halves[i];
+        of.axis = widest_axis(cell);
+        for (const bool upper : {false, true}) of.met[upper ? 1 : 0] = met_by(cell.half(of.axis, upper), level[i].near);
+      }
+    });
     std::vector<Open> next;
-    for (const Open& o : level) {
-      const Cell cell = nodes_[o.node].cell;
-      const std::uint32_t axis = widest_axis(cell);
-      nodes_[o.node].axis = axis;
-      nodes_[o.node].lower = static_cast<std::uint32_t>(nodes_.size());
-      for (const bool upper : {false, true}) open(cell.half(axis, upper), o.near, next);
+    for (std::size_t i = 0; i < level.size(); ++i) {
+      Halves& of = halves[i];
+      const Cell cell = nodes_[level[i].node].cell;
+      nodes_[level[i].node].axis = of.axis;
+      nodes_[level[i].node].lower = static_cast<std::uint32_t>(nodes_.size());
+      for (const bool upper : {false, true}) open(cell.half(of.axis, upper), std::move(of.met[upper ? 1 : 0]), next);
     }
     return next;
   }

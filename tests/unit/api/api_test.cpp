@@ -277,6 +277,27 @@ TEST(Api, PhotonsAreArrays) {
   for (const lanthorn::Direction& d : photons.directions) ASSERT_NEAR(glm::dot(d, d), 1, 1e-2f);
 }
 
+// Beams into a box, as the user sends them: the same for any number of threads.
+TEST(Api, PhotonsStartWhereTheUserSays) {
+  const SharedScene scene = load(box);
+  const std::vector<lanthorn::PhotonStart> starts(5000, {{{0, 1, 0}, {0.1f, -1, 0.2f}}, {1, 2, 3}});
+  const auto trace = [&](unsigned threads) {
+    const lanthorn::ThreadLimit limit(threads);
+    return lanthorn::trace_photons(*scene, lanthorn::description_of(*scene).view, small("probppm"), starts, 0,
+                                   /*direct=*/true);
+  };
+  const lanthorn::Photons one = trace(1), many = trace(4);
+  EXPECT_EQ(one.light_paths, 5000u);
+  ASSERT_GT(one.size(), 5000u);
+  EXPECT_EQ(one.positions, many.positions);
+  EXPECT_EQ(one.powers, many.powers);
+  EXPECT_EQ(one.starts, many.starts);
+  ASSERT_TRUE(std::is_sorted(one.starts.begin(), one.starts.end()));
+  EXPECT_EQ(one.starts.back(), 4999u);
+  const lanthorn::Rgb& first = one.powers.front();
+  EXPECT_NEAR(first.g, 2 * first.r, 1e-5f);
+}
+
 // A sphere that emits inwards and has one reflectance: what rays meet, how it scatters, and L = E / (1 - rho).
 TEST(Api, RaysInAFurnace) {
   const lanthorn::test::TemporaryDir dir;
