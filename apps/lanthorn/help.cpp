@@ -16,6 +16,7 @@ namespace {
 
 constexpr std::size_t width = 80, text_column = 26;
 constexpr const char* help_title = "Help";
+constexpr std::size_t most_shown = 20;  // options; a command with more hides its rare ones
 
 // The options that several commands have. Options that are not here belong to one command; they come first, as
 // "Options", and are common.
@@ -132,9 +133,9 @@ class HelpFormatter final : public CLI::Formatter {
 // Empty if there is nothing more to show.
 std::string hint_of(const CLI::App& command, const OptionTable& table) {
   const auto options = std::count_if(table.begin(), table.end(), [](const Option& o) { return !o.is_argument(); });
-  const bool has_more = std::any_of(table.begin(), table.end(), [](const Option& option) {
-    return !option.details.empty() || is_rare(option.long_name());
-  });
+  const bool has_more = table.size() > most_shown || std::any_of(table.begin(), table.end(), [](const Option& option) {
+                          return !option.details.empty();
+                        });
   if (!has_more) return {};
   return fmt::format("'lanthorn {} --help --all' shows all {} options, with details and defaults.", command.get_name(),
                      options);
@@ -157,12 +158,11 @@ void add_help(CLI::App& command, const OptionTable& table) {
           [&command, formatter, options] {
             formatter->is_short = true;
             formatter->hint = hint_of(command, *options);
-            formatter->hides_options = std::any_of(options->begin(), options->end(),
-                                                   [](const Option& option) { return is_rare(option.long_name()); });
+            formatter->hides_options = options->size() > most_shown;
             for (const Option& option : *options) {
               CLI::Option* const known = command.get_option(option.long_name());
               known->description(formatter->hides_options ? option.brief : option.description(/*in_short=*/true));
-              if (is_rare(option.long_name())) known->group("");
+              if (formatter->hides_options && is_rare(option.long_name())) known->group("");
             }
             throw CLI::CallForHelp();
           },
