@@ -81,8 +81,9 @@ def on_page_markdown(markdown, page, config, files):
 
 
 def on_nav(nav, config, files):
+    named = {page.file.src_path for page in nav.pages}
     for file in files.documentation_pages():
-        if file.page is None:
+        if file.src_path not in named:
             logger.warning("%s: the navigation in mkdocs.yml does not name this page", file.src_path)
     return nav
 
