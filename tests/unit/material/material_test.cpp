@@ -441,7 +441,7 @@ TEST(SceneMaterials, MixesHaveTheMediumOfTheirPartInside) {
   EXPECT_EQ(inside("MakeNamedMaterial \"n\" " + mix("\"grey\" \"skin\"") + named + mix("\"skin\" \"n\"")), skin);
   EXPECT_EQ(inside(named + mix("\"skin\" \"milk\""), 1), skin);
   const Scene both = world(parts + named + mix("\"skin\" \"milk\"") + "NamedMaterial \"m\"\n" + unit_quad);
-  EXPECT_NE(both.warnings().at(0).message.find("different media"), std::string::npos);
+  EXPECT_NE(both.warnings().at(0).message.find("different interior media"), std::string::npos);
   EXPECT_EQ(both.warnings()[0].location.line, 11);
 }
 
