@@ -79,8 +79,8 @@ class ImageFiles:
         return self._written[key]
 
 
-# Nodes whose values depend on the ray that meets the surface, or on the light path: what is taken for each output.
-OF_THE_RAY = {"FRESNEL": None, "LAYER_WEIGHT": None, "CAMERA": 0.0, "LIGHT_PATH": 0.0, "OBJECT_INFO": None}
+# Nodes whose values depend on the ray that meets the surface, or on the light path.
+OF_THE_RAY = {"FRESNEL", "LAYER_WEIGHT", "CAMERA", "LIGHT_PATH"}
 TRUE_RAYS = {"Is Camera Ray"}
 # Textures of three dimensions, which are put on by Generated coordinates unless others are given.
 SOLID = {"TEX_NOISE", "TEX_VORONOI", "TEX_MUSGRAVE", "TEX_WAVE", "TEX_MAGIC", "TEX_GRADIENT", "TEX_WHITE_NOISE",
@@ -103,9 +103,12 @@ def is_native(node):
 
 
 def mean_fresnel(eta):
-    """The share of even light from all sides that a smooth dielectric surface reflects (Egan and Hilgeman 1973)."""
-    eta = max(1.0, 1 / eta if 0 < eta < 1 else eta)
-    return max(0.0, -1.4399 / eta**2 + 0.7099 / eta + 0.6681 + 0.0636 * eta)
+    """The share of even light from all sides that a smooth dielectric surface reflects, by Schlick's approximation; from
+    inside (eta below 1), by what passes being the same both ways."""
+    if eta < 1:
+        return 1 - (1 - mean_fresnel(1 / max(eta, 1e-3))) * eta**2
+    head_on = ((eta - 1) / (eta + 1)) ** 2
+    return head_on + (1 - head_on) / 21
 
 
 class Textures:
@@ -149,8 +152,8 @@ class Textures:
 
     def _baked(self, output, is_number, owner):
         """An image of what the tree at this socket makes; None if it cannot be baked."""
-        nodes = self.nodes_behind_output(output)
-        of_ray = [node for node, _ in nodes if node.type in OF_THE_RAY and node.type != "OBJECT_INFO"]
+        nodes = self._nodes_behind_output(output)
+        of_ray = [node for node, _ in nodes if node.type in OF_THE_RAY]
         absent = [n for n, _ in nodes if n.type in {"VERTEX_COLOR", "ATTRIBUTE"} and self._color_name(n) is None]
         if self.surface is None or of_ray or absent:
             return None
@@ -166,7 +169,7 @@ class Textures:
         self.parts["float_textures" if is_number else "spectrum_textures"][name] = texture
         return {"texture": name}
 
-    def nodes_behind_output(self, output):
+    def _nodes_behind_output(self, output):
         own = (output.node, {output.name})
         return [own, *self.nodes_behind(output.node.inputs)]
 
@@ -281,8 +284,6 @@ class Textures:
         """A constant in the place of a value that depends on the ray; None if it does not."""
         node = output.node
         if node.type not in OF_THE_RAY:
-            return None
-        if node.type == "OBJECT_INFO":
             return None
         if node.type == "FRESNEL":
             value = mean_fresnel(self._number(node.inputs["IOR"]))

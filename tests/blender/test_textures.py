@@ -167,6 +167,32 @@ class TextureTest(unittest.TestCase):
                 self.ball(make, closure)
                 self.compare(name)
 
+    def test_places_of_triangles_do_not_overlap(self):
+        from lanthorn import atlas
+        points = numpy.random.default_rng(1).random((300, 3, 3))
+        points[::3] *= 0.1
+        uvs, size = atlas.places(points, 64)
+        self.assertGreaterEqual(size, 64)
+        self.assertTrue((uvs > 0).all() and (uvs < 1).all())
+        taken = numpy.zeros((size, size), dtype=int)
+        y, x = (numpy.mgrid[0:size, 0:size] + 0.5) / size
+        for a, b, c in uvs.astype(numpy.float64):
+            sides = [(q[0] - p[0]) * (y - p[1]) - (q[1] - p[1]) * (x - p[0]) for p, q in ((a, b), (b, c), (c, a))]
+            near = [side > -1.0 / size * numpy.hypot(*(q - p)) for side, (p, q) in zip(sides, ((a, b), (b, c), (c, a)))]
+            taken += near[0] & near[1] & near[2]  # with the texel around it that interpolation reads
+        self.assertEqual(taken.max(), 1)
+
+    def test_mean_fresnel(self):
+        from lanthorn.textures import mean_fresnel
+        cosines = (numpy.arange(4000) + 0.5) / 4000
+        for eta in (1.33, 1.5, 2.0, 1 / 1.5):
+            sine = numpy.minimum(1, numpy.sqrt(1 - cosines**2) / eta)
+            inner = numpy.sqrt(1 - sine**2)
+            s = ((cosines - eta * inner) / (cosines + eta * inner)) ** 2
+            p = ((eta * cosines - inner) / (eta * cosines + inner)) ** 2
+            exact = (numpy.where(sine < 1, (s + p) / 2, 1) * 2 * cosines).mean()
+            self.assertAlmostEqual(mean_fresnel(eta), exact, delta=0.02)
+
     def test_a_bake_that_fails_is_told_and_grey(self):
         import lanthorn.bake
         self.ball(*MATERIALS["ramp-of-noise-uv"])
