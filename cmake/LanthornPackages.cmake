@@ -24,7 +24,6 @@ set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${CMAKE_BINARY_DIR}/lib)  # the Python module needs our own library
-set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 set(CPACK_DEBIAN_COMPRESSION_TYPE xz)
 
@@ -42,7 +41,9 @@ under one set of weights, and says how far a picture is from the truth. It
 reads pbrt, glTF and OBJ. This package has the program, its library for
 several instruction sets, and scenes.")
 file(WRITE ${CMAKE_BINARY_DIR}/triggers "activate-noawait ldconfig\n")
-set(CPACK_DEBIAN_PROGRAM_PACKAGE_CONTROL_EXTRA ${CMAKE_BINARY_DIR}/triggers)
+# CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS would name the library once for each instruction set, which lintian refuses.
+file(WRITE ${CMAKE_BINARY_DIR}/shlibs "liblanthorn ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR} lanthorn (= ${PROJECT_VERSION})\n")
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_CONTROL_EXTRA "${CMAKE_BINARY_DIR}/triggers;${CMAKE_BINARY_DIR}/shlibs")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS "lanthorn-mpi, lanthorn-doc")
 lanthorn_package(mpi lanthorn-mpi graphics
 "With this module, the processes that mpirun starts share the passes of one
@@ -61,6 +62,12 @@ if(LANTHORN_BUILD_PYTHON)
   list(APPEND packages python)
   lanthorn_package(python python3-lanthorn python
 "Scenes, renders, layers and photons as numpy arrays.")
+  file(WRITE ${CMAKE_BINARY_DIR}/prerm "#!/bin/sh
+set -e
+# What Python has compiled when root has imported the module.
+rm -rf /usr/${LANTHORN_INSTALL_PYTHON_DIR}/lanthorn/__pycache__
+")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA ${CMAKE_BINARY_DIR}/prerm)
   # Built for one version of Python.
   math(EXPR next_minor "${Python3_VERSION_MINOR} + 1")
   set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "lanthorn (= ${PROJECT_VERSION}), python3-numpy, python3 (>= ${Python3_VERSION_MAJOR}.${Python3_VERSION_MINOR}), python3 (<< ${Python3_VERSION_MAJOR}.${next_minor}~)")

@@ -80,14 +80,15 @@ install() { inside apt-get -qq install --yes --no-install-recommends "$@"; }
 use() {
   local program=$1 scenes=$2
   step "$program render ring.pbrt -o ring.png" inside "$program" render "$scenes/ring.pbrt" -r 320x240 -p 8 -o /root/ring.png
-  step "$program render heart.pbrt -o heart.exr" inside "$program" render "$scenes/gallery/heart.pbrt" -r 64x48 -p 1 -o /root/heart.exr
+  step "$program render heart.pbrt -o heart.exr" inside "$program" render "$scenes/gallery/heart.pbrt" -i path -r 64x48 -p 1 -o /root/heart.exr
   [ "$(head -c 4 "$root/root/ring.png" | tail -c 3)" = PNG ] || fail "ring.png is no PNG"
   step "$program info --machine" inside "$program" info --machine
   grep -q "^compiled *for $newest_level$" "$work/log" || fail "$(grep compiled "$work/log"), and not for $newest_level"
-  # The C library's sines differ between distributions in the last bit.
+  # The C library's sines differ between distributions in the last bit: a few paths branch differently. The choices of
+  # auto may fall differently, too.
   [ -e "$work/heart.exr" ] || cp "$root/root/heart.exr" "$work"
   cp "$work/heart.exr" "$root/root/first.exr"
-  step "the picture of the first root" inside "$program" compare /root/heart.exr /root/first.exr --max-mse 1e-12
+  step "the picture of the first root" inside "$program" compare /root/heart.exr /root/first.exr --max-flip 0.01
   step "Xvfb, xdotool and OpenGL in software" install xvfb xdotool libgl1-mesa-dri libegl-mesa0 libgl1 libglx-mesa0 libegl1
   step "$program view under Xvfb" inside timeout 600 bash /root/view.sh "$program" "$scenes/ring.pbrt"
 }
@@ -100,7 +101,7 @@ check_debian_packages() {
   use lanthorn /usr/share/lanthorn/scenes
   step "apt install ./python3-lanthorn_*.deb" install $(cd "$root" && ls ./root/python3-lanthorn_*.deb)
   step "python3 -c 'import lanthorn; ...'" inside python3 -c 'import lanthorn
-picture = lanthorn.render(lanthorn.load_file("/usr/share/lanthorn/scenes/gallery/heart.pbrt"), passes=1, resolution=(64, 48))
+picture = lanthorn.render(lanthorn.load_file("/usr/share/lanthorn/scenes/gallery/heart.pbrt"), passes=1, resolution=(64, 48), integrator="path")
 assert picture["color"].shape == (48, 64, 3) and picture["color"].mean() > 0
 picture.save("/root/python.exr")'
   step "the same picture" inside lanthorn compare /root/python.exr /root/heart.exr --max-mse 0
