@@ -99,7 +99,8 @@ class Bakes:
         path = self._path(text, "exr")
         if not os.path.exists(path) and path not in self._failed:
             self._jobs[path] = {"kind": "surface", "material": tree_owner.original, "groups": path_of_groups, "size": size,
-                                "node": output.node.name, "output": output.identifier, "path": path, "images": self._unsaved(images, textures), **domain["job"]()}
+                                "node": output.node.name, "output": output.identifier, "path": path,
+                                "images": self._unsaved(images, textures), **domain["job"]()}
         return path
 
     @staticmethod
