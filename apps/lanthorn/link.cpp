@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <memory>
 #include <optional>
+#include <thread>
 
 #include "commands.h"
 #include "lanthorn/error.h"
@@ -31,13 +32,21 @@ int take_standard_output() {
   return file;
 }
 
-// The program ends with the client, even while it builds a scene, which cannot be interrupted.
+// Ends the program when nobody reads its answers any more, even while it builds a scene, which cannot be interrupted.
+void end_with_client(int output) {
+  std::thread([output] {
+    wait_until_unread(output);
+    std::_Exit(0);
+  }).detach();
+}
+
 void run_link(const LinkCommand& a) {
   if (::isatty(STDIN_FILENO) != 0)
     throw Error("link: expected a program at the other end of standard input, got a terminal (see docs/protocol.md)");
   std::signal(SIGPIPE, SIG_IGN);
   const ThreadLimit limit(a.threads);
   const int output = take_standard_output();
+  end_with_client(output);
   Conversation conversation([] { return is_hung_up(STDIN_FILENO); });
   while (const std::optional<LinkRequest> request = read_request(STDIN_FILENO)) {
     const LinkAnswer answer = request->problem.empty()

@@ -265,6 +265,10 @@ class LinkTest(unittest.TestCase):
         self.client.process.stdin.write(b"GET / HTTP/1.1\r\n\r\n")
         self.assert_ends("begins with the bytes LNTH")
 
+    def test_a_client_that_no_longer_reads_ends_the_program(self):
+        self.client.process.stdout.close()
+        self.assertEqual(self.client.process.wait(timeout=20), 0)
+
     def test_a_message_that_is_cut_short_ends_the_program(self):
         self.send({"request": "hello"}, b"1234", data_size=2**30)  # takes no gigabyte
         self.assert_ends("is truncated")

@@ -109,4 +109,10 @@ bool is_hung_up(int file) {
   return ::poll(&wanted, 1, 0) > 0 && (wanted.revents & (POLLHUP | POLLERR | POLLNVAL)) != 0;
 }
 
+void wait_until_unread(int file) {
+  pollfd wanted{.fd = file, .events = 0, .revents = 0};
+  while (::poll(&wanted, 1, -1) <= 0) {
+  }
+}
+
 }  // namespace lanthorn::program

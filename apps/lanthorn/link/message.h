@@ -31,4 +31,7 @@ void write_answer(int file, const nlohmann::json& body, std::span<const float> n
 /// True if the client has closed its end of the pipe.
 bool is_hung_up(int file);
 
+/// Waits until the client no longer reads from the pipe. Never returns for a regular file.
+void wait_until_unread(int file);
+
 }  // namespace lanthorn::program
