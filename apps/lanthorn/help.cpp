@@ -14,7 +14,7 @@ namespace lanthorn::program {
 
 namespace {
 
-constexpr std::size_t width = 80, text_column = 26;
+constexpr std::size_t line_width = 80, text_column = 26;
 constexpr const char* help_title = "Help";
 constexpr std::size_t most_shown = 20;  // options; a command with more hides its rare ones
 
@@ -64,7 +64,7 @@ std::string wrapped(std::string_view text, std::size_t column, std::size_t inden
   std::istringstream words{std::string(text)};
   bool is_first = true;
   for (std::string word; words >> word; is_first = false) {
-    if (!is_first && column + 1 + word.size() > width) {
+    if (!is_first && column + 1 + word.size() > line_width) {
       out += '\n' + std::string(indent, ' ');
       column = indent;
     } else if (!is_first) {

@@ -38,8 +38,6 @@ namespace lanthorn::program {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::json;
-
 constexpr std::uint64_t largest_size = 4096, most_samples = 1 << 20, most_checks = 4096;
 
 struct IblCommand {
@@ -67,22 +65,22 @@ ValueType<LobeWeight> weight_type() {
   return choice_type<LobeWeight>({{"cosine", LobeWeight::cosine}, {"masking", LobeWeight::masking}});
 }
 
-json rgb_json(const Rgb& c) { return {c.r, c.g, c.b}; }
+nlohmann::json rgb_json(const Rgb& c) { return {c.r, c.g, c.b}; }
 
-json error_json(const std::optional<MapError>& error) {
+nlohmann::json error_json(const std::optional<MapError>& error) {
   if (!error) return nullptr;
   return {{"rms", error->rms}, {"max", error->max}, {"places", error->checks}};
 }
 
-json report_json(const IblCommand& a, const std::optional<Ibl>& ibl, const std::optional<Image>& table) {
-  json report{{"lanthorn", version}};
+nlohmann::json report_json(const IblCommand& a, const std::optional<Ibl>& ibl, const std::optional<Image>& table) {
+  nlohmann::json report{{"lanthorn", version}};
   if (table) {
     std::optional<MapError> error;
     if (a.settings.checks > 0) error = brdf_table_error(*table, a.settings.checks);
     report["brdf"] = {{"size", a.brdf_size}, {"sheen", a.sheen}, {"error", error_json(error)}};
   }
   if (!ibl) return report;
-  json files = json::array();
+  nlohmann::json files = nlohmann::json::array();
   for (const fs::path& file : a.environment) files.push_back(file.string());
   report["environment"] = {{"files", std::move(files)},   {"layout", layout_name(ibl->layout)},
                            {"width", ibl->width},         {"height", ibl->height},
@@ -103,9 +101,9 @@ json report_json(const IblCommand& a, const std::optional<Ibl>& ibl, const std::
   return report;
 }
 
-json sh_json(const ShMaps& sh) {
+nlohmann::json sh_json(const ShMaps& sh) {
   const auto coefficients = [](const ShCoefficients<4>& c, std::size_t count) {
-    json list = json::array();
+    nlohmann::json list = nlohmann::json::array();
     for (std::size_t i = 0; i < count; ++i) list.push_back(rgb_json(c[i]));
     return list;
   };
@@ -118,9 +116,9 @@ json sh_json(const ShMaps& sh) {
 }
 
 // KTX keys such as "lanthornMap" become EXR attributes such as "lanthorn:map".
-json attributes_of(const std::map<std::string, std::string>& key_values) {
+nlohmann::json attributes_of(const std::map<std::string, std::string>& key_values) {
   constexpr std::string_view prefix = "lanthorn";
-  json attributes = json::object();
+  nlohmann::json attributes = nlohmann::json::object();
   for (const auto& [key, value] : key_values) {
     std::string name = key.substr(prefix.size());
     name.front() = static_cast<char>(std::tolower(static_cast<unsigned char>(name.front())));

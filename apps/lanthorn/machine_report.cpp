@@ -18,8 +18,6 @@ namespace lanthorn::program {
 
 namespace {
 
-using nlohmann::json;
-
 std::string gibibytes(std::optional<std::uint64_t> bytes) {
   return bytes ? fmt::format("{:.1f} GiB", static_cast<double>(*bytes) / (1 << 30)) : "unknown";
 }
@@ -57,18 +55,18 @@ void print_table(const MachineInfo& m) {
 }
 
 template <class Value>
-json or_null(const std::optional<Value>& value) {
-  return value ? json(*value) : json();
+nlohmann::json or_null(const std::optional<Value>& value) {
+  return value ? nlohmann::json(*value) : nlohmann::json();
 }
 
-json machine_json(const MachineInfo& m) {
-  json kinds = json::object(), libraries = json::object();
+nlohmann::json machine_json(const MachineInfo& m) {
+  nlohmann::json kinds = nlohmann::json::object(), libraries = nlohmann::json::object();
   for (const CoreKind& kind : m.core_kinds) kinds[kind.name] = kind.threads;
   for (const NamedText& library : m.libraries) libraries[library.name] = library.text;
   return {{"processor", m.processor},
           {"instruction_sets", m.instruction_sets},
           {"compiled_for", m.compiled_for},
-          {"cores", m.cores > 0 ? json(m.cores) : json()},
+          {"cores", m.cores > 0 ? nlohmann::json(m.cores) : nlohmann::json()},
           {"hardware_threads", m.hardware_threads},
           {"core_kinds", kinds},
           {"allowed_threads", m.allowed_threads},

@@ -24,13 +24,11 @@ namespace lanthorn::program {
 
 namespace {
 
-using nlohmann::json;
-
 // A value from a file, shortened to a bounded length.
-std::string text_of(const json& value) {
+std::string text_of(const nlohmann::json& value) {
   constexpr std::size_t longest = 200;
-  const std::string text =
-      value.is_string() ? value.get<std::string>() : value.dump(-1, ' ', false, json::error_handler_t::replace);
+  const std::string text = value.is_string() ? value.get<std::string>()
+                                             : value.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
   return text.substr(0, longest) + (text.size() > longest ? " ..." : "");
 }
 
@@ -43,7 +41,7 @@ std::string limit_text(double cut_share) {
 
 void print_line(const char* name, const std::string& text) { print("{:<10} {}\n", name, text); }
 
-std::string parameters_text(const json& parameters) {
+std::string parameters_text(const nlohmann::json& parameters) {
   if (!parameters.is_object()) return text_of(parameters);
   std::string text;
   for (const auto& [name, value] : parameters.items())
@@ -52,7 +50,7 @@ std::string parameters_text(const json& parameters) {
 }
 
 // The information that both states and pictures hold, under the names of the options.
-void print_settings(const json& settings) {
+void print_settings(const nlohmann::json& settings) {
   constexpr std::array<std::pair<const char*, const char*>, 7> members{{{"integrator", "method"},
                                                                         {"scene", "scene"},
                                                                         {"seed", "seed"},
@@ -86,9 +84,9 @@ std::string passes_text(const StateSummary& state) {
                      format_duration(state.seconds));
 }
 
-json settings_of(const StateSummary& state) {
-  const json all = json::parse(state.settings);
-  json settings = all.value("identity", json::object());
+nlohmann::json settings_of(const StateSummary& state) {
+  const nlohmann::json all = nlohmann::json::parse(state.settings);
+  nlohmann::json settings = all.value("identity", nlohmann::json::object());
   settings["integrator"] = state.integrator;
   for (const char* member : {"scene", "findings"})
     if (const auto found = all.find(member); found != all.end()) settings[member] = *found;
@@ -96,14 +94,14 @@ json settings_of(const StateSummary& state) {
 }
 
 // Validates untrusted metadata: anybody may have written the picture.
-bool is_error(const json& error) {
+bool is_error(const nlohmann::json& error) {
   constexpr std::array<const char*, 4> numbers{"noise", "bias", "error", "bound"};
   return error.is_object() && error.contains("doubt") && error["doubt"].is_string() &&
          std::all_of(numbers.begin(), numbers.end(),
                      [&](const char* name) { return error.contains(name) && error[name].is_number(); });
 }
 
-std::string error_line(const json& error) {
+std::string error_line(const nlohmann::json& error) {
   const auto percent = [&](const char* member) { return 100 * error.at(member).get<double>(); };
   ErrorEstimate e;
   e.bound = error.at("bound").get<double>();
@@ -112,8 +110,9 @@ std::string error_line(const json& error) {
                      percent("bias"));
 }
 
-json state_json(const StateSummary& state, const ErrorEstimate& error, const std::vector<std::string>& layers) {
-  json passes = json::array();
+nlohmann::json state_json(const StateSummary& state, const ErrorEstimate& error,
+                          const std::vector<std::string>& layers) {
+  nlohmann::json passes = nlohmann::json::array();
   for (const PassRange& range : state.passes) passes.push_back({range.begin, range.end});
   return {{"kind", "state"},
           {"intact", true},
@@ -132,18 +131,21 @@ json state_json(const StateSummary& state, const ErrorEstimate& error, const std
 }
 
 // Lists and objects are JSON text in pictures, and so are numbers in PNG files; the content is untrusted.
-json picture_settings(const std::string& file) {
+nlohmann::json picture_settings(const std::string& file) {
   constexpr int deepest = 8;
-  const auto limit_depth = [](int depth, json::parse_event_t, const json&) { return depth <= deepest; };
-  json settings = json::parse(read_image_metadata(file));
+  const auto limit_depth = [](int depth, nlohmann::json::parse_event_t, const nlohmann::json&) {
+    return depth <= deepest;
+  };
+  nlohmann::json settings = nlohmann::json::parse(read_image_metadata(file));
   constexpr std::array<std::string_view, 6> numbers{"seed", "passes", "photons", "max_depth", "seconds", "cut_share"};
   for (const auto& member : settings.items()) {
-    json& value = member.value();
+    nlohmann::json& value = member.value();
     if (!value.is_string()) continue;
     const std::string text = value.get<std::string>();
     const bool is_number = std::find(numbers.begin(), numbers.end(), member.key()) != numbers.end();
     if (!is_number && !text.starts_with('{') && !text.starts_with('[')) continue;
-    if (json parsed = json::parse(text, limit_depth, /*allow_exceptions=*/false); !parsed.is_discarded())
+    if (nlohmann::json parsed = nlohmann::json::parse(text, limit_depth, /*allow_exceptions=*/false);
+        !parsed.is_discarded())
       value = std::move(parsed);
   }
   return settings;
@@ -184,18 +186,19 @@ void show_state(const std::string& file, bool as_json) {
 
 void show_picture(const std::string& file, std::uint64_t max_pixels, bool as_json) {
   const Image image = read_image(file, ColorEncoding::automatic, max_pixels);
-  const json metadata = picture_settings(file);
+  const nlohmann::json metadata = picture_settings(file);
   const std::vector<std::string> layers = layer_names(image);
   const std::uint64_t non_finite = count_non_finite(image);
   if (as_json) {
-    const json report{{"kind", "picture"},
-                      {"method", metadata.value("integrator", json())},
-                      {"settings", metadata},
-                      {"width", image.width},
-                      {"height", image.height},
-                      {"window", {image.window.x, image.window.y, image.window.full_width, image.window.full_height}},
-                      {"layers", layers},
-                      {"non_finite", non_finite}};
+    const nlohmann::json report{
+        {"kind", "picture"},
+        {"method", metadata.value("integrator", nlohmann::json())},
+        {"settings", metadata},
+        {"width", image.width},
+        {"height", image.height},
+        {"window", {image.window.x, image.window.y, image.window.full_width, image.window.full_height}},
+        {"layers", layers},
+        {"non_finite", non_finite}};
     return print_text(report_text(report));
   }
   print_line("picture", file);
