@@ -54,7 +54,8 @@ DirectLight next_event(const PathContext& path, const Bidirectional& pass, const
 DirectLight next_event(const PathContext& path, const Bidirectional& pass, const MediumVertex& v,
                        const Subpath& subpath);
 
-/// Connects an eye vertex to a light vertex. A light path carries the light of one of `techniques.light_paths`.
+/// Connects an eye vertex to a light vertex. Light paths carry 1 / `techniques.light_paths` of the light each; the
+/// result estimates all of it.
 DirectLight connect(const PathContext& path, const Bidirectional& pass, const SurfaceVertex& v, const Subpath& subpath,
                     const LightVertex& other);
 DirectLight connect(const PathContext& path, const Bidirectional& pass, const MediumVertex& v, const Subpath& subpath,

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// How many samples each technique of vertex connection and merging gets, and where on the film.
+// The number of samples of each technique of vertex connection and merging, by place on the film.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,7 @@
 
 namespace lanthorn {
 
-/// At a place on the film.
+/// The effort at one place on the film.
 struct PlaceEffort {
   std::uint8_t connections = 1;  ///< light paths that each eye vertex is connected to
   bool merges = true;            ///< on surfaces
@@ -24,35 +24,35 @@ struct PlaceEffort {
   bool goes_on = true;  ///< eye paths go on after a lobe that is not delta (`Techniques::goes_on`)
 };
 
-/// What the pilot expects of one choice for the whole picture.
+/// The pilot's forecast for one choice, used for the whole picture.
 struct UniformEffort {
   double light_paths_per_pixel = 0;
   PlaceEffort place;
-  double variance = 0;  ///< of a pass: relative to the squares of the pixels, in the mean of the picture
-  double work = 0;      ///< of a pass, for each pixel, in rays
+  double variance = 0;  ///< of one pass: relative to the squared pixel values, mean over the picture
+  double work = 0;      ///< of one pass, per pixel, in units of a ray
 };
 
-/// What the pilot found, for the user.
+/// The pilot's findings, for the user.
 struct EffortReport {
   double light_by_light_paths = 0;  ///< share of the light that light paths find: by the lens, connections and merging
   double caustic_light = 0;         ///< share of the light that is caustics
   double caustic_part = 0;          ///< share of the picture where they are visible
-  double merged_part = 0, connected_part = 0;  ///< likewise, where light paths are used
-  double short_part = 0;                       ///< likewise, where eye paths do not go on (`PlaceEffort::goes_on`)
+  double merged_part = 0, connected_part = 0;  ///< share of the picture where merging, or connections, are used
+  double short_part = 0;  ///< share of the picture where eye paths are short (`PlaceEffort::goes_on`)
   double light_paths_per_pixel = 0;
-  double variance = 0, work = 0;  ///< as of UniformEffort, of what was chosen
+  double variance = 0, work = 0;  ///< as in UniformEffort, of the chosen effort
   std::vector<UniformEffort> uniform;
   EyeWork work_of_eye_path{};                 ///< with one connection at each vertex and one light path a pixel
   double light_rays = 0, light_vertices = 0;  ///< of a light path
 };
 
-/// The effort of all passes. The same everywhere, or by blocks of pixels.
+/// The effort of every pass: the same for the whole film, or one for each block of pixels.
 class Effort {
  public:
   Effort() = default;
-  /// With all techniques everywhere.
+  /// Uses all techniques everywhere.
   explicit Effort(std::uint64_t light_paths) : light_paths_(light_paths) {}
-  /// By blocks that divide the window evenly, row by row.
+  /// One effort per block; blocks divide the window evenly, row by row.
   Effort(std::uint64_t light_paths, const PixelWindow& window, int columns, std::vector<PlaceEffort> blocks,
          EffortReport report);
 
@@ -67,7 +67,7 @@ class Effort {
     return blocks_.empty() ||
            std::any_of(blocks_.begin(), blocks_.end(), [](const PlaceEffort& p) { return p.merges; });
   }
-  /// One line: what was found, and what was chosen.
+  /// One line for the user: findings and choice.
   std::string describe() const;
   /// The numbers of the report, as the text of a JSON object.
   std::string findings() const;

@@ -15,37 +15,37 @@ namespace lanthorn {
 
 namespace {
 
-// Work in units of a ray of a walk with its scattering, in a scene of a few triangles. The numbers were fitted to times
-// of passes with twelve different efforts in ten scenes (docs/lab/auto.md); they are fixed, so that choices are the
+// The unit of work is one ray of a walk with its scattering, in a scene of a few triangles. The weights were fitted to
+// measured times of passes with different efforts (docs/lab/auto.md). They are constants, so that the choice is the
 // same on every machine.
 namespace work {
-constexpr double shadow = 0.5;      // of a ray
-constexpr double eye_path = 0.25;   // where there are light paths, too
-constexpr double densities = 0.35;  // of eye and light paths for each other, at each ray of an eye path
+constexpr double shadow = 0.5;      // a shadow ray
+constexpr double eye_path = 0.25;   // overhead of an eye path if there are light paths
+constexpr double densities = 0.35;  // densities for MIS weights, per ray of an eye path
 constexpr double connection = 0.75, lookup = 0.4, merge = 0.4;
-constexpr double media_lookup = 1.5;  // along a flight, or at a scattering
+constexpr double media_lookup = 1.5;  // per flight and per scattering
 constexpr double light_path = 1.9;
-constexpr double light_ray = 0.8;      // of a ray
-constexpr double light_vertex = 0.35;  // with sorting
-constexpr double lens = 1.6;           // of a light vertex that is connected to the lens
+constexpr double light_ray = 0.8;      // a ray of a light path
+constexpr double light_vertex = 0.35;  // storing and sorting a light vertex
+constexpr double lens = 1.6;           // connecting a light vertex to the lens
 }  // namespace work
 
-// A ray takes longer in a deep hierarchy.
+// A ray takes longer if the bounding volume hierarchy is deep.
 double work_of_ray(const Scene& scene) {
   const SceneStatistics& s = scene.statistics();
   const auto primitives = static_cast<double>(s.triangles + s.patches + s.quadrics + s.curves);
   return 1 + 0.03 * std::max(0.0, std::log2(primitives + 1) - 5);
 }
 
-// Passes share the samples of eye paths out among them, so that their means vary less than if they were independent. By
-// how much was measured over 48 passes in five scenes (docs/lab/auto.md). Light paths are shared out, too, but radii
-// shrink, which makes about as much more variance.
+// Eye paths are stratified over passes, so the variance of their mean falls faster than 1 / passes. These divisors were
+// measured over 48 passes in five scenes (docs/lab/auto.md). Light paths are stratified, too, but shrinking radii add
+// about as much variance as that saves.
 namespace stratification {
 constexpr double long_eye_paths = 3;
-constexpr double short_eye_paths = 4;  // few dimensions, but in media
+constexpr double short_eye_paths = 4;  // they have few dimensions; not used in scenes with media
 }  // namespace stratification
-// Of path tracing's product of variance and work: what light paths must do better. Merges have a bias, too, and path
-// tracing alone is stratified best.
+// Factor on path tracing's product of variance and work: light paths must be better than this. Path tracing alone is
+// stratified best, and merges add bias.
 constexpr double margin = 0.8;
 
 PlaceEffort place_of(const EffortCandidate& c) {

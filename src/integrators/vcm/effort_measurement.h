@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// What the pilot of "auto" measures of all choices.
+// The pilot's measurements of all candidates of `auto`.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,7 @@
 
 namespace lanthorn {
 
-/// Numbers of light paths of a pass, over that of the settings.
+/// Candidate numbers of light paths per pass, as multiples of the settings' number.
 inline constexpr std::array light_path_choices{0.25f, 0.5f, 1.0f, 2.0f, 4.0f};
 
 /// Sums over the eye paths of a block of pixels.
@@ -26,9 +26,9 @@ struct EffortBlock {
     double square = 0;                    ///< E[X]² of the pixels: products of two passes
     double squares = 0, all_squares = 0;  ///< as of PathMoments::Estimate
 
-    /// E[X²] of paths that the candidate finds too rarely to be seen here. Merges count with the densities of paths
-    /// that are displaced within the radius, which makes `all_squares` larger than `squares` where nothing is rare,
-    /// too.
+    /// Second moment of paths that the candidate finds too rarely for the pilot to meet them. The factor 3: merges use
+    /// densities of paths that are displaced within the radius, which makes `all_squares` somewhat larger than
+    /// `squares` even if nothing is rare.
     double rare() const { return std::max(0.0, all_squares - 3 * squares); }
   };
   std::vector<Moments> moments;  ///< by candidate
@@ -69,7 +69,7 @@ struct EffortMeasurement {
   explicit EffortMeasurement(const PixelWindow& window) : grid(window), blocks(grid.block_count()) {}
 
   PilotGrid grid;
-  float scale = 1;  ///< of numbers of light paths: from those of the settings to those of the pilot
+  float scale = 1;                          ///< the settings' number of light paths over the pilot's
   std::vector<EffortCandidate> candidates;  ///< path tracing first
   std::vector<EffortBlock> blocks;
   double light_rays = 0, light_vertices = 0, light_paths = 0;

@@ -19,11 +19,12 @@ namespace lanthorn {
 namespace {
 
 constexpr std::uint32_t pilot_passes = 4;
-// The radii of merging shrink. Those of this pass are typical of a render of about 64 passes.
+// Merge radii shrink from pass to pass. Those of this pass are typical of a render of about 64 passes.
 constexpr std::uint32_t typical_pass = 24;
 constexpr std::uint64_t most_pilot_paths = 1u << 16;
 
-// `scale`: from those to multiples of the pilot's number. `merges_everywhere`: merging finds all that the lens sees.
+// `scale`: converts the numbers of `light_path_choices` into multiples of the pilot's number. `merges_everywhere`:
+// merging finds all light that connections to the lens find.
 std::vector<EffortCandidate> all_candidates(float scale, bool one_time, bool in_media, bool merges_everywhere) {
   const auto is_possible = [&](const EffortCandidate& c) {
     const bool merges_all = merges_everywhere && c.merges && c.merges_in_media == in_media;
@@ -56,7 +57,7 @@ struct TwoSets {
   }
 };
 
-// One light vertex that the lens sees.
+// A light vertex that was connected to the lens.
 struct SeenLight {
   std::uint32_t block;
   float light;
@@ -109,7 +110,7 @@ class Pilot {
   }
 
  private:
-  // Light of a cell by a candidate, over the passes.
+  // A candidate's estimates of a cell's light, summed over passes.
   struct Cell {
     double sum = 0, squares = 0;
   };
@@ -117,7 +118,7 @@ class Pilot {
   static std::size_t pixel_count(const PixelWindow& window) {
     return static_cast<std::size_t>(window.width()) * static_cast<std::size_t>(window.height());
   }
-  // Tells the block of a place on the film.
+  // An effort whose only use is `block_of`, the block of a place on the film.
   static Effort places_of(const PixelWindow& window, const PilotGrid& grid) {
     return {0, window, grid.columns(), std::vector<PlaceEffort>(grid.block_count()), {}};
   }
@@ -137,7 +138,7 @@ class Pilot {
   void trace_light(const VcmPass& pass);
   void add(std::span<const SeenLight> seen);
   void trace_eye(const VcmPass& pass, const VcmPass& other);
-  // Returns the light that comes by caustics.
+  // Returns the light of caustics.
   float trace_eye_path(const VcmPass& pass, const VcmPass& other, std::size_t cell, PathMoments& moments) const;
   void add(EffortBlock& block, std::size_t cell, const PathMoments& moments, float caustic);
 
@@ -149,7 +150,7 @@ class Pilot {
   LightVertices vertices_, other_vertices_;
 };
 
-// With a seed for each pass: later passes of one seed avoid the samples of those before.
+// Each pass has its own seed: passes of one seed would be stratified, not independent.
 void Pilot::run(std::uint32_t number, const VcmPreparation& prepared) {
   constexpr std::uint64_t own_seed = 0x9e3779b97f4a7c15u;
   RenderSettings of_pilot = job_.settings, of_other = job_.settings;
@@ -189,7 +190,7 @@ void Pilot::trace_light(const VcmPass& pass) {
   }
 }
 
-// To a pixel: as many eye paths as pilot passes see each cell, but all light paths all pixels, twice.
+// Per cell and pass there is one eye path, but both sets of light paths reach all pixels; hence the share.
 void Pilot::add(std::span<const SeenLight> seen) {
   const auto share_of = [](const EffortBlock& block) {
     return static_cast<double>(sqr(PilotGrid::cells_per_block)) / (2 * block.pixels);

@@ -60,7 +60,7 @@ class MergeShrinks {
 
  private:
   const UniformityTests* tests_ = nullptr;
-  // By the results of all tests; those of later passes change nothing.
+  // Area factors, indexed by a pixel's test results so far; results of tests after this pass are ignored.
   std::array<float, UniformityTests::histories> by_history_{};
 };
 

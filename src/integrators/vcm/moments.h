@@ -16,7 +16,7 @@
 
 namespace lanthorn {
 
-/// Numbers of samples by which a place on the film may find its light, as multiples of the pilot's.
+/// Numbers of samples per technique that a place on the film could use, as multiples of the pilot's numbers.
 struct EffortCandidate {
   float light_paths = 1;  ///< of the pass
   float connections = 1;  ///< light paths that each eye vertex is connected to
@@ -24,10 +24,10 @@ struct EffortCandidate {
   bool merges_in_media = true;
   bool sees = true;      ///< light paths are connected to the lens
   bool goes_on = true;   ///< eye paths go on after a lobe that is not delta (`Techniques::goes_on`)
-  float merge_area = 1;  ///< of the discs of merging on surfaces: the radius depends on the number of light paths
+  float merge_area = 1;  ///< area of merging discs over the pilot's: the radius depends on the number of light paths
 
-  /// How many times the pilot's samples the technique has. Merging uses all light paths; on surfaces it has the more
-  /// photons the larger its discs are.
+  /// The technique's number of samples over the pilot's. Merging uses all light paths; on surfaces the number of
+  /// photons also grows with the area of its discs.
   float samples(float TechniqueDensities::*technique) const {
     if (technique == &TechniqueDensities::walk) return 1;
     if (technique == &TechniqueDensities::connections) return light_paths > 0 ? connections : 0.0f;
@@ -142,7 +142,7 @@ class PathMoments {
     return {w + (a + b) / 2, second_moment, of_eye_path, s.walk.squares + of_light, s.self};
   }
 
-  static constexpr float least_ratio = 1e-6f;  ///< of paths that the candidate cannot find
+  static constexpr float least_ratio = 1e-6f;  ///< stands in for 0: the candidate cannot find the path
 
  private:
   struct PathSum {

@@ -131,8 +131,8 @@ struct GatherPointVisitor {
   void operator()(const EscapeVertex&) const {}
 };
 
-// Infinite if there is none. A low quantile instead of the median. Caustics have the densest photons and the finest
-// detail; elsewhere there is little light, so that a small radius adds little noise.
+// A low quantile of the radii that were found, not the median; infinite if none was. Caustics have the densest photons
+// and the finest detail; elsewhere there is little light, so that a small radius adds little noise.
 float typical_of_found(std::vector<float> values) {
   std::erase(values, 0.0f);
   if (values.empty()) return infinity;
