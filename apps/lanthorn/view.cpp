@@ -204,7 +204,7 @@ void add_view(CLI::App& app) {
       "  lanthorn view scene.pbrt\n"
       "  lanthorn view scene.pbrt -i vcm -r 640x360\n"
       "  lanthorn view scene.pbrt --headless -p 16 -o picture.png";
-  add_command(app, {"view", "Show a scene in a window, with global illumination that follows edits in real time",
+  add_command(app, {"view", "Show a scene in a window; global illumination follows edits in real time",
                     view_options(*a), footer, [a] { run_view(*a); }});
 }
 

@@ -92,7 +92,7 @@ TEST_F(View, DarkPicturesAreExplained) {
   const std::string sky = "LightSource \"infinite\"\n";
   EXPECT_EQ(warnings(sky), "");
   const std::string metal = warnings(sky + "Material \"conductor\" \"float roughness\" [.1]\n");
-  EXPECT_TRUE(contains(metal, "appears slowly")) << metal;
+  EXPECT_TRUE(contains(metal, "appear slowly")) << metal;
   const std::string mirror = warnings(sky + "Material \"conductor\" \"float roughness\" [.01]\n");
   // A single frame of a mirror may be too bright in places; that is the only warning allowed.
   EXPECT_TRUE(mirror.empty() || contains(mirror, "brighter than white")) << mirror;
