@@ -47,7 +47,7 @@ struct SentPhotonVisitor {
   void add(const WalkState& state, const Point& position, const Direction& wi, const Normal& normal) const {
     if (state.depth < first_depth) return;
     const PhotonClass of_scattered = state.non_delta == 0 ? PhotonClass::caustic : PhotonClass::indirect;
-    photons.positions.push_back(Point(DVec3(position) + origin));
+    photons.positions.emplace_back(DVec3(position) + origin);
     photons.normals.push_back(normal);
     photons.directions.push_back(wi);
     photons.powers.push_back(w.to_rgb(state.dispersed ? state.beta * w.dispersed : state.beta));

@@ -190,7 +190,7 @@ class LinkTest(unittest.TestCase):
         while (answer := self.client.request("wait", after=number, patience=1))["phase"] != "paused":
             number = answer["number"]
         self.client.request("stop")
-        self.assert_refused("nothing is rendered", "wait")
+        self.assert_refused("nothing is being rendered", "wait")
 
     def test_names_what_is_wrong_and_changes_nothing(self):
         self.start(scene())
@@ -275,7 +275,7 @@ class LinkTest(unittest.TestCase):
 
     def test_a_message_that_is_too_large_ends_the_program(self):
         self.send({"request": "hello"}, data_size=2**60)
-        self.assert_ends("has at most")
+        self.assert_ends("at most")
 
     def test_the_end_of_the_client_ends_the_program(self):
         script = ("import importlib.util, sys, time\n"
