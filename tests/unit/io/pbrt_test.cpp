@@ -349,7 +349,8 @@ TEST(Pbrt, IncludeErrors) {
   EXPECT_EQ(error_in("WorldBegin AttributeBegin Import \"close.pbrt\""),
             folder + "close.pbrt:1:1: AttributeEnd has no matching begin (the innermost open block begins at line 1)");
   for (int i = 0; i < 70; ++i) dir.write(fmt::format("n{}.pbrt", i), fmt::format("Include \"n{}.pbrt\"", i + 1));
-  EXPECT_EQ(error_in("Include \"n0.pbrt\""), folder + "n62.pbrt:1:1: files include each other more than 64 levels deep");
+  EXPECT_EQ(error_in("Include \"n0.pbrt\""),
+            folder + "n62.pbrt:1:1: files include each other more than 64 levels deep");
 }
 
 // Fractals include the same files many times: the limit is on their bytes, not on their number.
