@@ -109,6 +109,13 @@ OptionTable scene_options(ReadOptions& o) {
                 environment_options(o.environment));
 }
 
+Option parameter_option(RenderOptions& o) {
+  return {.names = "--set",
+          .value = each_into(o.set, setting_type()),
+          .brief = "Set a parameter of the method (repeatable)",
+          .details = "'lanthorn list INTEGRATOR' shows its parameters."};
+}
+
 }  // namespace
 
 OptionTable render_options(RenderArguments& a) {
@@ -167,11 +174,7 @@ OptionTable render_options(RenderArguments& a) {
            "blocks of pixels that fit. Most methods keep at most 8.4M light paths at a time (auto, bdpt, bpm, "
            "vcm: 2.1M; sppm, ppm, photonmap: all). The picture does not depend on the limit.",
        .otherwise = "free memory"}};
-  const OptionTable parameters{{.names = "--set",
-                                .value = each_into(o.set, setting_type()),
-                                .brief = "Set a parameter of the method (repeatable)",
-                                .details = "'lanthorn list INTEGRATOR' shows its parameters."}};
-  return joined(joined(joined(picture, read_options(a.reading)), scene_options(a.reading)), parameters);
+  return joined(joined(joined(picture, read_options(a.reading)), scene_options(a.reading)), {parameter_option(o)});
 }
 
 }  // namespace lanthorn::program

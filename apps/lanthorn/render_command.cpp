@@ -21,6 +21,13 @@ OptionValue interval(std::optional<double>& seconds, bool& none) {
       });
 }
 
+OptionTable report_options(RenderCommand& a) {
+  return {{.names = "-q,--quiet", .value = flag(a.quiet), .brief = "Print no progress and no summary"},
+          {.names = "-v,--verbose",
+           .value = flag(a.verbose),
+           .brief = "Show the variance and the work that auto expects of each choice"}};
+}
+
 }  // namespace
 
 OptionTable render_command_options(RenderCommand& a) {
@@ -69,8 +76,7 @@ OptionTable render_command_options(RenderCommand& a) {
        .value = into(a.frames, frame_range_type()),
        .brief = "Render frames FIRST to END - 1 of a glTF animation to NAME.####.png",
        .details = "#### becomes the number of the frame. Frame 0 is at 0 seconds. With --turntable, FIRST:END selects "
-                  "views of "
-                  "the turntable.",
+                  "views of the turntable.",
        .otherwise = "24 frames a second"},
       {.names = "--resume",
        .value = into(a.resume, existing_file_type()),
@@ -78,13 +84,8 @@ OptionTable render_command_options(RenderCommand& a) {
       {.names = "--json",
        .value = into(a.json, text_type("FILE")),
        .brief = "Write statistics (times, rays, photons, memory) as JSON"}};
-  OptionTable table = joined(joined(render_options(a), scene_change_options(a.changes)), std::move(files));
-  table = joined(std::move(table), output_options(a.output));
-  table.push_back({.names = "-q,--quiet", .value = flag(a.quiet), .brief = "Print no progress and no summary"});
-  table.push_back({.names = "-v,--verbose",
-                   .value = flag(a.verbose),
-                   .brief = "Show the variance and the work that auto expects of each choice"});
-  return table;
+  const OptionTable of_scene = joined(render_options(a), scene_change_options(a.changes));
+  return joined(joined(joined(of_scene, std::move(files)), output_options(a.output)), report_options(a));
 }
 
 std::string render_command_line(const RenderCommand& arguments) {
