@@ -44,7 +44,8 @@ class Room {
     return to_world(p);
   }
 
-  /// The point that a camera in the middle of one wall sees through pixel (x, y) of a square image.
+  /// Traces a ray from the middle of one wall through pixel (x, y) of a square image, and returns the point that it
+  /// hits.
   Point seen(float x, float y) const {
     const Point eye{0, 0, -0.999f};
     const Vec3 d = normalize(Vec3(2 * x - 1, 2 * y - 1, 1.0f));

@@ -26,7 +26,7 @@ std::filesystem::path automatic_checkpoint_path(const std::vector<std::filesyste
 /// Saves a state at regular intervals.
 class Checkpoints {
  public:
-  /// Automatic checkpoints are removed when they are no longer needed.
+  /// An automatic checkpoint is temporary: `finish` deletes it unless the render was interrupted.
   Checkpoints(std::filesystem::path path, double interval_seconds, bool automatic, ProgressDisplay& progress);
 
   const std::filesystem::path& path() const { return path_; }

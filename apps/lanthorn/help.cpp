@@ -100,8 +100,8 @@ std::string filled(const std::string& text) {
 class HelpFormatter final : public CLI::Formatter {
  public:
   bool is_short = false;
-  bool hides_options = false;  // then defaults and all but the examples are left to --all, too
-  std::string hint{};          // to the help that says more
+  bool hides_options = false;  // omits rare options, defaults, and the footer except its examples
+  std::string hint{};          // last line, which names --all
 
   std::string make_help(const CLI::App* app, std::string name, CLI::AppFormatMode) const override {
     std::string text = make_description(app) + make_usage(app, std::move(name));

@@ -20,8 +20,8 @@ struct HelpGroup {
   std::vector<const CLI::Option*> options;
 };
 
-/// Adds -h, --help and --all, of which --help shows the common options in brief and --help --all all of them with
-/// details. Call before the table's options are registered: words before --help in the command line need not be valid.
+/// Adds the flags -h, --help and --all. --help prints the common options in brief, --help --all every option with
+/// details. Call before the table's options are registered, so that CLI11 handles --help before it checks other words.
 void add_help(CLI::App& command, const OptionTable& table);
 
 /// Assigns the registered options of `table` to their groups of the help.

@@ -32,7 +32,8 @@ int take_standard_output() {
   return file;
 }
 
-// Ends the program when nobody reads its answers any more, even while it builds a scene, which cannot be interrupted.
+// Watches the pipe and ends the program once the client has closed it, even while a scene is built, which cannot be
+// interrupted.
 void end_with_client(int output) {
   std::thread([output] {
     wait_until_unread(output);
@@ -47,7 +48,7 @@ void run_link(const LinkCommand& a) {
   const ThreadLimit limit(a.threads);
   const int output = take_standard_output();
   end_with_client(output);
-  Conversation conversation([] { return is_hung_up(STDIN_FILENO); });
+  Conversation conversation;
   while (const std::optional<LinkRequest> request = read_request(STDIN_FILENO)) {
     const LinkAnswer answer = request->problem.empty()
                                   ? conversation.answer(request->body)

@@ -147,7 +147,7 @@ class Bakes:
         self._finish(process, paths, is_cancelled)
 
     def run_beside(self, tell):
-        """Bakes what is missing in a process beside this one, and calls `tell` from another thread at the end."""
+        """Bakes the missing images in a second process. A thread calls `tell` when it ends."""
         if self._thread is not None:
             return
         process, paths = self._start()

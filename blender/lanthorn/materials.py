@@ -195,7 +195,7 @@ class Materials:
         return {"texture": name}
 
     def _bend(self, material, height):
-        """Bends the normals of all closures that have none of their own."""
+        """Gives the bump height to all closures of the material that have no bump or normal map yet."""
         if material is None:
             return
         if material["type"] == "mix":

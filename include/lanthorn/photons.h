@@ -42,15 +42,15 @@ struct Photons {
 Photons trace_photons(const Scene& scene, const ViewDescription& view, const RenderOptions& options, std::uint32_t pass,
                       bool direct);
 
-/// A light path that the user sends off, in place of a light.
+/// The start of a light path that the caller chooses instead of a light.
 struct PhotonStart {
   SceneRay ray{};
   Rgb power{1, 1, 1};  ///< watts, linear Rec.709
 };
-/// Traces one light path from each start through the pass with this number: its random numbers, its part of the shutter
-/// interval and, with spectral colours, its wavelengths. Of the options, `seed`, `max_depth` and `color` count. The
-/// lights of the scene emit nothing. A path starts in the medium that the shapes around it bound, or in vacuum. The
-/// same for any number of threads. Throws Error as `intersect`, and for powers that are negative or not finite.
+/// Traces one light path from each start; the lights of the scene emit nothing. `pass` selects the random numbers, the
+/// part of the shutter interval and, with spectral colours, the wavelengths. Only the options `seed`, `max_depth` and
+/// `color` matter. A path starts in the medium that encloses its start, else in vacuum. The result does not depend on
+/// the number of threads. Throws Error as `intersect` does, and for powers that are negative or not finite.
 Photons trace_photons(const Scene& scene, const ViewDescription& view, const RenderOptions& options,
                       std::span<const PhotonStart> starts, std::uint32_t pass, bool direct);
 

@@ -139,9 +139,9 @@ struct Techniques {
   VolumeMerging volume{};  ///< photons straight from a light are merged, too
   float volume_part = 1;   ///< 0 for pixels without merging in media
   float lens_part = 1;     ///< 0 for pixels without connections of light paths to the lens
-  /// Eye paths go on, with all techniques, after they have scattered by a lobe that is not delta. Otherwise, they
-  /// connect and merge at their first vertex with such a lobe, and in media on the way there, scatter once, and then
-  /// follow delta lobes to lights. Merging finds all other light, but on fibres.
+  /// Eye paths use all techniques at every vertex. If false, eye paths are short: they connect and merge only at their
+  /// first vertex with a non-delta lobe, and merge in media on the way there; from there they follow only delta lobes,
+  /// to lights. Merging then finds all other light, except on fibres.
   bool goes_on = true;
 };
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Photons of light paths that start where the user says, in place of lights.
+// Photons of light paths whose starts the caller chooses.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -25,13 +25,13 @@ namespace lanthorn {
 
 namespace {
 
-// Notes every vertex of a light path.
+// Records the photons of one light path: one at each vertex with a non-delta lobe.
 struct SentPhotonVisitor {
   Photons& photons;
-  std::uint32_t start;  ///< number of the path's
+  std::uint32_t start;  ///< number of the PhotonStart
   int first_depth;
   const Wavelengths& w;
-  const DVec3& origin;  ///< of the scene's coordinates in those of the file
+  const DVec3& origin;  ///< the scene's origin in the coordinates of the file
 
   Continuation operator()(const SurfaceVertex& vertex) const {
     if (has_non_delta(vertex.at.bsdf)) add(vertex.state, vertex.at.position, vertex.wi, vertex.at.normal);

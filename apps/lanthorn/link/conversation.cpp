@@ -27,7 +27,6 @@ using plain::Value;
 
 constexpr std::uint64_t protocol_version = 1;
 constexpr double most_patience = 10;  // seconds
-constexpr std::chrono::milliseconds longest_wait{100};
 
 // Reads the members that a request may have beside "request"; variables of absent members are unchanged.
 template <class... T>
@@ -162,10 +161,10 @@ LinkAnswer Conversation::start(const Dict& request) {
 InteractiveSnapshot Conversation::wait_for_news(std::uint64_t after, double patience) const {
   const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(patience);
   InteractiveSnapshot now = render_->snapshot();
-  while (now.number <= after && !is_over_()) {
+  while (now.number <= after) {
     const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(end - std::chrono::steady_clock::now());
     if (left.count() <= 0) break;
-    now = render_->wait(after, std::min(left, longest_wait));
+    now = render_->wait(after, left);
   }
   return now;
 }

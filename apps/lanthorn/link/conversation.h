@@ -3,7 +3,6 @@
 // The program's answers to a client (docs/protocol.md).
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -22,9 +21,6 @@ struct LinkAnswer {
 
 class Conversation {
  public:
-  /// `is_over` must return true once the client has disconnected.
-  explicit Conversation(std::function<bool()> is_over) : is_over_(std::move(is_over)) {}
-
   /// Answers an invalid request with "error" and the reason; such a request changes nothing.
   LinkAnswer answer(const plain::Dict& request);
 
@@ -38,7 +34,6 @@ class Conversation {
   LinkAnswer answer_checked(const plain::Dict& request);
   InteractiveSnapshot wait_for_news(std::uint64_t after, double patience) const;
 
-  std::function<bool()> is_over_;
   LinkedScene scene_;
   std::unique_ptr<InteractiveRender> render_;
 };

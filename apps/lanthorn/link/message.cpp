@@ -104,11 +104,6 @@ void write_answer(int file, const nlohmann::json& body, std::span<const float> n
   write_all(file, numbers.data(), numbers.size_bytes());
 }
 
-bool is_hung_up(int file) {
-  pollfd wanted{.fd = file, .events = 0, .revents = 0};
-  return ::poll(&wanted, 1, 0) > 0 && (wanted.revents & (POLLHUP | POLLERR | POLLNVAL)) != 0;
-}
-
 void wait_until_unread(int file) {
   pollfd wanted{.fd = file, .events = 0, .revents = 0};
   while (::poll(&wanted, 1, -1) <= 0) {

@@ -28,9 +28,6 @@ std::optional<LinkRequest> read_request(int file);
 /// Writes a message. Throws Error if the client has closed the pipe.
 void write_answer(int file, const nlohmann::json& body, std::span<const float> numbers);
 
-/// True if the client has closed its end of the pipe.
-bool is_hung_up(int file);
-
 /// Waits until the client no longer reads from the pipe. Never returns for a regular file.
 void wait_until_unread(int file);
 

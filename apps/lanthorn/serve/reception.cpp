@@ -110,7 +110,8 @@ Reception::Clients Reception::read_from(Clients waiting, const Events& events) {
   return staying;
 }
 
-// Reads the bytes that a client has sent. Returns false if the client has disconnected, or its request was handed over.
+// Reads from a client what has arrived. Returns false if the client has disconnected or its request is complete and has
+// been handed over.
 bool Reception::read(Client& client) {
   const Deadline now = Clock::now();
   if (client.bytes.empty()) client.deadline = now + request_patience;

@@ -61,6 +61,12 @@ constexpr LightPathRange light_path_range{.fewest = 10'000};
 // memory.
 constexpr LightPathRange range_of_auto{.fewest = 10'000, .most = 1u << 19};
 
+ParameterInfo merge_reduction_info(const char* default_alpha) {
+  return {
+      "alpha", default_alpha,
+      "radius reduction on surfaces in (0,1]: r^2 shrinks by (i+alpha)/(i+1); small: sharper, noisier; in media 2/3"};
+}
+
 template <bool connections, bool merging>
 std::unique_ptr<Integrator> make(const Parameters& p) {
   return make_vertex_connection_and_merging(VcmSettings(p, {connections, merging}));
@@ -119,7 +125,7 @@ IntegratorInfo vcm_info() {
   return {"vcm",
           "vertex connection and merging: bidirectional paths and photons under one weight; all kinds of light",
           "Georgiev et al. 2012; Hachisuka et al. 2012",
-          {radius_reduction_info("0.5"), first_radius_info(), roulette_depth_info(), emission_info("auto"),
+          {merge_reduction_info("0.5"), first_radius_info(), roulette_depth_info(), emission_info("auto"),
            merge_volume_info(), volume_radius_info()},
           make<true, true>,
           light_path_range};
@@ -152,7 +158,7 @@ IntegratorInfo bpm_info() {
   return {"bpm",
           "bidirectional photon mapping: photons merged at every vertex of the eye path",
           "Vorba 2011; Georgiev et al. 2012",
-          {radius_reduction_info("0.75"), first_radius_info(), roulette_depth_info(), emission_info("auto"),
+          {merge_reduction_info("0.75"), first_radius_info(), roulette_depth_info(), emission_info("auto"),
            merge_volume_info(), volume_radius_info()},
           make<false, true>};
 }
