@@ -12,7 +12,8 @@ BLACK = [0.0, 0.0, 0.0]
 OPAQUE = 1.0
 HALFWAY = 0.5
 OLD_CLEARCOAT = 0.25  # Blender 3's factor
-SHEEN_ROUGHNESS = 0.5
+# Blender 3's sheen has the albedo of fibres of this roughness, times this factor, within 10 % of it over all angles.
+OLD_SHEEN, OLD_SHEEN_ROUGHNESS = 0.089, 0.4
 NO_SUBDIVISION = 1e9  # metres: no edge is as long
 
 
@@ -380,9 +381,11 @@ class Materials:
         amount = self.textures.constant(socket, owner, "sheen")
         if amount <= 0:
             return {}
-        self.report.note(owner, "sheen is that of fibres, whose edge is softer")
         rough = node.inputs.get("Sheen Roughness")
-        return {"sheen_color": [min(1.0, amount)] * 3, "sheen_roughness": rough.default_value if rough else SHEEN_ROUGHNESS}
+        if rough is None:
+            return {"sheen_color": [min(1.0, OLD_SHEEN * amount)] * 3, "sheen_roughness": OLD_SHEEN_ROUGHNESS}
+        self.report.note(owner, "sheen is that of fibres, whose edge is softer")
+        return {"sheen_color": [min(1.0, amount)] * 3, "sheen_roughness": rough.default_value}
 
     def _coated(self, base, node, owner):
         """Blender 3 adds a quarter of a reflection of index 1.5, Blender 4 has a layer."""
