@@ -20,6 +20,7 @@
 #include "support/runs.h"
 #include "support/shapes.h"
 #include "support/spotlit_room.h"
+#include "support/temporary_dir.h"
 #include "support/varied_room.h"
 
 namespace lanthorn::agreement_test {
@@ -93,6 +94,19 @@ std::string hairs() {
   return text;
 }
 
+// A picture large enough to have coarser levels: single dark texels among bright ones, in stripes of both kinds. Eye
+// paths see its levels, light paths single texels.
+std::string large_texture() {
+  constexpr int side = 2048;
+  std::string image = fmt::format("P6\n{} {}\n255\n", side, side);
+  for (int y = 0; y < side; ++y)
+    for (int x = 0; x < side; ++x) image.append(3, (x + y) % (x / 256 % 2 == 0 ? 2 : 5) == 0 ? '\x20' : '\xe0');
+  static const test::TemporaryDir folder;
+  return "Texture \"large\" \"spectrum\" \"imagemap\" \"string filename\" \"" +
+         folder.write("large.ppm", image).string() + "\"\nMaterial \"diffuse\" \"texture reflectance\" \"large\"\n" +
+         test::patch("-1 0 -1  1 0 -1  -1 0 1  1 0 1") + test::patch("-1 0 -1  1 0 -1  -1 2 -1  1 2 -1");
+}
+
 // With a radius as small as that of the others.
 const char* const photonmap = "photonmap:nearest=0:caustic-nearest=0:max-radius=0.012:gather=4:irradiance=estimated";
 const char* const reversephotonmap = "reversephotonmap:caustic-nearest=0:max-radius=0.012:gather=4";
@@ -141,6 +155,7 @@ const std::map<std::string, std::string>& scenes() {
       {"lamp_in_glass", close_up + film + area_light + globe + diffuse_ball},
       // Hair, with a different normal for each ray: light passes from strand to strand.
       {"hair", under_lamp + hairs()},
+      {"large_texture", overview + film + area_light + large_texture()},
       {"spotlit_room", test::spotlit_room},
       {"varied_room", test::varied_room},
       // Images, alpha and instances on emitters.
@@ -166,6 +181,7 @@ const std::vector<Case> cases{
     {"sky", "light", rgb, 1, 12},
     {"emitters", "light", rgb, 1, 12},
     {"curve_lamps", "light", rgb, 1, 12},
+    {"large_texture", "light", rgb, 1, 12},
     {"shading_normals", "probppm", rgb},
     {"small_lights", "probppm", rgb},
     {"rough_glass", "probppm", spectral},
@@ -246,6 +262,7 @@ const std::vector<Case> nightly_cases{
     {"rough_metal", "vcm", spectral},
     {"sky", "vcm", rgb},
     {"clear_glass", "vcm", rgb},
+    {"large_texture", "vcm", rgb},
     {"emitters", "mlt", rgb},
     {"leaf", photonmap, rgb},
     {"varnish", "sppm", spectral},
