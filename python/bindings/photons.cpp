@@ -13,7 +13,7 @@ namespace lanthorn::python {
 
 namespace {
 
-// The light paths that the user sends off; empty if there are none, and lights do.
+// The starts of the light paths that the user gives; empty if lights emit them instead.
 std::optional<std::vector<PhotonStart>> starts_of(const py::object& origins, const py::object& directions,
                                                   const py::object& powers) {
   if (origins.is_none() && directions.is_none() && powers.is_none()) return {};

@@ -13,8 +13,8 @@ namespace lanthorn {
 
 namespace {
 
-/// Width of an equirectangular image as fine as the finest of the scene's infinite lights, within bounds of memory and
-/// time.
+/// Width, in texels, of an equirectangular image as fine as the finest of the scene's infinite lights; limited to bound
+/// memory and time.
 int environment_width(const Scene& scene) {
   constexpr float least = 64, most = 4096;
   float width = least;

@@ -7,8 +7,8 @@
 
 namespace lanthorn {
 
-/// All infinite lights of the scene as one equirectangular image, in linear RGB and in world space. Texels are means
-/// over several directions: else a sun of a few texels would lose or gain light.
+/// All infinite lights of the scene as one equirectangular image, in linear RGB and in world space. Each texel is the
+/// mean over several directions; with one direction per texel, a sun that covers a few texels would lose or gain light.
 Image environment_image(const Scene& scene);
 
 }  // namespace lanthorn

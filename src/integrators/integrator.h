@@ -70,7 +70,8 @@ struct MemoryUse {
   MediumRecords media = MediumRecords::none;  ///< records of light paths in media
   double per_medium_photon = 0;               ///< for each of these records, if not `bytes_of_medium_photon`
   bool fills_the_rest = false;                ///< works in blocks that take the rest of `RenderSettings::memory`
-  /// Light paths whose records are in memory at once, of methods that work in blocks of them (`LightPathBlocks`).
+  /// For methods that work in blocks of light paths (`LightPathBlocks`): the number of light paths whose records are in
+  /// memory at once.
   std::uint64_t photon_block = std::numeric_limits<std::uint64_t>::max();
   double per_pixel_of_blocks = 0;  ///< besides `per_pixel`, for each pass that has several blocks
 };
@@ -99,7 +100,8 @@ class Integrator {
   virtual std::string limitation(const Scene& /*scene*/) const { return {}; }
   /// Message about what the preparation has found in this job, for the user. Empty if there is nothing to say.
   virtual std::string remark() const { return {}; }
-  /// The findings of the preparation in this job, in numbers: the text of a JSON object for reports. Empty if none.
+  /// What the preparation has measured in this job: the text of a JSON object, for reports. Empty if there is nothing
+  /// to report.
   virtual std::string findings() const { return {}; }
   /// The film's layers for this scene and whether the method splats. Default: the layers of the path classes.
   virtual FilmContents film_contents(const Scene& scene) const { return path_layers(scene); }
@@ -113,11 +115,11 @@ class Integrator {
   virtual bool passes_are_independent() const { return true; }
   /// Peak memory with these settings. Zero for methods that do not store light paths.
   virtual MemoryUse memory_use(const RenderSettings& /*settings*/) const { return {}; }
-  /// State that later passes depend on, beyond the film. If passes are independent, it only spares them work, and may
-  /// be missing.
+  /// State that later passes depend on, beyond the film. If passes are independent, the state only saves them work and
+  /// may be missing.
   virtual std::vector<std::byte> save() const { return {}; }
-  /// Takes what `save` returned, after `prepare`. The bytes may come from a file: throws Error unless they are
-  /// possible.
+  /// Restores what `save` returned; called after `prepare`. The bytes may come from a file: throws Error if they are
+  /// not a possible state.
   virtual void load(std::span<const std::byte> /*state*/) {}
 };
 

@@ -45,7 +45,8 @@ struct FreshAfterHit {
 template <class Visitor>
 FreshAfterHit(Visitor, Sampler&, const Sampler&) -> FreshAfterHit<Visitor>;
 
-// The photon moved and scaled to what one of class 0 with the same part in the estimate would be.
+// Maps a photon of a higher class to the photon of class 0 that has the same part in the estimate: scales its offset
+// and its light.
 MetPhoton in_disc_of_first_class(const MetPhoton& photon, float radius_factor) {
   const float inverse = 1 / radius_factor;
   return {photon.offset * inverse, photon.dist2 * sqr(inverse), photon.light * sqr(inverse)};

@@ -15,8 +15,8 @@ inline float spread_of_phase(const HenyeyGreenstein& hg) {
   return alpha2 / (alpha2 + sqr(half_spread_alpha) * (1 - alpha2));
 }
 
-/// Factor in [0,1] by which MIS weights count merging in media after the eye path has scattered: near 1 for narrow
-/// lobes, and 0 for wide ones, after which photons are not searched.
+/// Factor in [0,1] by which MIS weights count merging in media after the eye path has scattered: near 1 after narrow
+/// lobes, and 0 after wide ones, where photons are not looked up.
 inline float coherence_of_spread(float spread) {
   constexpr float wide = 0.9f;
   return spread < wide ? 1 - spread : 0.0f;

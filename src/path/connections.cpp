@@ -96,7 +96,8 @@ LightVertex keep_at(const SurfacePoint& at, const Direction& wi, const Vec3& wi_
 Normal receiving_normal(const SurfaceVertex& v) { return receiver_normal(v.at); }
 Normal receiving_normal(const MediumVertex&) { return Normal(0); }
 
-// Direct light on surfaces, the light that `EmissionDensities` treats apart: one scattering, at such a receiver.
+// True for direct light on surfaces, which `EmissionDensities` treats separately: one scattering, at a receiver with a
+// normal.
 bool is_direct(int scatterings, const Normal& receiver) { return scatterings == 1 && receiver != Normal(0); }
 
 // A ray on which a light path may start.

@@ -89,8 +89,7 @@ struct FlightDensity {
   static float colliding(float per_metre) { return std::max(per_metre, 1e-6f); }
 };
 
-/// Merging in media: for each estimator its number of light paths times the size of its kernel. 0 for those that are
-/// not used.
+/// Merging in media: for each estimator, its number of light paths times the size of its kernel; 0 if it is not used.
 struct VolumeMerging {
   float point = 0;        ///< photons around points of eye paths: N 4/3 π r³ (m³)
   float beam = 0;         ///< photons around eye paths' rays: N π r² (m²)
@@ -130,7 +129,7 @@ struct VolumeMerging {
 struct Techniques {
   float light_paths = 1;  ///< of a pass; every one of them is connected to the lens
   /// η_VCM = light paths π r² (TR eq. 20): how much denser paths are drawn by merging than by connecting; 0 without
-  /// merging. It may differ between pixels, as their radii do: the same pixel, the same η for all techniques.
+  /// merging. It may differ between pixels, as radii do, but all techniques of a pixel use the same η.
   float merging = 0;
   /// Vertices are connected to lights and to the lens. Photons straight from a light are merged only without
   /// connections: next-event estimation finds their light as well, and without the dark edges of merging.
@@ -264,7 +263,7 @@ struct TechniqueSum {
   TechniqueDensities beyond{};  ///< of longer ones; some of those that a longer eye path made are in `within`
   bool is_beyond = false;       ///< the technique that made it is one of these
 
-  /// The part that contains the technique that made the path. `longer`: it used a longer eye path.
+  /// The part that contains the technique that made the path. `longer`: the technique used a longer eye path.
   TechniqueDensities& made_by(bool longer) {
     is_beyond = longer;
     return longer ? beyond : within;
@@ -334,10 +333,10 @@ inline bool has_light_paths(const SubpathDensities& at_light, const Techniques& 
              t.volume_part * at_light.media !=
          0;
 }
-/// An eye walk hits a light (TR eq. 43): its last vertex is the point there. `direct`: with which next-event estimation
-/// would have chosen the point, per area (infinite lights: per solid angle); `emission`: with which a light path starts
-/// there in that direction, the product of per area and per solid angle; any number without `has_light_paths`.
-/// `scatterings`: of the walk, by lobes that are not delta.
+/// An eye walk hits a light (TR eq. 43): its last vertex is the point there. `direct`: density with which next-event
+/// estimation would have chosen the point, per area (infinite lights: per solid angle). `emission`: density with which
+/// a light path starts there in that direction, per area times per solid angle; ignored without `has_light_paths`.
+/// `scatterings`: number of the walk's non-delta scatterings.
 inline TechniqueSum sum_of_hit(const SubpathDensities& at_light, float direct, float emission, int scatterings,
                                const Techniques& t) {
   TechniqueSum sum{.within = {.lens = emission * t.lens_part * at_light.ends,
@@ -348,9 +347,9 @@ inline TechniqueSum sum_of_hit(const SubpathDensities& at_light, float direct, f
   return sum;
 }
 
-/// Next-event estimation (TR eqs. 44, 45), with which the point on the light is chosen with density `pdf_direct`. The
-/// walk would find the light with density `pdf_walk`, 0 if it cannot. `at_eye.arrival`: of a light path that starts at
-/// the point, over the density of next-event estimation; `at_eye.merging`: of photons straight from a light.
+/// Next-event estimation (TR eqs. 44, 45) that has chosen the point on the light with density `pdf_direct`. The walk
+/// would find the light with density `pdf_walk`, 0 if it cannot. `at_eye.arrival`: density of a light path that starts
+/// at the point, divided by that of next-event estimation; `at_eye.merging`: that of photons straight from a light.
 inline TechniqueSum sum_of_next_event(const ConnectedEnd& at_eye, float pdf_direct, float pdf_walk,
                                       const Techniques& t) {
   TechniqueSum sum;
@@ -360,7 +359,7 @@ inline TechniqueSum sum_of_next_event(const ConnectedEnd& at_eye, float pdf_dire
   return sum;
 }
 
-/// A light vertex connected to the lens (TR eq. 46). `at_light.arrival`: of one pixel's eye paths.
+/// A light vertex connected to the lens (TR eq. 46). `at_light.arrival`: density of one pixel's eye paths.
 inline TechniqueSum sum_of_lens(const ConnectedEnd& at_light, const Techniques& t) {
   TechniqueSum sum{.own = t.lens_part, .within = {.lens = t.lens_part}};
   at_light.add_other_techniques(1 / t.light_paths, t, sum.within, sum.within,
@@ -368,7 +367,7 @@ inline TechniqueSum sum_of_lens(const ConnectedEnd& at_light, const Techniques& 
   return sum;
 }
 
-/// Two vertices connected (TR eq. 37), once of `connections`: each has the same part of the technique's weight.
+/// Two vertices connected (TR eq. 37): one of `connections` connections, which share the technique's weight equally.
 inline TechniqueSum sum_of_connection(const ConnectedEnd& at_eye, const ConnectedEnd& at_light, const Techniques& t) {
   TechniqueSum sum;
   TechniqueDensities& own = sum.made_by(at_eye.scattered);

@@ -36,7 +36,8 @@ struct PathStart {
   bool is_eye() const { return camera != nullptr; }
 };
 
-/// How a subpath leaves its last vertex. Its densities at any point of the way where it could scatter follow from this.
+/// How a subpath leaves its last vertex: determines its densities at any point of the next flight where it could
+/// scatter.
 struct Departure {
   SubpathDensities densities;  ///< after `SubpathDensities::scatter`; before the first vertex 0
   float collision = 1;         ///< at the last vertex (`FlightDensity`)
@@ -53,8 +54,8 @@ struct VolumeArrival {
   FlightDensity flight;
 };
 
-/// Densities of a subpath that leaves like `departure`, if it scattered at `p` after flying through `optical_depth`
-/// more. `collision`: density of collisions at p, per metre. `start` is needed for the first vertex only.
+/// Densities of a subpath that leaves like `departure`, if it scattered at `p` after a further optical depth of
+/// `optical_depth`. `collision`: density of collisions at p, per metre. `start` is needed for the first vertex only.
 VolumeArrival arrive_in_medium(const Scene& scene, const PathStart& start, const Departure& departure,
                                const Techniques& techniques, const Point& p, float time, float optical_depth,
                                float collision);
@@ -76,8 +77,8 @@ class Subpath {
 
   void arrive(const PathContext& path, const SurfaceVertex& v);
   void arrive(const PathContext& path, const MediumVertex& v);
-  /// The walk leaves the last vertex, and the scene: densities are then those of light that comes along the ray. For
-  /// light of media on the way, where the flight has no density in weights, `flies` is false.
+  /// The walk leaves the last vertex, and the scene: densities are then those of light that comes along the ray.
+  /// `flies` is false for light that a medium on the way emits: the flight then has no density in MIS weights.
   void escape(const WalkState& state, const Direction& direction, bool flies = true);
 
   /// The beginning of a flight: how the subpath left its last vertex.
@@ -95,7 +96,7 @@ class Subpath {
   const FlightDensity& flight() const { return flight_; }
   /// For an eye path: share of merging in media that counts at the last vertex, or on the flight after `depart`.
   float coherence() const { return coherence_; }
-  /// The same where the path goes on from the last vertex, but not by a delta lobe.
+  /// Coherence beyond the last vertex, if the path goes on from it by a non-delta lobe.
   float coherence_beyond() const { return coherence_ * previous_.coherence; }
 
  private:

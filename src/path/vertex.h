@@ -174,7 +174,7 @@ struct NarrowContinuation : Continuation {
   }
 };
 
-/// The answer of a walk that finds the light of wide lobes in place of a cache.
+/// The answer of a walk that stands in for a cache: it finds the light of wide lobes.
 struct WideContinuation : GuidedContinuation {
   LobeSplit split;
   float factor = 1;  ///< 1 / number of such walks

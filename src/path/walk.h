@@ -246,7 +246,7 @@ Crossing cross_medium(const PathContext& path, Ray& ray, const Normal& begin_nor
 /// before it draws.
 template <Transport transport, class Visit>
 void walk(const PathContext& path, Ray ray, WalkState& state, Visit&& visit) {
-  // A hash that scenes without media need not pay for.
+  // Scenes without media need not pay for this hash.
   HashRng flights = path.scene.has_media() ? path.sampler.generator(walk_dimensions(0)) : HashRng(0);
   Normal begin_normal = state.previous_normal;  // of the ray
   for (;;) {
@@ -300,7 +300,7 @@ std::optional<Ray> branch_ray(const PathContext& path, const SurfaceVertex& vert
   return ray;
 }
 
-/// Follows such a path.
+/// Follows the path that `branch_ray` begins.
 template <Transport transport, class Answer, class Visit>
 void branch_walk(const PathContext& path, const SurfaceVertex& vertex, const Answer& answer, Visit&& visit) {
   WalkState state;

@@ -28,7 +28,7 @@ struct FluxClasses {
   float reference = 0;  ///< flux of class 0 times the light paths of a pass, W; 0: all photons are of one class
 
   int count() const { return reference > 0 ? most : 1; }
-  /// `flux`: of a photon, times the light paths of its pass, W.
+  /// `flux`: of a photon, times the number of light paths of its pass, W.
   int of(float flux) const {
     if (!(reference > 0)) return 0;
     constexpr float large = 0x1p30f;  // bounds the exponent: an infinite flux has none
@@ -37,8 +37,8 @@ struct FluxClasses {
   }
   /// Radius of a photon of this class over that of class 0.
   static float radius_factor(int flux_class) { return static_cast<float>(1 << flux_class); }
-  /// Ratio of the squared radius of class 0 to that of one radius for all photons, where `flux` is their mean (as in
-  /// `of`).
+  /// Squared radius of class 0, relative to the squared radius that serves all photons alike. `flux`: mean flux of
+  /// these photons, as in `of`.
   float area_factor(float flux) const {
     return reference > 0 ? std::sqrt(reference / std::max(reference, flux)) : 1.0f;
   }

@@ -25,7 +25,8 @@ inline float grazing_gain(float geometric) {
   return geometric < grazing_cosine ? grazing_cosine / std::max(least, geometric) : 1.0f;
 }
 
-/// Factor at the gather point of a photon with that gain: |cos| of its direction to the shading and geometric normals.
+/// Factor, at a gather point, of a photon whose power includes `grazing_gain`. `shading`, `geometric`: |cos| of the
+/// photon's direction to the gather point's normals.
 inline float incidence_ratio(float shading, float geometric) { return shading / std::max(grazing_cosine, geometric); }
 
 }  // namespace lanthorn

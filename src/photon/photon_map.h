@@ -49,7 +49,8 @@ class PhotonMap {
   PhotonMap() = default;
 
   /// Stores all photons of the chunks, which are in path order. `index_arguments` are passed to `Index::build` after
-  /// the positions (for `HashGrid`: the largest query radius). The map does not depend on the division into chunks.
+  /// the positions (for `HashGrid`: the largest query radius). The map does not depend on how the photons are divided
+  /// into chunks.
   template <class... IndexArguments>
   static PhotonMap build(std::span<const std::vector<Photon>> chunks, ColorMode mode,
                          IndexArguments&&... index_arguments) {

@@ -7,8 +7,8 @@
 
 namespace lanthorn {
 
-/// The first number of passes above `passes` after which the picture's error is looked at. Each look comes after an
-/// eighth more passes than the one before: more would seldom end a render earlier.
+/// The first number of passes above `passes` after which the render looks at the picture's error. Each look comes after
+/// an eighth more passes than the previous one; more frequent looks would seldom end a render earlier.
 inline std::uint64_t next_look(std::uint64_t passes) {
   constexpr std::uint64_t first = 4, share = 8;
   std::uint64_t look = first;

@@ -16,14 +16,15 @@
 
 namespace lanthorn {
 
-/// How many passes to render at once. Sums do not depend on it, only the time does.
+/// Decides how many passes to render at once. This affects the time only, not the sums.
 class BatchSize {
  public:
   explicit BatchSize(const RenderPlan& plan) : plan_(plan) {}
 
-  /// `seconds`, `passes`: of the last batch.
+  /// `seconds`: duration of the last batch, which had `passes` passes.
   void measured(double seconds, std::size_t passes) { seconds_of_pass_ = seconds / static_cast<double>(passes); }
-  /// At most `most`. `seconds_left`: until the render must end; none: it has no such limit.
+  /// Number of passes in the next batch, at most `most`. `seconds_left`: time until the render must end; none: no
+  /// limit.
   std::size_t next(std::uint64_t most, std::optional<double> seconds_left) const;
 
  private:

@@ -7,7 +7,7 @@
 
 namespace lanthorn {
 
-/// The options of a picture of the same part of the scene, of `share` times the width and the height.
+/// The options for a picture of the same part of the scene with `share` times the width and the height.
 ViewOptions scaled(ViewOptions options, const description::Film& film, double share);
 
 }  // namespace lanthorn

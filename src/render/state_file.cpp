@@ -94,7 +94,7 @@ void untranspose(ByteSpan in, std::span<std::int64_t> values) {
       values[i] |= static_cast<std::int64_t>(static_cast<std::uint64_t>(in[b * values.size() + i]) << (8 * b));
 }
 
-// A function of the film's shape, like the bytes of a state.
+// Depends only on the film's shape, so that the bytes of a state do, too.
 std::size_t pixels_of_block(std::size_t planes) {
   return std::bit_floor(std::max<std::size_t>(1, sums_of_block / planes));
 }

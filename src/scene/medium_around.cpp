@@ -11,7 +11,8 @@ namespace lanthorn {
 
 namespace {
 
-// Most shapes that the rays from a point aim at, and the number of its rays; at least one for each shape.
+// Largest number of shapes at which the rays from a point aim, and number of these rays; each shape gets at least one
+// ray.
 constexpr std::size_t most_targets = 256, rays_of_point = 64;
 
 // The medium at the ray's origin; empty if no interface or clear surface bounds it.

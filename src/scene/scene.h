@@ -87,7 +87,8 @@ class Scene {
   bool has_emissive_media() const;
   /// Boxes that contain all scattering media; empty if one of them is unbounded.
   std::optional<std::vector<Bounds>> scattering_boxes() const;
-  /// The light that stands for a medium with volumetric emission; nullopt if it is not a light, as if unbounded.
+  /// The light that stands for a medium with volumetric emission; nullopt if the medium is not a light, for example
+  /// because it is unbounded.
   std::optional<std::uint32_t> volume_light(MediumId medium) const;
   /// True if some emissive medium is not a light: only eye paths find its emission.
   bool has_unlit_emission() const;

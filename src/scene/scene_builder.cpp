@@ -471,9 +471,9 @@ BoundingSphere bounding_sphere(const Bounds& box) {
 
 namespace {
 
-// The least distance from a light without extent to what `count` of its rays meet. The scene's radius is no measure for
-// it: a lamp may hang above a table in a landscape. Distances below 2^-16 of the radius are raised to that, so that a
-// lamp that touches its holder does not push the rest, 2^32 times darker, below the film's resolution.
+// The least distance at which `count` rays from a light without extent meet something. The scene's radius is no measure
+// for it: a lamp may hang above a table in a landscape. Distances below 2^-16 of the radius are raised to that, so that
+// a lamp that touches its holder does not push the rest, 2^32 times darker, below the film's resolution.
 float distance_lit(const SceneData& data, const Light& light, HashRng rng, std::size_t count) {
   float nearest = data.sphere.radius;
   for (std::size_t i = 0; i < count; ++i) {

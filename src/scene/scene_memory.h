@@ -24,9 +24,9 @@ SceneMemory expected_memory(const SceneDescription& scene);
 /// Bytes of the images of all textures, by the headers of their files. Images that cannot be read count nothing.
 std::uint64_t expected_texture_memory(const SceneDescription& scene);
 
-/// Throws Error, with the bytes needed and those available, if the scene's geometry and its textures, of which no more
-/// than `scene.access.texture_memory` are in memory, do not fit. If that is not given, sets it to half of what the
-/// geometry leaves. To be called before any image is read.
+/// Throws Error, with the bytes needed and those available, if the scene's geometry and textures do not fit. At most
+/// `scene.access.texture_memory` bytes of textures are in memory at once; if this limit is not given, sets it to half
+/// of what the geometry leaves. To be called before any image is read.
 void require_scene_memory(SceneDescription& scene);
 
 }  // namespace lanthorn

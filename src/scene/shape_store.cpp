@@ -121,7 +121,8 @@ void take(ShapeStore& store, TriangleMesh& mesh, const Transform& t, bool revers
   store.record.kind = GeometryRecord::Kind::triangles;
 }
 
-// True if the shape is triangles without normals of which 2 i and 2 i + 1 are the halves of a parallelogram, for all i.
+// True if the shape consists of triangles without normals, and triangles 2 i and 2 i + 1 are the halves of a
+// parallelogram for all i.
 bool are_pairs(const ShapeStore& store) {
   const std::size_t count = store.triangles.size();
   if (count == 0 || count % 2 != 0 || store.record.has_normals) return false;

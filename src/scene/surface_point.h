@@ -101,8 +101,8 @@ struct SegmentEnd {
 };
 inline SegmentEnd end_at(const SurfacePoint& at) { return {at.position, at.normal, position_error_across(at)}; }
 
-/// The ray from `origin` to the end. It stops before a surface there by the bound of all rounding errors, so that it
-/// meets whatever lies before that, and never the surface.
+/// The ray from `origin` to the end. If a surface lies there, the ray stops short of it by the bound of all rounding
+/// errors: it meets whatever lies in between, and never that surface.
 inline Ray segment_to(const SegmentEnd& end, const Point& origin, const Direction& if_empty, float time) {
   Vec3 way = end.position - origin;
   const float margin = end.error + detail::tracing_error * std::sqrt(length_squared(way));

@@ -41,7 +41,7 @@ std::optional<MediumId> medium_at(const SceneData& scene, Ray ray) {
   return {};
 }
 
-// The media that rays from outside of the scene meet; that of the camera if no surface bounds any.
+// The media that rays from outside of the scene meet; the camera's medium if no surface bounds a medium.
 std::vector<MediumId> find_endless_media(const SceneData& scene, float time) {
   constexpr int rays = 256;
   std::vector<MediumId> found;

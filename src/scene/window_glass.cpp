@@ -70,7 +70,7 @@ bool is_colourless(const description::SpectrumParameter& tint) {
   return !tint.texture && value != nullptr && *value == 1;
 }
 
-// The pane that a shape of this material is, if it has the form of one.
+// The pane that a shape of this material forms; nullopt if it does not have the form of a pane.
 std::optional<description::Pane> pane_of(const description::Shape& shape, const description::Material& material) {
   if (material.normal_map || material.displacement || material.interior || shape.area_light ||
       shape.inside_medium != shape.outside_medium)
@@ -103,7 +103,7 @@ struct Face {
     }
     centre = bounds.centre();
   }
-  /// Squared distance from the centre within which that of the other face must lie, m².
+  /// Squared distance from this face's centre within which the other face's centre must lie, m².
   float reach2() const { return sqr(alike) * area; }
   bool makes_slab_with(const Face& other) const {
     if (eta != other.eta || std::fabs(area - other.area) > alike * area) return false;

@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reflection where the shading normal n_s differs from the geometric normal n. With n_s alone, lobes lead below the
 // surface, into the solid, and metals of few facets get black rims. Here the surface's plane reflects such light once
-// more, the idea of
+// more. The idea is from
 //   Schüssler, Heitz, Hanika, Dachsbacher 2017: Microfacet-based Normal Mapping for Robust Monte Carlo Path Tracing
-// without their facets. Let P be the mirror image in the plane. Of light from l, the eye at e, with both above the
-// plane, sees
+// but the plane stands in for their facets. Let P be the mirror image in the plane. If both the light's direction l and
+// the eye's direction e are above the plane, the eye sees the fraction
 //   f(e, l) |cos l| + f(e, P l) |cos P l|,    cosines to n_s.
 // Integrated over all l, this is all light that f(e, .) reflects: the albedo is that of the closure alone.
 #pragma once
@@ -23,8 +23,8 @@
 namespace lanthorn {
 
 /// A closure that does not transmit. Its delta lobes, and all lobes of closures that are `mirrored`, scatter above the
-/// surface's plane only. Other lobes, such as the base below a smooth coat, scatter below the plane as above it, as
-/// matte surfaces do: mirrored, their light would show the facets.
+/// surface's plane only. Other lobes, such as the base below a smooth coat, scatter below the plane as they do above
+/// it, as matte surfaces do; mirroring them would make the facets visible.
 template <Closure C>
 struct Bent {
   static constexpr ClosureTraits traits{.is_fibre = false, .transmits = false};
@@ -99,7 +99,7 @@ float pdf_reverse(const Bent<C>& b, const Vec3& wi, const Vec3& wo) {
 
 namespace bent_detail {
 
-/// The sample with the weight of all ways to its direction.
+/// The sample with the weight of all ways in which its direction can be chosen.
 template <class C>
 std::optional<BsdfSample> weighted(const Bent<C>& b, const Vec3& wi, BsdfSample s, Transport transport) {
   s.pdf = pdf_of(b, wi, s.wo, transport);

@@ -31,8 +31,8 @@ class CoatPassage {
     const TableCell cell = table_cell(std::sqrt(cos), to_base_.size());
     return lerp(cell.fraction, to_base_[cell.low], to_base_[cell.low + 1]);
   }
-  /// Of the Lambertian light that leaves the base: the fraction that leaves the coat at its first attempt, and the
-  /// fraction that returns to the base instead.
+  /// Fractions of the Lambertian light that leaves the base: `out` leaves the coat at its first attempt, `back` returns
+  /// to the base instead.
   float out() const { return out_; }
   float back() const { return back_; }
 

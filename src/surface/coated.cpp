@@ -93,9 +93,9 @@ Spectrum mirror_reflectance(const Base& base, const Vec3& w) {
   return bounce && bounce->delta ? bounce->weight * bounce->pdf : Spectrum();
 }
 
-/// Light that leaves a smooth base towards `exit` through a clear coat, over the light that leaves at once: the sum
-/// over all numbers of reflections between coat and base. Neither end of a walk can sample these delta reflections by
-/// chance.
+/// Light that leaves a smooth base towards `exit` through a clear coat, divided by the light that leaves at once: the
+/// sum over all numbers of reflections between coat and base. Neither end of a walk can sample these delta reflections
+/// by chance.
 template <class Base>
 Spectrum mirrored_again(const Coated<Base>& c, const LayerWalk<Base>& walk, const InterfaceSample& exit) {
   const auto back = sample_reflection(c.coat, exit.wo, Vec2(0.5f));

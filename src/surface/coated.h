@@ -38,7 +38,7 @@ using CoatedDiffuse = Coated<Diffuse>;
 using CoatedConductor = Coated<Conductor>;
 using CoatedPlastic = Coated<Plastic>;
 
-/// `c`, whose index is relative to the outside, with its index made relative to a layer of index ratio `coat_eta`.
+/// Converts the index of `c` from relative to the outside to relative to a layer of index ratio `coat_eta`.
 inline Conductor under_coat(Conductor c, float coat_eta) {
   c.eta /= coat_eta;
   c.k /= coat_eta;

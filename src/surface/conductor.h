@@ -30,7 +30,7 @@ inline bool is_smooth(const Conductor& c) { return effectively_smooth(c.alpha_x,
 
 Spectrum eval(const Conductor& c, const Vec3& wi, const Vec3& wo, Transport transport);
 float pdf(const Conductor& c, const Vec3& wi, const Vec3& wo);
-/// All three, which share the microfacet's normal and density.
+/// `eval` and both densities, which share the microfacet's normal and density.
 BsdfValues eval_and_pdfs_of(const Conductor& c, const Vec3& wi, const Vec3& wo);
 std::optional<BsdfSample> sample(const Conductor& c, const Vec3& wi, float u_lobe, const Vec2& u, Transport transport);
 

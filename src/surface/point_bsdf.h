@@ -15,10 +15,10 @@ namespace lanthorn {
 class PointBsdf {
  public:
   PointBsdf() : own_() {}
-  /// Made for the point.
+  /// A closure made for the point.
   template <class Closure>
   requires std::constructible_from<Bsdf, const Closure&> PointBsdf(const Closure& closure) : own_(closure) {}
-  /// The material's.
+  /// The material's own closure.
   explicit PointBsdf(const Bsdf* of_material) : of_material_(of_material) {}
   PointBsdf(const PointBsdf& other) : of_material_(other.of_material_) { copy_own(other); }
   PointBsdf& operator=(const PointBsdf& other) {

@@ -17,8 +17,8 @@ namespace lanthorn {
 
 namespace {
 
-// Largest number of mirrors and panes before a cached point. Points behind more are few, and each number of them needs
-// records of its own.
+// Largest number of mirrors and panes between the eye and a cached point. Few points lie behind more, and each number
+// needs records of its own.
 constexpr int most_depth = 4;
 
 // The window's pixels in stages. Each stage refines the grid of the stage before: first by the centres of its cells,
@@ -46,7 +46,7 @@ class Filling {
     const std::vector<std::vector<PixelPlace>> stages = grid_stages(fill_.job.view.window);
     see_all();
     for (const std::vector<PixelPlace>& stage : stages) cover(stage, fill_.settings.cache->error);
-    // Records whose distance has been shortened since may no longer cover some points.
+    // Neighbour clamping may have shortened the distances of earlier records, which then no longer cover some points.
     for (const std::vector<PixelPlace>& stage : stages)
       cover(stage, IrradianceCache::smoothing * fill_.settings.cache->error);
   }

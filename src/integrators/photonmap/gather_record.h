@@ -39,7 +39,7 @@ SeenPoint seen_from(const GatherFill& fill, const PixelPlace& place, RayCounts& 
 
 /// A record whose irradiance has not been gathered yet. Its radius is the shortest spacing.
 IrradianceRecord planned_record(const SeenPoint& seen, const GatherCacheSettings& settings);
-/// The record that the pixel's eye path, which has `seen` that point, gathers.
+/// Follows the pixel's eye path to the point `seen` and gathers the record there.
 IrradianceRecord make_record(const GatherFill& fill, const PixelPlace& place, const SeenPoint& seen, RayCounts& counts);
 
 }  // namespace lanthorn

@@ -26,8 +26,9 @@ class IrradiancePhotons {
   /// One photon in `stride` has a record.
   static constexpr std::size_t stride = 4;
 
-  /// `chunks` are the photons from which `map` was built. An estimate uses the photons that an eye path of one
-  /// scattering may use. Each record stores the longest eye path that may use all of its photons.
+  /// `chunks` are the photons from which `map` was built. Each estimate uses the photons that are available to eye
+  /// paths with one scattering. Its record stores the largest number of eye scatterings for which all of these photons
+  /// may be used.
   template <class Map>
   static IrradiancePhotons build(const Map& map, std::span<const std::vector<Photon>> chunks,
                                  const EstimateSettings& settings, const Wavelengths& w) {

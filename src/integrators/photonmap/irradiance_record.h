@@ -35,8 +35,9 @@ struct IrradianceRecord {
   SpectrumGradient translation;  ///< with respect to position, per metre
 
   float radius() const { return std::max(distance, least); }
-  /// Irradiance extrapolated by the gradients. The translational gradient is scaled down where `least` exceeds R. The
-  /// cross product in Ward & Heckbert's form is not needed, because `rotation` is perpendicular to `normal`.
+  /// Irradiance extrapolated by the gradients. The translational gradient is scaled down where `least` exceeds
+  /// `distance`. The cross product in Ward & Heckbert's form is not needed, because `rotation` is perpendicular to
+  /// `normal`.
   Spectrum at(const Point& p, const Normal& n) const {
     const float trust = distance < least ? distance / least : 1.0f;
     return irradiance + rotation.along(n) + translation.along(p - position) * trust;

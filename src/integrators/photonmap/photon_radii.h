@@ -45,8 +45,8 @@ inline float leaf_radius(const Bounds& bounds, std::size_t count, const Estimate
 }  // namespace photon_radii_detail
 
 /// Kernel radius of each photon, by slot, m. By the given rule the disc holds `settings.nearest` photons; the radius is
-/// at most `settings.radius`. If `nearest` is 0, all radii are that of `settings.radius` (of the equivalent box
-/// kernel).
+/// at most `settings.radius`. If `nearest` is 0, every radius is the support of the kernel whose equivalent box kernel
+/// has radius `settings.radius`.
 inline std::vector<float> photon_radii(const PhotonMap<BucketKdTree>& map, const EstimateSettings& settings,
                                        RadiusRule rule) {
   std::vector<float> radii(map.size(), settings.kernel.support(settings.radius));

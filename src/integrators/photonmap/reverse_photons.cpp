@@ -115,7 +115,7 @@ class DiffuseBundle {
     scatterings_ = Lanes(scatterings);
   }
 
-  /// `reflected_light` with f = 1; 0 in lanes to whose surface the photon does not belong.
+  /// `reflected_light` with f = 1; 0 in lanes whose surface the photon does not belong to.
   template <KernelShape shape>
   void add(const InfluencePhoton& photon, const Wavelengths& w, const Kernel& kernel) {
     const LaneVec3 wo = in_lanes(photon.incident), own = in_lanes(photon.surface_normal);

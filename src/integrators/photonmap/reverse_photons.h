@@ -37,7 +37,7 @@ struct ReversePhoton {
   SurfaceVertex vertex() const { return {state, at, wi, wi_local, true}; }
 };
 
-/// The same on a purely diffuse surface: smaller, and processed eight at a time.
+/// A reverse photon on a purely diffuse surface: smaller, and processed eight at a time.
 struct DiffuseReversePhoton {
   Spectrum light;     ///< first radiance / irradiance, 1/sr, times the eye path's beta; after the photons, radiance
   Point position;     ///< m

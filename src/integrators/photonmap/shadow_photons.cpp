@@ -21,7 +21,7 @@ void ShadowPhotons::follow(const PathContext& path, const LightPath& start, floa
   // Bounds the number of surfaces: coincident surfaces and meshes seen edge-on could otherwise hold a ray forever.
   constexpr int most_surfaces = 64;
   const std::optional<EmissionSample> emission = sample_emission_of(start, path.sampler, path.w);
-  // Media are left out: how much of their light arrives does not depend on shadow alone.
+  // Lights that are media have no shadow photons: shadow alone does not decide how much of their light arrives.
   if (!emission || emission->flux.is_black() || is_volume(start.light)) return;
   Ray ray = spawn_from_light(*emission, time);
   // Surfaces in front of a portal occlude it.

@@ -43,7 +43,7 @@ Continuation TwoPassVisitor::operator()(const MediumVertex& vertex) {
   return Continuation::go_on();
 }
 
-// Light of photons in a medium that the camera sees directly, or else through a surface.
+// Adds the light of photons in a medium. `is_first`: the camera sees the medium directly, not through a surface.
 void TwoPassVisitor::add_photons(const WalkState& state, bool is_first, const GatheredLight& light) {
   begin(is_first ? Term::caustic : Term::specular);
   layers.add(state.non_delta == 0 ? PathClass::caustic : PathClass::indirect, light.caustic, false);

@@ -73,11 +73,12 @@ class EffortChoice {
     return variances_[block * m_.candidates.size() + candidate];
   }
   double variance_around(std::size_t block, std::size_t candidate) const;
-  // Of an eye path, in a block.
+  // Work per eye path in a block.
   double work_of(const EffortBlock& block, const EffortCandidate& c) const;
-  // Of a pass, for each pixel, but for connections to the lens. `light_paths`: over those of the settings.
+  // Work of a pass's light paths per pixel, without their connections to the lens. `light_paths`: relative to the
+  // settings' number.
   double work_of_light(float light_paths) const;
-  // For each pixel of a pass, what the pilot has counted at all of its light paths.
+  // Per pixel of a pass: scales a count that the pilot has taken over all its light paths.
   double count_per_pixel(float light_paths, double of_pilot) const;
   double per_pixel(float light_paths) const;
   void count_work(EffortReport& report) const;
@@ -186,15 +187,15 @@ std::vector<UniformEffort> EffortChoice::uniform_efforts() const {
   return result;
 }
 
-// Light by way of mirrors and clear glass may be too rare for the pilot, and out of reach of eye paths. Photons find
-// it.
+// The pilot may miss light that arrives by way of mirrors and clear glass, and eye paths may be unable to find it.
+// Photons find it.
 bool EffortChoice::finds_all_light(const EffortCandidate& c) const {
   const bool in_media = m_.candidates.back().merges_in_media;
   return !has_specular_ || (c.merges && c.merges_in_media == in_media);
 }
 
-// The least product of variance and work with so many light paths: each block takes what reduces the sum of its shares
-// of both most, until the shares stay.
+// Minimises the product of variance and work for this number of light paths. In each round, every block takes the
+// candidate whose shares of the total variance and of the total work have the smallest sum.
 EffortChoice::Plan EffortChoice::plan_with(float light_paths) const {
   std::vector<std::size_t> able;
   for (std::size_t k = 0; k < m_.candidates.size(); ++k)

@@ -118,7 +118,7 @@ class Pilot {
   static std::size_t pixel_count(const PixelWindow& window) {
     return static_cast<std::size_t>(window.width()) * static_cast<std::size_t>(window.height());
   }
-  // An effort whose only use is `block_of`, the block of a place on the film.
+  // An effort that serves only to find the block of a place on the film (`block_of`).
   static Effort places_of(const PixelWindow& window, const PilotGrid& grid) {
     return {0, window, grid.columns(), std::vector<PlaceEffort>(grid.block_count()), {}};
   }
@@ -190,7 +190,8 @@ void Pilot::trace_light(const VcmPass& pass) {
   }
 }
 
-// Per cell and pass there is one eye path, but both sets of light paths reach all pixels; hence the share.
+// Each cell has one eye path per pass, but both sets of light paths reach all pixels of its block; `share_of`
+// compensates for this.
 void Pilot::add(std::span<const SeenLight> seen) {
   const auto share_of = [](const EffortBlock& block) {
     return static_cast<double>(sqr(PilotGrid::cells_per_block)) / (2 * block.pixels);
@@ -217,7 +218,7 @@ void Pilot::add(std::span<const SeenLight> seen) {
   });
 }
 
-// Sums of all candidates take some kilobytes: those of one cell at a time stay in the core's own cache.
+// The sums of all candidates take some kilobytes. Processing one cell at a time keeps its sums in the core's own cache.
 void Pilot::trace_eye(const VcmPass& pass, const VcmPass& other) {
   for_each_cell_by_blocks([&](EffortBlock& block, std::size_t cell) {
     stop_point();

@@ -19,7 +19,7 @@
 
 namespace lanthorn {
 
-/// A photon to be merged; its position is the index's.
+/// A photon to be merged. The index stores its position.
 struct MergePhoton {
   Spectrum power;  ///< watts, over the light paths of the pass, times grazing_gain
   Direction wi{0, 0, 1};
@@ -30,7 +30,7 @@ struct MergePhoton {
   bool dispersed = false;
 };
 
-/// The same at its place, with the interface of `PhotonMap::Ref`.
+/// A MergePhoton with its position and the interface of `PhotonMap::Ref`.
 struct PlacedMergePhoton {
   const MergePhoton& photon;
   Point place;
@@ -55,7 +55,7 @@ inline PathClass class_of_merge(const WalkState& state, int depth, bool caustic)
 /// The vertices of light paths at which photons of one class are merged, sorted for queries of a largest radius.
 class MergeMap {
  public:
-  /// Vertices of `least_depth` and more.
+  /// Stores the vertices of depth `least_depth` or more.
   MergeMap(const LightVertices& vertices, int least_depth, float radius, int flux_class) {
     const std::vector<const LightVertex*> merged = vertices.select([&](const LightVertex& v) {
       return !v.phase && v.flux_class == flux_class && v.depth >= least_depth && merges_at(v.at);

@@ -12,7 +12,8 @@ namespace lanthorn {
 
 FirstMergeRadii::FirstMergeRadii(const RenderJob& job, const VcmSettings& settings, const LightGuide* guide) {
   constexpr double photons_of_first_merge = 16;
-  // With connections, MIS leaves the light of few photons to these, and discs of equal size have less noise.
+  // With connections, MIS leaves light that only few photons carry to the connections; discs of equal size then have
+  // less noise.
   const bool by_flux = !settings.switches.connections;
   View reach = job.view;
   reach.window = window_ = job.view.filter_reach();
@@ -58,7 +59,7 @@ float VolumeKernels::widest_radius() const {
 }
 
 VolumeMerging VolumeKernels::merging(float light_paths, float beam_share) const {
-  // The size of the box kernel that equals it.
+  // Size of the equivalent box kernel.
   const auto size = [](const std::optional<KernelIn>& kernel) { return kernel ? kernel->box_size() : 0.0f; };
   return {light_paths * size(point), light_paths * size(beam), light_paths * beam_share * size(photon_beam),
           light_paths * beam_share * size(beams)};

@@ -21,7 +21,7 @@ namespace lanthorn {
 /// The kernel of merging on surfaces.
 inline constexpr Kernel merge_kernel{KernelShape::epanechnikov};
 
-/// The radii of the first pass on surfaces: of each place on the film, and of each class of photons by flux.
+/// Radii of merging on surfaces in the first pass, for each place on the film and each class of photon flux.
 class FirstMergeRadii {
  public:
   FirstMergeRadii() = default;
@@ -36,22 +36,24 @@ class FirstMergeRadii {
   PixelWindow window_;
 };
 
-/// Factor by which the radii of merging on surfaces have shrunk in a pass whose light paths are `light_paths` times as
-/// many as those that the first radii are measured for. Radii depend on the photons of all passes so far.
+/// Factor by which the radii of merging on surfaces have shrunk in a pass. `light_paths`: the pass's number of light
+/// paths relative to the number that the first radii are measured for. Radii depend on the photons of all passes so
+/// far.
 float merge_radius_shrink(double alpha, std::uint32_t pass, double light_paths);
 
-/// The radii of a pass on surfaces over those of the first pass: one number for all pixels, or one for each.
+/// Radii of merging on surfaces in a pass, relative to those of the first pass: one number for all pixels, or one for
+/// each.
 ///
 /// A wide disc has little noise, and no bias where the density of photons is uniform. There radii hardly need to
 /// shrink: after each test that a pixel passes, they follow the schedule with α = .9. After each test that it fails,
 /// the area is halved, until it is that of the schedule with `alpha`, α < .9. Before the first test and after the last
-/// one all radii shrink by this schedule, so that all bias vanishes.
+/// one, all radii shrink by the schedule with `alpha`, so that all bias vanishes.
 class MergeShrinks {
  public:
-  /// For all pixels.
+  /// One factor for all pixels.
   explicit MergeShrinks(float shrink) { by_history_.fill(shrink); }
-  /// For each pixel by its tests before the pass, which this object keeps a reference to. `light_paths`: as of
-  /// merge_radius_shrink.
+  /// A factor for each pixel, from the tests that were made before the pass. Keeps a reference to `tests`.
+  /// `light_paths`: as for merge_radius_shrink.
   MergeShrinks(const UniformityTests& tests, double alpha, std::uint32_t pass, double light_paths);
 
   float at(std::uint32_t pixel) const { return by_history_[tests_ ? tests_->passed(pixel) : 0]; }
@@ -64,13 +66,13 @@ class MergeShrinks {
   std::array<float, UniformityTests::histories> by_history_{};
 };
 
-/// The radii of a pass on surfaces, m. Keeps a reference to those of the first.
+/// Radii of merging on surfaces in a pass, m. Keeps a reference to those of the first pass.
 class MergeRadii {
  public:
   MergeRadii(const FirstMergeRadii& first, const MergeShrinks& shrinks) : first_(&first), shrinks_(shrinks) {}
 
   const FluxClasses& classes() const { return first_->radius_.classes(); }
-  /// The pixel whose radius eye paths through this place on the film have.
+  /// The pixel whose radii apply to eye paths through this place on the film.
   std::uint32_t pixel_at(const Vec2& raster) const { return first_->window_.pixel_at(raster); }
   /// Radius of all merges of eye paths through this place on the film with photons of a class.
   float at(const Vec2& raster, int flux_class = 0) const {
@@ -85,7 +87,7 @@ class MergeRadii {
   MergeShrinks shrinks_;
 };
 
-/// The estimators that a method merges by in media, with their radii of a pass. Empty: not used.
+/// The kernels of a pass for merging in media, by estimator. Empty: the estimator is not used.
 struct VolumeKernels {
   std::optional<KernelIn> point, beam, photon_beam, beams;
 
@@ -94,7 +96,7 @@ struct VolumeKernels {
   float widest_radius() const;
   bool uses_points() const { return point || beam; }
   bool uses_beams() const { return photon_beam || beams; }
-  /// The data of MIS weights. `beam_share`: of the light paths whose flights are kept.
+  /// The data for MIS weights. `beam_share`: share of the light paths whose flights are kept.
   VolumeMerging merging(float light_paths, float beam_share) const;
 };
 

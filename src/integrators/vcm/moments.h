@@ -36,7 +36,7 @@ struct EffortCandidate {
     if (technique == &TechniqueDensities::lens && !sees) return 0;
     return light_paths;
   }
-  /// The densities of all techniques with these numbers.
+  /// Sum of the densities of all techniques with these numbers of samples.
   float all(const TechniqueSum& s) const { return of(s.within) + (goes_on ? of(s.beyond) : 0.0f); }
 
  private:
@@ -86,7 +86,7 @@ class PathMoments {
   int set = 0;                   ///< the set of light paths that the contribution comes from: 0 or 1
   float light = 0, by_walk = 0;  ///< X with the first set, and the part of it that needs no light path
 
-  /// `is_short`: a short eye path does it, too.
+  /// `is_short`: a short eye path performs this operation, too.
   void count(double EyeWork::*what, bool is_short) {
     ++(work.*what);
     if (is_short) ++(short_work.*what);

@@ -49,7 +49,7 @@ class UniformityTests {
   /// Call when all photons of the pass have been counted.
   void end_pass();
 
-  /// Bit t: whether the pixel has passed test t. Those of the tests that are not made yet are 0.
+  /// Bit t: whether the pixel has passed test t; 0 for tests that have not been made yet.
   std::uint8_t passed(std::uint32_t pixel) const { return passed_[pixel]; }
   std::size_t pixel_count() const { return passed_.size(); }
 

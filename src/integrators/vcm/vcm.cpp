@@ -64,7 +64,7 @@ struct UntilFirstMerge {
   auto operator()(const Event& event) { return visitor(event); }
 };
 
-// Traces as much of a pass as its counts of photons depend on.
+// Traces only the part of a pass on which its photon counts depend.
 void count_photons(VcmPass& pass) {
   const RenderJob& job = pass.job;
   pass.sees = false;
@@ -121,7 +121,7 @@ class VertexConnectionAndMerging final : public Integrator {
     return settings_.chooses_effort && prepared_ ? prepared_->effort.findings() : std::string();
   }
   bool passes_share_wavelengths() const override { return true; }
-  // Until the tests of the radii are done, each pass adds to them in its turn.
+  // Until the tests of the radii are done, passes must add their counts one after the other.
   bool passes_may_overlap() const override { return !tests_ || tests_->are_done(); }
   void prepare(const RenderJob& job) override {
     prepared_.emplace(job, settings_);

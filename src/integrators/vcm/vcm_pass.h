@@ -35,9 +35,9 @@ struct VcmPreparation {
   VcmPreparation& operator=(const VcmPreparation&) = delete;
 };
 
-/// One pass. Its light paths come in blocks (`LightPathBlocks`): those of a block are traced, sorted, and met by all
-/// eye paths before those of the next. Keeps references to all that it is made from. `tests`: see MergeShrinks; null if
-/// all radii shrink alike.
+/// One pass. Its light paths come in blocks (`LightPathBlocks`): the light paths of one block are traced, sorted, and
+/// met by all eye paths before the next block begins. Keeps references to everything that it is made from. `tests`: see
+/// MergeShrinks; null if all radii shrink alike.
 struct VcmPass {
   const RenderJob& job;
   const VcmSettings& settings;

@@ -55,10 +55,10 @@ std::array<bool, volume_estimator_count> merged_in_media(const Parameters& param
   return result;
 }
 
-// Every light vertex costs a connection to the lens and one to an eye path: more of them than pixels do not pay.
+// Every light vertex costs a connection to the lens and one to an eye path: more light paths than pixels do not pay.
 constexpr LightPathRange light_path_range{.fewest = 10'000};
-// The pilot may choose four times as many: in large pictures one for each pixel of 1920 x 1080, which bounds the
-// memory.
+// The pilot may choose up to four times as many: about one for each pixel of 1920 x 1080, which bounds the memory of
+// large pictures.
 constexpr LightPathRange range_of_auto{.fewest = 10'000, .most = 1u << 19};
 
 ParameterInfo merge_reduction_info(const char* default_alpha) {

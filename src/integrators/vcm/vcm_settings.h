@@ -25,8 +25,8 @@ struct VcmSwitches {
   bool merging = true;
 };
 
-/// One of the strategies of bidirectional path tracing: `s` vertices of the path, its light's point among them, are the
-/// light walk's, and `t`, the lens among them, the eye walk's (Veach 1997, section 10.2).
+/// A strategy of bidirectional path tracing: the light walk makes `s` vertices of the path, including the point on the
+/// light, and the eye walk makes `t`, including the point on the lens (Veach 1997, section 10.2).
 struct Strategy {
   int s = 0, t = 0;
 

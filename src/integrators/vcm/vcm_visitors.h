@@ -105,7 +105,7 @@ struct EyeContinuation : Continuation {
   WalkShare towards(float pdf) const { return {1, goes_on && (!by_delta_alone || pdf == infinity) ? 1.0f : 0.0f}; }
 };
 
-/// Step 3: finds the light of an eye path by all techniques but the lens.
+/// Step 3: finds the light of an eye path by all techniques except connections to the lens.
 class EyeVisitor {
  public:
   // The path starts (TR eqs. 31-33).
@@ -187,7 +187,7 @@ class EyeVisitor {
 
   bool merges_in_media() const { return pass_.volume_merges && bidirectional_.techniques.volume_part > 0; }
 
-  // `is_weighed`: other techniques make the light as well.
+  // `is_weighed`: other techniques find this light, too.
   template <class Vertex>
   void add_hit(const Vertex& v, const Spectrum& light, bool is_weighed) {
     if (moments_ && !is_weighed) bidirectional_.weigh({.within = {.walk = 1}});
@@ -198,12 +198,12 @@ class EyeVisitor {
     if (moments_) moments_->add(flux_of(light, dispersed, path_.w), technique);
   }
 
-  // Whether the path connects and merges where it is.
+  // Whether the path connects and merges at its current vertex or flight.
   bool looks_for_light(const WalkState& state) const {
     return state.non_delta == 0 || bidirectional_.techniques.goes_on;
   }
 
-  // Rays of the walk are counted elsewhere.
+  // Counts rays that short eye paths trace, too; the rays of the whole walk are counted elsewhere.
   void count_ray(const WalkState& arrived) {
     if (moments_ && arrived.non_delta <= 1) ++moments_->short_work.rays;
   }
@@ -233,8 +233,8 @@ class EyeVisitor {
   }
 
   // Vertex merging (TR eqs. 38, 39): a density estimate of the radiance from the photons (Georgiev et al. 2012, eq.
-  // 10), with a weight for each. Photons of all classes of flux have the weights of the first class's radius, so that
-  // those of a path's techniques sum to one.
+  // 10), with a weight for each. Photons of all flux classes are weighted with the first class's radius, so that the
+  // weights of a path's techniques sum to one.
   void merge(const SurfaceVertex& v) {
     const GatherVertex gather(v);
     const Techniques& t = bidirectional_.techniques;

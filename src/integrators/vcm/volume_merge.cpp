@@ -137,7 +137,7 @@ struct Visitor {
 template <class Item, class Take>
 Visitor(const MergeSum&, const std::vector<const Item*>&, const KernelIn&, Take) -> Visitor<Item, Take>;
 
-// Fraction of flux that is left of beams that reach the next surface.
+// Fraction of a beam's flux that is left at its point s, for beams that reach the next surface.
 struct LongBeams {
   const PathContext& path;
   const Medium& medium;
@@ -194,7 +194,7 @@ void add_points_at(const MergeSum& sum, const MediumVertex& at, const VolumeArri
                  Visitor{sum, points.items, kernel, take});
 }
 
-// Beams around that point.
+// Beams around the point where the eye path scatters.
 template <class Beams>
 void add_beams_at(const MergeSum& sum, const MediumVertex& at, const VolumeArrival& eye, const Beams& beams,
                   const KernelIn& kernel) {

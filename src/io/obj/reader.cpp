@@ -33,7 +33,7 @@ struct CornerHash {
   }
 };
 
-/// The faces of one material that agree in having texture coordinates and normals or not.
+/// The faces of one material that all have or all lack texture coordinates, and likewise normals.
 struct Part {
   TriangleMesh mesh;
   std::unordered_map<Corner, std::uint32_t, CornerHash> vertices;
@@ -222,7 +222,7 @@ class Reader {
     return static_cast<std::uint32_t>(i > 0 ? i - 1 : n + i);
   }
 
-  // An index of texture coordinates or normals, which some files refer to without having any.
+  // An index of texture coordinates or normals. Some files use such indices although they contain no such elements.
   std::uint32_t attribute(std::int64_t i, std::size_t count, const Word& word, const char* what) {
     if (count > 0) return index(i, count, word, what);
     warn(what, words_.location(word), std::string("faces refer to a ") + what + ", but none precedes them: ignored");

@@ -40,7 +40,7 @@ struct Context {
   /// Adds the warning, or counts it in an earlier one with this `key`: one warning per kind of problem.
   void warn(std::string_view key, Place place, const std::string& message) { warn(key, place.location(), message); }
   void warn(std::string_view key, const SourceLocation& place, const std::string& message);
-  /// The error for a kind that the file's version does not have. `what`: "material".
+  /// The error for a kind that the file's version does not have. `what`: such as "material".
   Error unknown(std::string_view what, std::string_view directive, const std::string& kind, Place place) const;
   /// Adds the file `name` to the scene's files and returns its path: absolute, or in the scene's folder, or where
   /// `find_file` finds it.

@@ -66,8 +66,9 @@ Wrap wrap_mode(const ParameterList& list) {
   throw list.error("wrap", "must be repeat, black, clamp or octahedralsphere, not " + in_quotes(wrap));
 }
 
-// Paths carry no footprint from which to choose a level of detail; the pixel's samples filter the texture. Therefore
-// all filters except "point" are equivalent.
+// The filter does not choose a level of detail: the samples of a pixel filter the texture. Therefore all filters except
+// "point" are equivalent. Where large images are averaged over footprints (`TextureGraph::evaluate_filtered`), this
+// does not depend on the filter.
 ImageFilter image_filter(const ParameterList& list) {
   const std::string filter = list.get("filter", "bilinear");
   list.find("maxanisotropy");

@@ -87,7 +87,7 @@ Upgraded upgrade_sampler(const std::string& kind, OldParameters old) {
 
 namespace {
 
-// A pbrt-v2 integrator. Lanthorn's method of the same name has its parameters under other names.
+// A pbrt-v2 integrator. Lanthorn's method of the same name has the same parameters under other names.
 Upgraded upgrade_photon_map(const std::string& kind, OldParameters old, UpgradeOutput& output) {
   constexpr std::array<Renamed, 4> names = {{{"causticphotons", "caustic-photons"},
                                              {"finalgathersamples", "gather"},

@@ -31,8 +31,8 @@ struct AdaptiveRadiusSettings {
 
 /// One radius for each point. `Tally` collects statistics during a gather; `update` takes them after it. `radius` is
 /// the radius of the equivalent box kernel; `reach` is the distance up to which the tally needs photons. `is_possible`:
-/// whether passes of a render whose first radii are at most `largest` (m) may have led to this object; its bytes may
-/// come from a file.
+/// whether a render whose first radii are at most `largest` (m) can have produced this object; its bytes may come from
+/// a file.
 template <class R>
 concept AdaptiveRadius = std::is_trivially_copyable_v<R> && std::constructible_from<R, float> &&
     std::constructible_from<typename R::Tally, const R&, const AdaptiveRadiusSettings&> &&
@@ -46,14 +46,14 @@ concept AdaptiveRadius = std::is_trivially_copyable_v<R> && std::constructible_f
 
 /// True for radii (m) that a search for photons can use: finite, at least 0 and at most `largest`.
 inline bool is_radius(float radius, float largest) { return radius >= 0 && radius <= largest && std::isfinite(radius); }
-/// True for sums of numbers that are not negative.
+/// True if the number can be a sum of non-negative numbers: finite and at least 0.
 template <class Number>
 bool is_positive_sum(Number sum) {
   return sum >= 0 && std::isfinite(sum);
 }
 
 /// Progressive photon mapping (Hachisuka, Ogaki & Jensen 2008, eqs. 8 to 10; per pixel: Hachisuka & Jensen 2009): of M
-/// new photons αM are kept, N' = N + αM, and the radius makes the density what it was: r'² = r² N' / (N + M).
+/// new photons αM are kept, N' = N + αM, and the new radius preserves the density: r'² = r² N' / (N + M).
 class HachisukaRadius {
  public:
   explicit HachisukaRadius(float first) : radius_(static_cast<double>(first)) {}

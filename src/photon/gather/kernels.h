@@ -61,10 +61,10 @@ struct Kernel {
   /// 0 <= dist2 <= support2.
   float weight(float dist2, float support2) const { return profile(dist2 / support2) * inv_pi / support2; }
 
-  /// Estimate of the bias that a photon at u = dist²/R² brings into an estimate, over the photon's contribution. The
-  /// photons within R/√2 make another estimate. The bias of both is proportional to the square of their radii where
-  /// light is smooth (Silverman 1986, eq. 4.8), so that their difference is half of the wider one's.
-  /// `dimensions`: of the kernel's support.
+  /// A photon's contribution to the estimated bias, relative to its contribution to the light; u = dist²/R². The
+  /// photons within R/√2 give a second estimate of the light. Where light is smooth, the bias of either estimate is
+  /// proportional to the square of its radius (Silverman 1986, eq. 4.8), so that the difference between the two is half
+  /// the bias of the wider one. `dimensions`: of the kernel's support.
   float bias_share(float u, int dimensions = 2) const {
     if (u >= 0.5f) return 2;
     constexpr std::array<float, 4> peaks{1, std::numbers::sqrt2_v<float>, 2, 2 * std::numbers::sqrt2_v<float>};

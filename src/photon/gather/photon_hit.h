@@ -28,7 +28,7 @@ inline bool is_on_surface(float height, float cosine, float flight, float reach)
   const bool set_out_behind = lit_height < -in_plane && lit_height + flight * std::fabs(cosine) <= in_plane;
   return is_in_disc(height, reach) && !set_out_behind;
 }
-/// The same of one photon at several gather points.
+/// `is_on_surface` for one photon at several gather points.
 inline LaneMask are_on_surface(const Lanes& height, const Lanes& cosine, float flight, float reach) {
   const float in_plane = plane_flatness * reach;
   const Lanes lit_height = select(0.0f < cosine, height, 0.0f - height);
@@ -36,7 +36,7 @@ inline LaneMask are_on_surface(const Lanes& height, const Lanes& cosine, float f
   return (abs(height) <= search_flatness * reach) & ~set_out_behind;
 }
 
-/// The same for a photon and a point, whose surface has that normal.
+/// The same for a photon and a point whose surface has the normal `normal`.
 template <class Photon>
 bool lies_on(const Photon& photon, const Point& p, const Normal& normal, float reach) {
   const float height = dot(photon.position() - p, normal);
@@ -70,11 +70,11 @@ class GatherVertex {
 
   /// False if the light path and the eye path together would have too many scatterings.
   bool admits(const PhotonFlags& flags) const { return flags.eye_scatterings >= vertex_.state.depth - 1; }
-  /// Whether the light that a photon brings is dispersed; `photon`: by the photon's path.
+  /// Whether the light that a photon brings is dispersed. `photon`: whether the photon's own path is.
   bool is_dispersed(bool photon) const { return is_dispersed_ || photon; }
 
   /// Empty if the surface scatters none of a photon's light to the eye. `wi` is the direction to the photon's previous
-  /// vertex, world space. `both_densities`: with that of the reverse direction.
+  /// vertex, world space. `both_densities`: also computes the density of the reverse direction.
   template <bool both_densities = false>
   std::optional<PhotonHit> scatter(const Direction& wi) const {
     std::optional<PhotonHit> result;

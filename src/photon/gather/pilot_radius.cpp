@@ -75,7 +75,7 @@ class PilotPhotons {
     point.distance2 = found.front().dist2 * classes.area_factor(point.flux);
   }
 
-  // True if photons of much more than the typical flux carry so much of the light that they are seen as bright spots.
+  // True if photons with much more than the typical flux carry enough of the light to appear as bright spots.
   bool are_uneven(float typical) const {
     constexpr float much = 8;
     constexpr double part = 0.01;
@@ -145,7 +145,7 @@ float typical_of_found(std::vector<float> values) {
 // The photons of a pilot pass, and the gather points of eye paths among them.
 class Pilot {
  public:
-  // `by_flux`: radii are to be those of the first class of flux.
+  // `by_flux`: measures the radii of the first flux class.
   Pilot(const RenderJob& job, const LightGuide* guide, bool by_flux = false)
       : job_(job), draw_(draw_for_pass(job, 0)), photons_(std::min(pilot_photons, job.settings.photons)) {
     PhotonTracer tracer;
@@ -178,8 +178,8 @@ class Pilot {
   }
 
  private:
-  // Squared distances are proportional to 1 / density. Scales from the pilot's numbers of photons and neighbours to
-  // those of a pass.
+  // Factor for squared distances, which are proportional to 1 / density: converts from the pilot's numbers of photons
+  // and neighbours to those of a pass.
   float scale2(double wanted_photons) const {
     return static_cast<float>(wanted_photons / static_cast<double>(pilot_neighbours) * photons() /
                               static_cast<double>(std::max<std::uint64_t>(1, job_.settings.photons)));

@@ -48,7 +48,7 @@ class FirstRadius {
   float at(std::uint32_t pixel) const { return per_pixel_.empty() ? typical_ : per_pixel_[pixel]; }
   /// Classes of the photons' flux; radii are those of the first class.
   const FluxClasses& classes() const { return classes_; }
-  /// Radius of a class of photons over that of the first, which is `radius` now.
+  /// Ratio of a class's radius to the first class's radius, which currently is `radius`.
   float class_factor(int flux_class, std::uint32_t pixel, float radius) const {
     if (flux_class == 0) return 1;
     return std::clamp(widest_[pixel] / radius, 1.0f, FluxClasses::radius_factor(flux_class));
@@ -63,7 +63,7 @@ class FirstRadius {
   FluxClasses classes_;
 };
 
-/// The radii of a pass, m: those of the first pass, which it keeps a reference to, times `shrink`.
+/// The radii of a pass, m: those of the first pass times `shrink`. Keeps a reference to the radii of the first pass.
 class PassRadii {
  public:
   PassRadii(const FirstRadius& first, float shrink) : first_(&first), shrink_(shrink) {}

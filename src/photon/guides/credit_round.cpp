@@ -13,7 +13,8 @@ namespace lanthorn {
 
 namespace {
 
-// Light paths of a round: those of a pass, but enough to learn from, and no more than the cells can use.
+// Limits on the number of light paths of a round, which is otherwise that of a pass: enough to learn from, and no more
+// than the cells can use.
 constexpr std::uint64_t least_of_round = 16384, most_of_round = 65536;
 
 struct PilotPhotonVisitor {

@@ -24,7 +24,7 @@ struct CreditedStart {
   float credit = 0;
 };
 
-/// A photon that such a path leaves.
+/// A photon that a light path of a round leaves.
 struct PilotPhoton {
   Point position{0};
   Normal normal{0};  ///< 0 in a medium

@@ -24,7 +24,7 @@ constexpr int rounds = 4;
 // Share of the photons that ignore the guide: while learning, and with the finished guide.
 constexpr float exploring_share = 0.5f, defensive_share = 0.25f;
 
-// Boxes around a few neighbouring points each, by halving at the median.
+// Boxes that each hold a few neighbouring points, made by halving at the median.
 void add_boxes(std::span<Point> points, std::vector<PhotonBox>& to) {
   constexpr std::size_t most_points = 16;
   if (points.empty()) return;
@@ -78,9 +78,9 @@ void credit_seeds(std::vector<CreditedStart>& seeds, const std::vector<CreditedS
 // caustic photons end at the first wide lobe.
 bool guides_directions(PhotonUse use) { return use == PhotonUse::indirect || use == PhotonUse::gathering; }
 
-// Photons distributed among the lights by power. With a projection map's own masses, an environment with a coarse map
-// would get almost all of them. Lights that would get next to none, because others are far stronger, get some all the
-// same: they may be all the light of a part of the picture.
+// Photons shared among the lights by power. If they were shared by the masses of a projection map, an environment with
+// a coarse map would get almost all of them. A light that far stronger ones would leave next to no photons gets some
+// all the same: it may provide all the light of a part of the picture.
 EmissionGuide shared_by_power(EmissionGuide guide, const Scene& scene) {
   constexpr float least = 1.0f / 16;  // of an even share
   const std::vector<float> by_power = emission_probabilities(scene.lights());
@@ -106,8 +106,8 @@ LearnedEmission learn_emission(const RenderJob& job, PhotonUse use, bool in_medi
   if (std::none_of(scene.lights().begin(), scene.lights().end(), has_power)) return {};
   const PassDraw draw = draw_for_pass(job, 0);
   const std::vector<HitPoint> hits = find_hit_points(job, use, in_media, draw);
-  // The first round uses projection maps, also that of mirrors and glass: in large scenes few photons emitted by power
-  // reach a visible surface.
+  // The first round uses projection maps, including that of mirrors and glass: in large scenes, few of the photons that
+  // are emitted by power reach a visible surface.
   Landings landings = find_landings(job, use, in_media, draw);
   if (!may_gain(scene, landings)) return {};
   const std::optional<AimedDisks> disks = disks_around(landings.places, hits, scene.bounding_sphere());

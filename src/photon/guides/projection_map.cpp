@@ -24,9 +24,9 @@ using Cell = TreeDistribution::Cell;
 constexpr float uniform_share = 1.0f / 16;
 // Largest number of cells with a target in their way, for all lights together and for one light.
 constexpr double cells_of_scene = 32768, cells_of_light = 4096;
-// Each cell has a list of the balls that it may meet. Bounds on the number of balls and on the entries of the lists of
-// one level of the subdivision, for each cell that a light may have, keep the lists of a light below 200 MB: those of
-// one level, and those of the next, which are at most twice as long.
+// Each cell has a list of the balls that it may meet. The lists of one level of the subdivision are in memory together
+// with those of the next, which are at most twice as long. Bounds on the number of balls, and on the list entries of a
+// level for each cell that a light may have, keep the lists of a light below 200 MB.
 constexpr std::size_t most_balls = 1 << 18, entries_per_cell = 4096;
 
 /// A bound of a cell's photons: origins in a sphere, directions within an angle of an axis.

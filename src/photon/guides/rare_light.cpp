@@ -124,7 +124,7 @@ class LandingMap {
   IndexBuild<BucketKdTree> built_;
 };
 
-// A light of radiance L that makes the irradiance E is met by the share E / (πL) of diffuse directions.
+// Where a light of radiance L makes the irradiance E, the share E / (πL) of diffuse directions meets it.
 void find_chances(PilotLight& pilot) {
   const LandingMap map(pilot.first);
   for (const Landing& landing : pilot.first) {
@@ -157,7 +157,7 @@ struct ShareVisitor {
       if (fate.chance < least_chance) rare += landing.flux;
       square += landing.flux / std::max(fate.chance, 1e-6f);
     });
-    // Light of share s that directions meet with probability c is s / c with that probability: its variance is s² / c.
+    // Directions meet light of share s with probability c, and then bring s / c: the variance is s² / c.
     if (all > 0) share = (hidden * square > most_noise * sqr(all) ? hidden : rare) / all;
     return Continuation::stop();
   }

@@ -54,11 +54,11 @@ struct EyeRay {
         begin_normal(along(flight.begin_normal)),
         end_normal(along(flight.end_normal)) {}
 
-  /// The part of the line beside which points up to `aside` (m) from it may lie between the planes of the end surfaces.
+  /// The part of the line from which points at most `aside` (m) away may lie between the planes of the end surfaces.
   RaySegment between_planes(float aside) const {
     return {ray.origin, ray.direction, ray.begin - beyond(begin_normal, aside), ray.end + beyond(end_normal, aside)};
   }
-  /// The part of the ray beside which all points up to `aside` (m) from it lie between the planes. May be empty.
+  /// The part of the ray around which all points at most `aside` (m) away lie between the planes. May be empty.
   RaySegment clear_of_planes(float aside) const {
     return {ray.origin, ray.direction, ray.begin + extent(begin_normal, aside), ray.end - extent(end_normal, aside)};
   }
@@ -67,7 +67,7 @@ struct EyeRay {
     return dot(from_begin, begin_normal) >= 0 &&
            (end_normal == Normal(0) || dot(from_begin - ray.end * ray.direction, end_normal) <= 0);
   }
-  /// t of a point of `between_planes`, on the ray: those beyond an end are mirrored at it.
+  /// Maps t of a point of `between_planes` to the ray: points beyond an end are mirrored at it.
   float on_ray(float t) const { return t > ray.end ? 2 * ray.end - t : std::fabs(t); }
 
  private:
@@ -76,13 +76,14 @@ struct EyeRay {
     return {eye.medium, {eye.ray.origin, eye.ray.direction, eye.ray.end}, path.w, rng};
   }
   Normal along(const Normal& n) const { return dot(n, ray.direction) < 0 ? -n : n; }
-  /// How far the plane through an end reaches along the ray, before and beyond the end, within `aside` (m) of it, m.
+  /// How far (m) along the ray, before and beyond an end, the plane through that end reaches within `aside` (m) of the
+  /// ray.
   float extent(const Normal& n, float aside) const {
     if (n == Normal(0)) return 0;
     const float cosine = dot(n, ray.direction);
     return cosine > 0 ? aside * safe_sqrt(1 - sqr(cosine)) / cosine : infinity;
   }
-  /// The same, but never so far that mirroring at the end would leave the ray.
+  /// The same, limited so that mirroring at the end never leaves the ray.
   float beyond(const Normal& n, float aside) const {
     constexpr float most = 16;
     return std::min({extent(n, aside), most * aside, ray.end});
@@ -97,9 +98,9 @@ inline Spectrum along_beam(const PathContext& path, const Medium& medium, const 
 }
 
 /// Photons in a disc across the ray, each at the place where the ray passes it (Jarosz et al. 2008, eq. 14), at most
-/// `aside` (m) from it. The cylinder ends at the planes of the surfaces at the ray's ends. With ends across the ray, it
-/// would partly lie behind a surface that the ray meets at an angle, where there are no photons or those of another
-/// room. A uniform density between the planes is thus estimated without bias.
+/// `aside` (m) from it. The cylinder ends at the planes of the surfaces at the ray's ends. If it were cut off
+/// perpendicular to the ray, it would partly lie behind a surface that the ray meets at an angle, where there are no
+/// photons or those of another room. A uniform density between the planes is thus estimated without bias.
 template <class Visitor>
 void meet_points_along(const EyeRay& eye, const BallBvh& photons, float aside, Visitor&& visitor) {
   const RaySegment clear = eye.clear_of_planes(aside);
@@ -139,7 +140,7 @@ void meet_points_at(const BallBvh& photons, const Point& p, const Spectrum& scat
   });
 }
 
-/// Beams around such a point.
+/// Beams around a point where the eye path scatters.
 template <class Left, class Visitor>
 void meet_beams_at(const BeamBvh& beams, const Point& p, Left&& left, Visitor&& visitor) {
   beams.for_each_around(p, [&](std::uint32_t slot, float s, float dist2) {

@@ -95,10 +95,10 @@ struct KernelLadder {
 };
 
 /// Estimates from a pass's photons in media. Photons that a delta light has sent through mirrors and clear glass alone
-/// count in full, because no walk can find their light, all others by the share `gather_probability`.
+/// count in full, because no walk can find their light; all others count with the share `gather_probability`.
 class VolumeGather {
  public:
-  /// The chunks are in path order, of the records that the estimator needs. `radius`: of the equivalent box kernel, m.
+  /// `chunks`: the records that the estimator needs, in path order. `radius`: of the equivalent box kernel, m.
   VolumeGather(VolumeEstimator estimator, const Kernel& kernel, float radius,
                std::span<const std::vector<MediumPhoton>> chunks, ColorMode mode)
       : estimator_(estimator),
@@ -112,8 +112,8 @@ class VolumeGather {
   /// Radiance that the medium scatters towards the eye at the vertex, times the walk's beta. Black for estimators along
   /// flights.
   GatheredLight at(const PathContext& path, const MediumVertex& vertex) const;
-  /// Adds the same by each of the kernels to `sums`, in all wavelengths together, and returns the number of photons.
-  /// `flown`: from the eye to the flight's start or to the vertex, m.
+  /// Adds the same estimate by each of the kernels to `sums`, summed over wavelengths, and returns the number of
+  /// photons. `flown`: from the eye to the flight's start or to the vertex, m.
   std::size_t compare_along(const PathContext& path, const FlownSegment& flight, float flown,
                             const KernelLadder& ladder, std::span<float> sums) const;
   std::size_t compare_at(const PathContext& path, const MediumVertex& vertex, float flown, const KernelLadder& ladder,

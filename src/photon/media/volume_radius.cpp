@@ -30,8 +30,9 @@ constexpr int most_halvings = 10;
 constexpr std::size_t rungs = 20;
 // Light closer to the eye than this many of the widest radii counts less.
 constexpr float near_in_radii = 4;
-// Number of passes whose noise is weighed against the blur. If radii shrink with α = 2/3, the best first radius is that
-// of 3 passes for blur that falls as their square, and that of all passes for blur that does not fall.
+// Number of passes whose noise is weighed against the blur. If radii shrink with α = 2/3 and blur falls with the square
+// of the radius, the best first radius is the one that suits 3 passes; if blur does not fall, it is the one that suits
+// all passes.
 constexpr double noisy_passes = 8;
 // Assumed variance of a pass from other causes, over squared light: if it is large, more passes gain more than a wider
 // radius. It is .1 to .6 in bench/media.
@@ -84,7 +85,7 @@ class SquaresOfMeans {
       }
     }
   }
-  // How much less squared error by blur `rung` has than `other`.
+  // How much smaller the squared error by blur is for `rung` than for `other`.
   double gain(std::size_t rung, std::size_t other) const { return blur(all_, other) - blur(all_, rung); }
   // Standard error of `gain` by the jackknife over sets. The spread over eye paths would not show it, because they
   // share photons.
@@ -195,7 +196,7 @@ class VolumePilot {
     return light_paths * static_cast<double>(share_of_beams(paths_)) / static_cast<double>(share_of_beams(photons));
   }
 
-  // Photons that an eye path meets in the time of all else that a pass does for it.
+  // Number of photons that an eye path can meet in the time of all other work that a pass does for it.
   double most_work() const {
     const PixelWindow film = job_.view.film();
     const double eye_paths = static_cast<double>(film.width()) * film.height();

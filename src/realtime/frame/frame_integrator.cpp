@@ -55,8 +55,7 @@ PixelSample sample_of(const FrameOnCpu& frame, std::size_t pixel, float weight, 
   return sample;
 }
 
-/// Points of the film, the lens and the lights of a pass, which all its pixels share. Returns the weight of its
-/// samples.
+/// Sets the points on film, lens and lights that all pixels of a pass share. Returns the weight of its samples.
 float place_frame(const RenderJob& job, std::uint32_t pass, FrameSettings& settings) {
   Sampler sampler = Sampler::for_pass(job.settings.seed, pass);
   sampler.seek(2);

@@ -45,7 +45,7 @@ struct SpecularVisitor {
   }
 
  private:
-  // `scatterings`: of the walk so far.
+  // `scatterings`: the number so far in the walk.
   bool is_drawn_by_gpu(const WalkState& state, int scatterings) const {
     return !state.last_delta && scatterings < first_depth;
   }
@@ -75,7 +75,8 @@ struct SpecularPlan {
   std::vector<SpecularPath> paths;
 };
 
-/// Block by block of `spacing` pixels squared. The first pixel of each material in a block has the path of all.
+/// Plans paths block by block, each of `spacing` pixels squared. All pixels of a material in a block share the path of
+/// the first of them.
 SpecularPlan plan_paths(const GBuffer& seen, const std::vector<GpuMaterial>& materials, const EyePaths& eye_paths,
                         int spacing) {
   const auto positions = seen.position().read<glm::vec4>({GL_RGBA, GL_FLOAT}, 1);

@@ -31,8 +31,8 @@ struct SpecularPaths {
   int max_depth = 64;          ///< scattering events of a path from light to eye
   Vec2 offset{0}, lens{0.5f};  ///< as FrameSettings
   float time = 0;              ///< s
-  /// A path for each material in blocks of this many pixels squared, whose other pixels show its light, too: an
-  /// approximation if above 1, for an eye that moves.
+  /// Each material has one path in each block of this many pixels squared, and the block's other pixels show its light,
+  /// too: an approximation if above 1, for an eye that moves.
   int spacing = 1;
   EyePaths eye_paths = all_eye_paths;
   bool disperses = true;               ///< as FrameSettings
@@ -46,9 +46,9 @@ class SpecularLight {
   SpecularLight() = default;
   explicit SpecularLight(const gl::ShaderFiles& files);
 
-  /// Follows one path for each pixel (SpecularPaths::spacing: or for several) whose material is_drawn_by_paths or has
-  /// delta lobes. Of the latter, the GPU draws the other lobes; emission that is seen directly is always the
-  /// GPU's. Waits for the GPU. Returns the number of rays, 0 if there is no such pixel.
+  /// Follows one path for each pixel, or for several (`SpecularPaths::spacing`), whose material `is_drawn_by_paths` or
+  /// has delta lobes. In the second case the GPU draws the other lobes; it always draws emission that is seen directly.
+  /// Waits for the GPU. Returns the number of rays, 0 if there is no such pixel.
   std::uint64_t trace(const Scene& scene, const View& view, const GBuffer& seen,
                       const std::vector<GpuMaterial>& materials, const SpecularPaths& paths);
   /// Adds the light that was traced last to the layers that are drawn into, one for each PathClass in its order.

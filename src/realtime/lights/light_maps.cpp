@@ -15,7 +15,7 @@ static_assert(offsetof(LightView, clip) == 80 && sizeof(LightView) % 16 == 0);  
 
 namespace {
 
-// Nearer surfaces than this share of the scene's radius are not lit by a point.
+// A point does not light surfaces that are nearer to it than this share of the scene's radius.
 constexpr float near_share = 1e-6f;
 
 Mat4 clip_of(const WindowRays& rays, const BoundingSphere& sphere) {

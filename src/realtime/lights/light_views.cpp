@@ -142,7 +142,8 @@ void set_windows(LightView& view, const AreaLight& area, const BoundingSphere&, 
   view.windows = cube(view.origin, turned(view.axis, jitter.turn), area.two_sided ? 6 : 5);
 }
 
-/// The part of a window of parallel rays around the focus, as whole texels; nullopt if it were most of the window.
+/// The part of a window of parallel rays around the focus, as whole texels; nullopt if that part would be most of the
+/// window.
 std::optional<WindowRays> window_around(const std::optional<LightFocus>& focus, const WindowRays& whole, int size) {
   if (!focus) return std::nullopt;
   const auto across = static_cast<float>(size);

@@ -24,14 +24,15 @@ struct LightView {
   Point origin{0};
   float position_error = 0;  ///< bound of the distance between the origin and the surface of the light, metres
   Direction axis{0, 0, 1};   ///< of a spot; normal of a surface; towards a far light
-  /// W/sr, of a surface at normal incidence; of far lights W/m². Divided by the probability of the point or direction.
+  /// W/sr of a surface at normal incidence, or W/m² of a far light; divided by the probability of the point or
+  /// direction.
   Vec3 colour{0};
   bool two_sided = false;
   float cone_start = 4, cone_end = 4;  ///< 1 - cos of a spot's angles; 4: no cone
   bool square_falloff = false;
   bool is_all_around = false;  ///< one direction of light all around
-  /// The 6 faces of a cube around a point, 5 of them for a surface, otherwise 1. For parallel light in a large scene 2:
-  /// the first covers some whole texels of the second, around the focus.
+  /// The 6 faces of a cube around a point, 5 of them for a surface, otherwise 1. Parallel light in a large scene has 2
+  /// windows: the first covers some whole texels of the second, around the focus.
   std::vector<WindowRays> windows;
   float power = 0;  ///< W, luminance: bound of the power that leaves it, by which photons are shared out
 };

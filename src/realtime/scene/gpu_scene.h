@@ -69,7 +69,7 @@ class GpuScene {
   float largest_slack() const;
   /// What the GPU shows differently from the scene, as text for the user; empty if nothing.
   const std::vector<std::string>& limitations() const { return limitations_; }
-  /// Another number whenever places or materials may have changed; from 1 on.
+  /// A number, from 1 on, that changes whenever places or materials may have changed.
   std::uint64_t surface_version() const { return surface_version_; }
   /// Corners and indices of all meshes, as `draws` names them; wait for the GPU.
   std::vector<GpuVertex> read_vertices() const {
@@ -84,7 +84,7 @@ class GpuScene {
   const std::vector<GpuMaterial>& materials() const { return material_data_; }
   /// True if some material has light that eye paths of the CPU find.
   bool has_eye_paths() const;
-  /// True if the GPU may stand in for some of them.
+  /// True if the GPU has approximations for some of these materials.
   bool has_stand_ins() const;
 
  private:

@@ -88,8 +88,8 @@ struct Part {
   float share;  ///< of rays that see it
 };
 
-/// Diffuse parts are mixed exactly. Of others the reflectance of the base is set so that, at normal incidence, the
-/// blend reflects what its parts do, though its coat hides more or less of the base than theirs.
+/// Mixes diffuse parts exactly. For other parts, sets the base's reflectance so that, at normal incidence, the blend
+/// reflects as much as its parts, although its coat hides more or less of the base than their coats do.
 GpuMaterial blended(const std::vector<Part>& parts) {
   if (parts.size() == 1) return parts.front().material;
   const bool are_diffuse =

@@ -23,7 +23,7 @@ GpuMaterial as_plastic(const GpuMaterial& m);
 /// shares of its parts' reflectances, and the mean of their widths.
 GpuMaterial material_at(const Scene& scene, std::uint32_t material, const Vec2& uv);
 
-/// `#define` lines for shaders that include bsdf.glsl: they remove what no material has, of closures and textures.
+/// `#define` lines for shaders that include bsdf.glsl: they remove the closures and textures that no material has.
 std::string closure_defines(const std::vector<GpuMaterial>& materials);
 
 /// A material over the unit square of (u, v).
@@ -41,8 +41,8 @@ inline constexpr float least_alpha_under_sky = 0.3f;
 /// the Fresnel term of its lobes, as metalness does, which the GPU approximates.
 bool needs_eye_paths(const std::vector<GpuMaterial>& probes, bool has_infinite_lights);
 
-/// Albedo of GGX reflection with Schlick's Fresnel term, for plastics: scale of f0 and of f90 by cosine and width, and
-/// in the last column but one row by row the means over the hemisphere. RG, `gpu::plastic_cosines` + 2 texels a row.
+/// Albedo of GGX reflection with Schlick's Fresnel term, for plastics: scale of f0 and of f90, by cosine (columns) and
+/// width (rows). The last column has each row's mean over the hemisphere. RG, `gpu::plastic_cosines` + 2 texels a row.
 std::vector<Vec2> plastic_albedos();
 
 }  // namespace lanthorn

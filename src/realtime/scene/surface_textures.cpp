@@ -12,7 +12,7 @@ namespace lanthorn {
 
 namespace {
 
-/// As fine as it may be with so many layers: all of them take about a second of processor time.
+/// The largest side at which all layers together take about a second of processor time.
 int side_for(std::size_t layers) {
   constexpr std::size_t most_texels = std::size_t{1} << 22;
   constexpr int least = 256, most = 1024;

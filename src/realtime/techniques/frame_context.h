@@ -34,7 +34,7 @@ enum class ShadowKind : std::uint8_t {
 
 struct FrameSettings {
   FrameSettings() = default;
-  /// With the shadows and views of lights that its parameters say.
+  /// Takes the shadows and views of lights from the technique's parameters.
   explicit FrameSettings(TechniqueChoice choice);
 
   TechniqueChoice technique;

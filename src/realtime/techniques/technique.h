@@ -57,7 +57,7 @@ struct FramePlan {
   EyePaths eye_paths_in_motion = needed_eye_paths;  ///< with FrameSettings::has_stand_ins
   bool eye_paths_find_indirect = false;             ///< they go on from the first vertex that scatters
   std::uint32_t photons = 0;                        ///< that start in the lights' maps
-  /// Lobes below this GGX width show light from all around by the technique, instead of by views of these lights.
+  /// Below this GGX width, lobes show infinite lights by the technique instead of by views of these lights.
   float least_sky_alpha = 0;
 };
 

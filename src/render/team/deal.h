@@ -15,8 +15,9 @@ namespace lanthorn {
 /// Rank 0 deals out the passes in order, one for each question, so that a fast process renders more of them.
 ///
 /// The passes belong to rounds, one after the other, and a round's sums are gathered when all its passes are done. A
-/// round ends where the error is to be looked at, which depends on the number of passes alone, or when a checkpoint is
-/// due. While its sums travel, the passes of the next round are rendered, but not of the one after that.
+/// round ends when a checkpoint is due, or after a number of passes at which the error is to be looked at; these
+/// numbers are fixed. While a round's sums travel, passes of the next round are rendered, but none of the round after
+/// that.
 class Deal {
  public:
   /// `done`: the passes that the resumed state has. Rank 0 does not deal them out again.

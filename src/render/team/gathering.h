@@ -68,8 +68,8 @@ class Gathering {
   std::map<std::uint64_t, Part> parts_;
 };
 
-/// Checks that as many processes pass their sums on to each one as it waits for; otherwise it would wait for ever, or
-/// sums would be lost. Rank 0 knows the tree as each process sees it.
+/// Checks that each process waits for exactly as many others as pass their sums on to it; otherwise it would wait for
+/// ever, or sums would be lost. Rank 0 knows the tree as each process sees it.
 class TreeCheck {
  public:
   TreeCheck(int size, int awaited_at_first);

@@ -62,9 +62,9 @@ class TeamMember {
   /// Waits until this process has passed on all its sums. The pass loop calls this function after the End.
   void finish();
 
-  /// The flag is set, at other ranks than 0, when the running pass shall be given up if it can be undone.
+  /// At ranks other than 0, this flag is set when the running pass is to be given up, provided that it can be undone.
   const std::atomic<bool>* give_up() const { return &give_up_; }
-  /// The flag is set, at other ranks than 0, when the passes since the last round are not needed any more.
+  /// At ranks other than 0, this flag is set when the passes since the last round are no longer needed.
   const std::atomic<bool>* discard() const { return &discard_; }
   /// Returns, at rank 0, the counts of the passes that the other processes have rendered.
   RenderStatistics counts_of_others() const;

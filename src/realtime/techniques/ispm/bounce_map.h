@@ -25,7 +25,7 @@ Normal surface_normal(const PhotonStart& start);
 class BounceMap {
  public:
   BounceMap() = default;
-  /// `closures`: as `closure_defines` has it.
+  /// `closures`: the result of `closure_defines`.
   explicit BounceMap(const gl::ShaderFiles& files, const std::string& closures = {});
 
   /// Begins the photons on the GPU. The scene must be bound; the maps were drawn with the same numbers of photons.

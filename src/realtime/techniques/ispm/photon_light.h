@@ -25,7 +25,7 @@ enum class PhotonGather : std::uint8_t {
 class PhotonLight {
  public:
   PhotonLight() = default;
-  /// `closures`: as `closure_defines` has it.
+  /// `closures`: the result of `closure_defines`.
   PhotonLight(const gl::ShaderFiles& files, const std::string& closures);
 
   /// Takes over the photons for the next frames.

@@ -44,7 +44,7 @@ struct WalkSettings {
   bool disperses = true;  ///< as FrameSettings
 };
 
-/// Follows the photons. The order of the result, and all of it, is a function of the arguments.
+/// Follows the photons. The result, including its order, is a function of the arguments alone.
 FramePhotons walk_photons(const Scene& scene, const std::vector<LightView>& views,
                           const std::vector<PhotonStart>& starts, const WalkSettings& settings);
 

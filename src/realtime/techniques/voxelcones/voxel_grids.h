@@ -23,12 +23,13 @@ struct VoxelGrid {
   friend bool operator==(const VoxelGrid&, const VoxelGrid&) = default;
 };
 
-/// How many grids of this size at most: `gpu::most_voxel_grids`, and 2 GiB of memory.
+/// Largest number of grids of this size: `gpu::most_voxel_grids`, or what fits into 2 GiB of memory.
 int voxel_grid_limit(int size);
 
-/// A cube around `bounds`, then cubes of half the edge of the one before, around the focus as far as that lies in the
-/// first. `count` of them, or 0: until the next one would be less than 1.5 times as wide as the focus is distant. Their
-/// corners move by eighths of their edges, so that a focus that moves leaves most of them in their places.
+/// A cube around `bounds`, followed by cubes around the focus, each with half the edge of the one before and moved so
+/// that it lies inside the first. `count` of them in all; if 0, until the next one would be less than 1.5 times as wide
+/// as the focus is distant. Their corners move by eighths of their edges, so that most of them stay in place when the
+/// focus moves.
 std::vector<VoxelGrid> voxel_grids(const Bounds& bounds, int size, const ViewFocus& focus, int count);
 
 }  // namespace lanthorn

@@ -37,7 +37,7 @@ struct Halves {
   Piece below, above;
 };
 
-// Pieces in the plane are below it.
+// Pieces that lie in the plane count as below it.
 Halves cut(const Piece& piece, int axis, float plane) {
   Halves halves;
   const auto height = [&](const Corner& c) { return c.at[axis] - plane; };

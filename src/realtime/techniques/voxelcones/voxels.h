@@ -35,7 +35,7 @@ struct GpuTriangles {
 Bounds bounds_of(const GpuScene& gpu_scene, const GpuTriangles& triangles);
 
 /// The parts of the triangles that lie in the grid, cut by its voxels. Clear glass is left out. All materials count as
-/// diffuse with their albedo at normal incidence; textures by the middle of each piece.
+/// diffuse with their albedo at normal incidence; textures are evaluated at the middle of each piece.
 Voxels voxelise(const Scene& scene, const GpuScene& gpu_scene, const GpuTriangles& triangles, const VoxelGrid& grid);
 
 }  // namespace lanthorn
