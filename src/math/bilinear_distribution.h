@@ -46,8 +46,8 @@ class BilinearDistributions {
 
   /// `u` in [0,1)².
   Sample sample(const Vec2& u, const Blend& blend) const;
-  /// The numbers `u` from which `sample` draws `at` (returned as `at` of the result), and the density there. They are
-  /// arbitrary in a row whose density is 0.
+  /// The numbers from which `sample` draws `at`, as the result's `at`, and the density there. In a row whose density is
+  /// 0, the numbers are arbitrary.
   Sample invert(const Vec2& at, const Blend& blend) const;
   float pdf(const Vec2& at, const Blend& blend) const;
 

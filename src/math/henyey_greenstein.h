@@ -28,7 +28,7 @@ inline float versine_between(const Direction& a, const Direction& b) { return 0.
 
 /// The same for directions of travel before and after scattering.
 inline float henyey_greenstein(float g, const Direction& in, const Direction& out) {
-  // Around the peak at the back, the small distance is that to the opposite direction.
+  // For g < 0 the peak is at the back: there the distance to the opposite direction is the small one.
   return g < 0 ? henyey_greenstein(-g, versine_between(-in, out)) : henyey_greenstein(g, versine_between(in, out));
 }
 

@@ -80,7 +80,7 @@ float tame(float x, int size, Wrap wrap) {
   return std::clamp(x, -1.0f, 2.0f) * static_cast<float>(size);
 }
 
-// The levels that an image gets.
+// The number of levels that an image gets.
 int levels_for(const TextureFormat& format, const ImageWish& wish) {
   const std::size_t texels = static_cast<std::size_t>(format.width) * static_cast<std::size_t>(format.height);
   return wish.levels && texels >= least_texels_with_levels ? all_levels_of(format) : 1;

@@ -43,8 +43,8 @@ struct ImageWish {
 /// mostly into the processor's caches, as they are.
 inline constexpr std::size_t least_texels_with_levels = std::size_t{1} << 22;
 
-/// Texels of an image file: 8-bit files stay bytes with a look-up table; all others become linear floats. They are in
-/// memory, or in tiles on disk; values are the same.
+/// Texels of an image file: 8-bit files stay bytes with a look-up table; all others become linear floats. Texels are in
+/// memory or in tiles on disk, with the same values.
 class TextureImage {
  public:
   /// Without texels: must not be looked up.

@@ -27,7 +27,7 @@ class TextureCache {
  public:
   class Image;
 
-  /// `bytes`: of the tiles in memory.
+  /// `bytes`: memory for tiles.
   explicit TextureCache(std::uint64_t bytes);
   ~TextureCache();
   TextureCache(const TextureCache&) = delete;
@@ -38,8 +38,8 @@ class TextureCache {
   /// naming the folder if the disk is full.
   const Image& add(TexelReader& reader, int levels, const std::function<void(const std::byte* row)>& sees_row,
                    const SourceLocation& location);
-  /// Copies texels of a level, as they are stored, one behind the other. Texels that cannot be read are 0; then there
-  /// is a `problem`.
+  /// Copies stored texels of a level, one behind the other. Texels that cannot be read become 0, and `problem` reports
+  /// why.
   void read(const Image& image, int level, std::span<const TexelPlace> places, std::byte* texels) const;
 
   /// The first tile that could not be read. It is recorded instead of thrown, because tiles are looked up in the middle

@@ -70,7 +70,7 @@ void LevelMaker::add(std::size_t i, const std::byte* row) {
   add(i + 1, level.coarser.data());
 }
 
-// The sample of a value, or the next larger one, with probabilities such that the mean is the value.
+// Encodes a value as the sample below or the one above it, with probabilities such that the mean is the value.
 std::uint8_t LevelMaker::encoded(float value, int channel, float u) const {
   if (channel == 3) return static_cast<std::uint8_t>(std::min(255.0f, std::floor(value * 255.0f + u)));
   const auto& decode = format_.decode;

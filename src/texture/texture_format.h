@@ -31,7 +31,7 @@ struct TextureFormat {
 /// Number of levels down to a single texel. 1 if the table of 8-bit samples does not ascend: means then cannot be
 /// stored.
 int all_levels_of(const TextureFormat& format);
-/// Texels of the first `levels` levels together.
+/// Number of texels of the first `levels` levels together.
 std::size_t texels_of_levels(int width, int height, int levels);
 
 /// Makes the levels of an image whose rows arrive from the top. A texel is the mean of the four texels below it, of

@@ -17,12 +17,12 @@ namespace lanthorn {
 /// the scenes that edits make of one. Whatever it decides, the picture is the same.
 class TextureMemory {
  public:
-  /// `bound`: bytes of all images together; by default half of the memory that is free when it is first asked for.
+  /// `bound`: bytes of all images together; by default half of the memory that is free when the bound is first needed.
   explicit TextureMemory(std::optional<std::uint64_t> bound) : bound_(bound) {}
 
-  /// For each image that is about to be read, true if it goes through the cache. None do if all fit; otherwise the
-  /// smallest ones take half of the memory and the rest go through the cache. Throws Error if their tiles do not fit on
-  /// the disk.
+  /// For each image that is about to be read, true if it goes through the cache. No image does if all fit; otherwise
+  /// the smallest images take half of the memory, and the rest go through the cache. Throws Error if their tiles do not
+  /// fit on the disk.
   std::vector<bool> plan(const std::vector<TextureImage::Need>& needs);
   /// Null as long as no image goes through the cache.
   const std::shared_ptr<TextureCache>& cache() const { return cache_; }

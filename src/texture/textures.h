@@ -54,7 +54,8 @@ struct ImageInput {
 
   /// Colour times `scale` and `tint`, then inverted if requested.
   Rgb rgb(const TexturePoint& at, int level = 0) const;
-  /// The coarsest level of which four texels lie side by side in the footprint: finer than a picture can show.
+  /// The coarsest level at which four texels side by side still lie within the footprint: finer than a picture can
+  /// show.
   int level(const Footprint& footprint) const;
 };
 struct NormalMapInput {
@@ -99,7 +100,7 @@ class TextureGraph {
   bool has_levels(const SpectrumInput& input) const;
   /// The mapped normal in the frame of dp/du, dp/dv and the smooth normal; unit.
   static Normal evaluate(const NormalMapInput& map, const TexturePoint& at);
-  /// 1 if `alpha` is the alpha of an image that has none: then rays need not ask for it. Else `alpha`.
+  /// 1 if `alpha` reads the alpha of an image that has none, so that rays need not evaluate it; else `alpha`.
   FloatInput without_opaque_image(const FloatInput& alpha) const;
   /// The finest detail of all textures behind an input.
   TextureDetail detail(const FloatInput& input) const;

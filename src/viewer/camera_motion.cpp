@@ -11,8 +11,8 @@ namespace lanthorn {
 
 namespace {
 
-// Axes of the camera in the world. The film plane of a camera that is stretched has none that are at right angles: the
-// view is what counts.
+// Axes of the camera in the world. If the camera's transform stretches, no axes of its film plane are at right angles;
+// the view direction is what counts.
 Direction axis(const CameraPose& pose, const Vec3& local) { return normalize(pose.camera_to_world.vector(local)); }
 
 Transform about(const Point& centre, float degrees, const Direction& around) {
@@ -23,8 +23,9 @@ float degrees_between(const Direction& a, const Direction& b) {
   return std::atan2(glm::length(cross(a, b)), dot(a, b)) * 180 / pi;
 }
 
-// Turns the camera around `centre`. `arm`: a direction from there. `to_right`, `to_lower`: where it goes when the
-// pointer moves right or down; they fix the signs of rotations, which depend on whether the camera mirrors.
+// Turns the camera around `centre`. `arm`: a direction from the centre. `to_right`, `to_lower`: the directions in which
+// the arm moves when the pointer moves right or down; they fix the signs of rotations, which depend on whether the
+// camera mirrors.
 struct Turn {
   Point centre;
   Direction arm;
@@ -80,7 +81,7 @@ Direction camera_up_of(const CameraPose& pose) { return axis(pose, {0, 1, 0}); }
 Point pivot_of(const CameraPose& pose) { return eye_of(pose) + pose.distance * forward_of(pose); }
 
 CameraPose orbit(const CameraPose& pose, const Vec2& degrees) {
-  // What lies before the pivot follows the pointer if the eye moves the other way.
+  // Objects in front of the pivot follow the pointer if the eye moves the other way.
   return turned(pose, degrees, {pivot_of(pose), -forward_of(pose), -right_of(pose), camera_up_of(pose)});
 }
 

@@ -32,7 +32,7 @@ Point pivot_of(const CameraPose& pose);
 
 // `degrees` and `metres`: x to the right, y down on the screen, as the pointer moves.
 
-/// Turns around the pivot, so that what lies before it follows the pointer. Stops 1° before the world's up and down.
+/// Turns around the pivot, so that objects in front of it follow the pointer. Stops 1° before the world's up and down.
 CameraPose orbit(const CameraPose& pose, const Vec2& degrees);
 /// Turns the camera about its eye, towards where the pointer goes. Stops 1° before the world's up and down.
 CameraPose turn(const CameraPose& pose, const Vec2& degrees);
@@ -40,7 +40,7 @@ CameraPose turn(const CameraPose& pose, const Vec2& degrees);
 CameraPose pan(const CameraPose& pose, const Vec2& metres);
 /// Goes towards the pivot until the distance is `factor` times what it was; factor > 0.
 CameraPose zoom(const CameraPose& pose, float factor);
-/// Moves by `metres` along the camera's right, the world's up and the camera's forward axis; the pivot comes along.
+/// Moves by `metres` along the camera's right, the world's up and the camera's forward axis; the pivot moves along.
 CameraPose fly(const CameraPose& pose, const Vec3& metres);
 
 }  // namespace lanthorn

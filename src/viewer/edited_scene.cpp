@@ -31,7 +31,7 @@ std::optional<Point> position_of(const Light& light) {
       light.node);
 }
 
-// The emission whose colour the user may choose; null if an image decides it.
+// The emission whose colour the user may choose; null if an image determines the colour.
 template <class L>
 const Emission* emission_of(const L& light) {
   if constexpr (std::is_same_v<L, InfiniteLight>)

@@ -19,8 +19,8 @@ class Interaction {
   struct Change {
     bool camera = false, scene = false;
   };
-  /// One frame's input. `view`: of the pose before. Selects in `panel`, edits `scene`; an edit that the scene refuses
-  /// leaves its reason in `panel.message`.
+  /// Applies one frame's input. `view`: the view of the pose before. Selects in `panel` and edits `scene`; an edit that
+  /// the scene refuses leaves its reason in `panel.message`.
   Change apply(const Input& input, const View& view, const Picker& picker, EditedScene& scene, Panel& panel);
 
   const CameraPose& pose() const { return pose_; }

@@ -13,7 +13,7 @@ namespace lanthorn {
 
 namespace {
 
-// A mesh in a place. Nodes may deform one mesh each in its own way.
+// A mesh at a place. Nodes may deform the same mesh in different ways.
 using MeshPlace = std::pair<std::string, std::array<double, 16>>;
 
 MeshPlace mesh_place(const std::string& mesh, const AnimatedTransform& to_world) {

@@ -45,7 +45,7 @@ struct LightMark {
 
 /// The data that the panel shows and changes.
 struct Panel {
-  // Changed by the user.
+  // The user changes these members:
   std::vector<std::string> methods;  ///< names; first those of the techniques
   std::size_t method = 0;
   RealtimeSettings settings;
@@ -59,7 +59,7 @@ struct Panel {
   std::optional<description::Index> selected_object;
   Wishes wishes;
 
-  // Shown.
+  // These members are only shown:
   std::vector<TechniqueDescription> techniques;  ///< with all their parameters, those of lights included
   std::string scene, driver, object_name, message, command;
   std::string error;     ///< of the picture, of an offline method; empty: not known yet
@@ -83,7 +83,7 @@ struct Panel {
 /// The module's functions. A window is opaque to the viewer; the OpenGL context of the last one that was opened is
 /// current.
 struct WindowFunctions {
-  /// Null if that fails; `failure` says why.
+  /// Opens a window. Returns null on failure, with the reason in `failure`.
   void* (*open)(const char* title, int width, int height, std::string& failure);
   void (*close)(void* window);
   /// Waits for events if `may_wait`, at most a tenth of a second. `width`, `height`: of the picture.

@@ -11,7 +11,7 @@ namespace lanthorn {
 
 namespace {
 
-// Distances along the ray between which it is in the box; nothing if it misses it.
+// True if the ray meets the box within the distance `farthest`.
 bool meets(const Bounds& box, const Point& origin, const Vec3& direction, float farthest) {
   float near = 0, far = farthest;
   for (int i = 0; i < 3; ++i) {

@@ -38,8 +38,8 @@ class Picker {
   std::vector<std::optional<description::Index>> area_lights_;  // of the meshes
 };
 
-/// Distance along the ray (whose direction need not be of unit length, in units of it) to a triangle, either side of
-/// it. Nothing if it misses (Möller & Trumbore 1997).
+/// Distance along the ray to either side of a triangle, in units of the direction's length, which need not be 1.
+/// nullopt if the ray misses it (Möller & Trumbore 1997).
 std::optional<float> hit_triangle(const Point& origin, const Vec3& direction, const Point& a, const Point& b,
                                   const Point& c);
 

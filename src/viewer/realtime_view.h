@@ -57,7 +57,7 @@ class EyePathSpacing {
   int pixels_ = 1;
 };
 
-/// The resolution of frames while the eye or a thing moves, so that there are 10 to 17 of them a second.
+/// The resolution of frames while the eye or an object moves, chosen such that there are 10 to 17 frames a second.
 class MovingResolution {
  public:
   /// The share of width and height.

@@ -86,8 +86,8 @@ std::string transform_text(const Transform& t) {
   return text + " ]";
 }
 
-// The parameter if it differs from `before`. Parameters after others of the same name replace them (with a warning of
-// the reader).
+// The parameter if it differs from `before`. A parameter replaces earlier ones of the same name (the reader warns of
+// this).
 template <class Number>
 std::string real(const char* name, const Number& now, const Number& before) {
   if (now == before) return "";

@@ -11,9 +11,9 @@
 
 namespace lanthorn {
 
-/// The text of a pbrt file with the camera in this place and with the edits; all else stays letter by letter. `scene`:
-/// the description that was read from it. Throws Error if the file has no camera, or if what was edited is described in
-/// another file, which it includes.
+/// The text of a pbrt file with the camera in this place and with the edits; everything else stays letter by letter.
+/// `scene`: the description that was read from it. Throws Error if the file has no camera, or if an edited part is
+/// described in another file that it includes.
 std::string edited_pbrt(std::string_view text, const SceneDescription& scene, const CameraPose& camera,
                         const SceneEdits& edits);
 

@@ -71,7 +71,7 @@ class OpenWindow {
   void* window_ = nullptr;
 };
 
-// A distance around which the camera turns: that of the surface in the middle of the picture.
+// Distance of the point around which the camera turns: the surface in the middle of the picture.
 float first_distance(const Scene& scene, const View& view, const Picker& picker) {
   const Vec2 middle(0.5f * static_cast<float>(view.window.width()), 0.5f * static_cast<float>(view.window.height()));
   const Ray ray = ray_through(view, middle);
@@ -429,7 +429,7 @@ void Viewer::draw() {
     shown_scene_ = scene_.scene();
   }
   if (panel_.wants_offline()) refine();
-  // The first frames after a change, and then no more: the processors belong to the offline method.
+  // Draws only the first frames after a change: then the processors belong to the offline method.
   if (!panel_.is_offline && (!panel_.wants_offline() || picture_.frames() < 4)) draw_frame();
   if (!offline_ && picture_.frames() >= next_measurement_) {
     measure();
@@ -503,7 +503,7 @@ fs::path Viewer::save_scene() {
   std::ifstream file(options_.scene_file, std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(file), {}};
   const std::string edited = edited_pbrt(text, description_of(*original_), interaction_.pose(), scene_.edits());
-  // Beside the scene, because names of files in it start there.
+  // Beside the scene, because file names in it are relative to that folder.
   const fs::path path = free_name(options_.scene_file.parent_path(), stem_of(options_.scene_file) + "-view", ".pbrt");
   write_file(path, std::as_bytes(std::span(edited)));
   saved_file_ = path;
