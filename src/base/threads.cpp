@@ -54,7 +54,7 @@ unsigned startable_threads(unsigned wanted) {
   return started;
 }
 
-// Observed: four on two cores.
+// Observed on two cores: the libraries started four threads.
 unsigned threads_of_image_libraries() { return 2 * std::max(2u, std::thread::hardware_concurrency()); }
 
 namespace {

@@ -92,8 +92,8 @@ struct Maker {
     const auto* file = std::get_if<description::VdbGrid>(&g);
     return file != nullptr && access.is_missing(file->filename);
   }
-  // Null-collision tracking takes as many steps as the densest part of the medium has mean free paths in the length of
-  // the flight, even where the medium is thin. Far beyond this limit a single flight takes seconds.
+  // Null-collision tracking of a flight takes as many steps as the flight has mean free paths at the density of the
+  // medium's densest part, even where the medium is thin. Far beyond this limit, a single flight takes seconds.
   void require_few_steps(const Bounds& box, float extinction) const {
     constexpr double most_steps = 1e6;
     const auto per_metre = static_cast<double>(extinction);

@@ -54,7 +54,7 @@ struct ImageInput {
 
   /// Colour times `scale` and `tint`, then inverted if requested.
   Rgb rgb(const TexturePoint& at, int level = 0) const;
-  /// The coarsest level at which four texels side by side still lie within the footprint: finer than a picture can
+  /// The coarsest level at which a square of 4 x 4 texels still lies within the footprint: finer than a picture can
   /// show.
   int level(const Footprint& footprint) const;
 };
