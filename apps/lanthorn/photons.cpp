@@ -59,8 +59,8 @@ void add_photons(CLI::App& app) {
   constexpr const char* footer =
       "Each vertex has x, y, z (m), nx, ny, nz (normal of the surface), dx, dy, dz (unit, towards where the photon "
       "came from),\npower_r, power_g, power_b (W; they sum to the flux that arrives at the surfaces), "
-      "red, green,\nblue (the power's colour, for viewers) and caustic (1 if the path to it has only mirrors and clear "
-      "it).\n\nExample:\n  lanthorn photons scene.pbrt --photons 100000 -o photons.ply";
+      "red, green,\nblue (the power's colour, for viewers) and caustic (1 if its path has met only mirrors and clear "
+      "glass before).\n\nExample:\n  lanthorn photons scene.pbrt --photons 100000 -o photons.ply";
   add_command(app, {"photons", "Trace photons and write them as a point cloud (.ply)", photons_options(*a), footer,
                     [a] { run(*a); }});
 }

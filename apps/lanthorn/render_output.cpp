@@ -143,7 +143,8 @@ void check_files(const RenderFiles& a, const std::string& scene_file, const Scen
   check_outputs(read, written, a.output.force);
 }
 
-// The first checkpoint, or a render with a time limit, may hold little more than the passes of --resume.
+// Refuses to replace states whose passes the new ones may lack. The first checkpoint, or a render with a time limit,
+// may have hardly more passes than the state of --resume.
 void check_states(const RenderFiles& a, const std::vector<fs::path>& outputs, const Session& session) {
   const std::vector<PassRange> resumed = summarize(session.state()).passes;
   std::vector<PassRange> expected = resumed;

@@ -99,7 +99,7 @@ View make_view(const ViewDescription& description, const ViewOptions& options) {
   const auto pixels =
       static_cast<std::uint64_t>(view.window.width()) * static_cast<std::uint64_t>(view.window.height());
   if (pixels >= most_pixels)
-    throw Error(fmt::format("{} x {} pixels are more than {}, the most of a picture; render parts with --crop",
+    throw Error(fmt::format("{} x {} pixels are more than {}, the limit of a picture; render parts with --crop",
                             view.window.width(), view.window.height(), most_pixels - 1));
   return view;
 }

@@ -20,8 +20,8 @@ FilmContents progressive_layers(const Scene& scene) {
 
 std::string photon_limitation(const Scene& scene, VolumeEstimator estimator) {
   if (!scene.has_scattering_media() || estimator != VolumeEstimator::path) return {};
-  return "without photons in media, eye paths alone find light that glass and mirrors focus into a medium, and none of "
-         "point, spot and distant lights";
+  return "without photons in media, only eye paths find light that glass and mirrors focus into a medium; they find "
+         "none from point, spot and distant lights";
 }
 
 void PassPhotonSource::prepare(const RenderJob& job) {

@@ -136,13 +136,13 @@ std::set<std::string> SplitSumShader::missing_of(const RenderJob& job) {
 }  // namespace
 
 IntegratorInfo splitsum_info() {
-  return {
-      "splitsum",
-      "split-sum shading of the first surface by the environment's maps, as in real time (no shadows)",
-      "Karis 2013",
-      {{"scattering", "single",
-        "on the microsurface: single (the lecture's), or multiple (Fdez-Aguera 2019: rough metal keeps its light)"}},
-      [](const Parameters& p) -> std::unique_ptr<Integrator> { return std::make_unique<SplitSumShader>(p); }};
+  return {"splitsum",
+          "split-sum shading of the first surface by the environment's maps, as in real time (no shadows)",
+          "Karis 2013",
+          {{"scattering", "single",
+            "on the microsurface: single (as in the lecture), or multiple (Fdez-Aguera 2019: rough metal keeps its "
+            "light)"}},
+          [](const Parameters& p) -> std::unique_ptr<Integrator> { return std::make_unique<SplitSumShader>(p); }};
 }
 
 }  // namespace lanthorn

@@ -90,8 +90,8 @@ std::size_t plan_memory(const Scene& scene, const View& view, const Integrator& 
   // Random numbers and maps have indices of 32 bits.
   constexpr double most_numbers = std::numeric_limits<std::uint32_t>::max();
   if (std::max(static_cast<double>(settings.photons), static_cast<double>(held) * per_path.photons) > most_numbers)
-    throw Error(fmt::format("--photons {}: a pass has {:.0f} light paths and as many photons at most", settings.photons,
-                            most_numbers));
+    throw Error(fmt::format("--photons {}: a pass can have at most {:.0f} light paths, and as many photons",
+                            settings.photons, most_numbers));
   if (use.fills_the_rest && option) settings.memory = static_cast<std::uint64_t>(limit.bytes - film - photons);
   // Other programs may need some of the memory that is free now.
   const double room = option ? limit.bytes : limit.bytes / 2;

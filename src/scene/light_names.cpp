@@ -57,7 +57,7 @@ class Places {
   }
 
  private:
-  // How far from the middle of the scene towards its end in this direction: -1 to 1 inside.
+  // The position of `p` along this direction: 0 at the middle of the scene, 1 at its end, -1 at the opposite end.
   float share(const Point& p, const Vec3& direction) const {
     const Vec3 half = 0.5f * (bounds_.max - bounds_.min);
     const float reach = dot(half, abs(direction));

@@ -348,7 +348,8 @@ float pdf_one_bounce(const CoatedPlastic& c, const Vec3& i, const Vec3& o) {
   return lerp(diffuse, pdf_one_mirror_bounce(c, i, o), pdf_cosine_hemisphere(o.z));
 }
 
-/// Share of the light from below the coat that counts as Lambertian: several bounces and scattering in the medium.
+/// The share of the light from below the coat that the density treats as Lambertian: the light of several bounces, and
+/// of scattering in the medium.
 template <class Base>
 float several_bounces(const Coated<Base>& c) {
   if (is_smooth(c.base) && is_smooth(c.coat)) return 1;

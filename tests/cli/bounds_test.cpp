@@ -41,7 +41,7 @@ TEST_F(Bounds, PhotonsThatDoNotFitAreRefusedWithWhatTheyWouldTake) {
            " light paths at a time take ");
   for (const std::string method : {"path", "light", "probppm", "auto"})
     refuse({"render", "tiny.pbrt", "-i", method, "-n", "1000000000000", "-o", "a.exr"},
-           "a pass has 4294967295 light paths");
+           "a pass can have at most 4294967295 light paths");
   refuse({"render", "tiny.pbrt", "-n", "10000000", "--memory", "100M", "-o", "a.exr"},
          "--memory allows 100 MiB: choose fewer with --photons");
   refuse({"converge", "tiny.pbrt", "-n", "10000000", "--memory", "100M"}, "choose fewer with --photons");

@@ -82,7 +82,7 @@ std::vector<ParameterInfo> parameters_with(std::vector<ParameterInfo> own) {
       {"max-radius", "auto", "largest radius of an estimate: auto, or a length in metres"},
       {"gather", "16", "rays of a final gather"},
       {"guide", "none",
-       "gather rays: none (by materials alone), or also to where photons of indirect light came from: photons"},
+       "gather rays: none (directions by materials alone), or photons (also towards where indirect photons came from)"},
       emission_info("projected"),
       {"caustic-photons", "0", "further light paths per pass, for caustics alone; 0: the caustics of --photons"},
       {"maps", "fresh", "fresh: new photons in each pass; kept: those of the first (RGB colour, still scenes)"},
@@ -104,32 +104,33 @@ IntegratorInfo photonmap_info() {
             "rays: a shadow ray for each light sample; photons: only where shadow photons do not agree (not with "
             "media)"},
            {"final-gather", "brute",
-            "brute: at every point that is seen; cached: at some on diffuse surfaces, then interpolated"},
+            "brute: at every visible point; cached: at some points of diffuse surfaces, interpolated in between"},
            {"cache-error", "0.2",
             "estimated relative error up to which a record of the cache is used (Ward's a), up to 1"},
            {"cache-min-spacing", "3", "least distance of records, pixels"},
            {"cache-max-spacing", "40", "largest distance of records, pixels"},
            {"cache-rays", "auto",
-            "rays of a record's final gather, about, and of points where there is no record; auto: 128, or 512 with "
-            "maps=kept"},
+            "approximate number of rays to gather a record, and at points that no record covers; auto: 128, or "
+            "512 with maps=kept"},
            {"show", "image",
             "image, or what a map holds: global, caustic, shadow (share of lit photons), radius (m) or density "
-            "(photons/m^2); records: where the "
-            "cache's are"}}),
+            "(photons/m^2); records: where "
+            "the cache has records"}}),
       [](const Parameters& p) -> std::unique_ptr<Integrator> {
         return make_photon_mapper(PhotonMapSettings(p, Search::photons));
       }};
 }
 
 IntegratorInfo reversephotonmap_info() {
-  return {
-      "reversephotonmap", "photon mapping whose photons look for the ends of gather rays: faster with many of these",
-      "Havran, Herzog & Seidel 2005",
-      parameters_with({{"radii", "nearest",
-                        "of photons: nearest (the distance to as many others), leaf (from their leaf of the tree)"}}),
-      [](const Parameters& p) -> std::unique_ptr<Integrator> {
-        return make_photon_mapper(PhotonMapSettings(p, Search::reverse_photons));
-      }};
+  return {"reversephotonmap",
+          "photon mapping whose photons look for the ends of gather rays: faster with many of these",
+          "Havran, Herzog & Seidel 2005",
+          parameters_with({{"radii", "nearest",
+                            "of photons: nearest (the distance to as many neighbours as --set nearest says), or "
+                            "leaf (from their leaf of the tree)"}}),
+          [](const Parameters& p) -> std::unique_ptr<Integrator> {
+            return make_photon_mapper(PhotonMapSettings(p, Search::reverse_photons));
+          }};
 }
 
 }  // namespace lanthorn

@@ -82,7 +82,7 @@ class GpuScene {
   bool has_patterns() const;
   const std::vector<GpuDraw>& draws() const { return draw_data_; }
   const std::vector<GpuMaterial>& materials() const { return material_data_; }
-  /// True if some material has light that eye paths of the CPU find.
+  /// True if the CPU's eye paths find all or part of the light of some material.
   bool has_eye_paths() const;
   /// True if the GPU has approximations for some of these materials.
   bool has_stand_ins() const;

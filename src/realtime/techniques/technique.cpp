@@ -79,7 +79,7 @@ const std::vector<TechniqueParameter>& light_parameters() {
        .control = PanelControl{.label = "Shadows", .words = {"None", "Shadow maps", "Traced"}}},
       {.info = {"map", "256", "texels along the side of a light's map"},
        .numbers = NumberRange{16, 4096, NumberRange::Kind::whole}},
-      {.info = {"sky", "4", "directions of each light all around that light a frame"},
+      {.info = {"sky", "4", "directions from which each infinite light lights a frame"},
        .numbers = NumberRange{1, 16, NumberRange::Kind::whole}}};
   return parameters;
 }

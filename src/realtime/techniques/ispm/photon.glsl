@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Photons on surfaces and their volumes: ellipsoids compressed along the normal (McGuire & Luebke 2009, section 3.4).
+// Photons on surfaces and their volumes: flat cylinders about the normals (McGuire & Luebke 2009, section 3.4, have ellipsoids
+// compressed along the normals).
 #include "constants.glsl"
 #include "layouts.glsl"
 #include "ispm_constants.glsl"

@@ -13,7 +13,7 @@
 
 namespace lanthorn {
 
-/// A kernel around photons: an ellipsoid compressed along the normal.
+/// A kernel around photons: a flat cylinder about the normal.
 struct PhotonVolume {
   float radius = 0.1f;        ///< in the tangent plane, m
   float half_height = 0.02f;  ///< along the normal, m
