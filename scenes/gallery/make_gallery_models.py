@@ -473,7 +473,7 @@ def small_stones():
         for i in range(8):
             turn = 270 + side * (24.5 + 9.2 * i)
             stones.append(placed(f"Rotate {turn:g} 0 0 1 Translate 10.13 0 0 Rotate 90 0 1 0 Scale 0.76 0.76 0.76",
-                                 '"plymesh" "string filename" "../../meshes/brilliant.ply"'))
+                                 '"plymesh" "string filename" "../meshes/brilliant.ply"'))
             for z in (-0.62, 0.62):
                 beads.append(placed(f"Rotate {turn + side * 4.6:g} 0 0 1 Translate 10.07 0 {z}", '"sphere" "float radius" [0.2]'))
     return {"small-stones.pbrt": scene_text(stones, "make_gallery_models.py"), "beads.pbrt": scene_text(beads, "make_gallery_models.py")}
@@ -531,7 +531,16 @@ def sand(columns=110, rows=60):
         ridges = 0.22 * math.sin(0.95 * v + 0.35 * u + 1.4 * math.sin(0.17 * u) + 0.5 * math.sin(0.4 * v))
         return 3.4 + 0.085 * (v + y) + 0.7 * math.sin(0.11 * u + 0.6) * math.sin(0.1 * v + 0.3) + ridges * (0.4 + 0.6 * math.sin(0.09 * u + 1) ** 2)
 
-    return grid(height, columns, rows, (-x, x), (-y, y))
+    mesh = grid(height, columns, rows, (-x, x), (-y, y))
+    # What the panes show of it from the side
+    size = columns + 1
+    edges = (([i for i in range(size)], (0, -1, 0)), ([columns + size * j for j in range(rows + 1)], (1, 0, 0)),
+             ([size * j for j in range(rows, -1, -1)], (-1, 0, 0)))
+    for edge, normal in edges:
+        upper = [mesh.vertex(mesh.vertices[k][0], normal) for k in edge]
+        lower = [mesh.vertex(mesh.vertices[k][0][:2] + (0.0,), normal) for k in edge]
+        mesh.strip(lower, upper)
+    return mesh
 
 
 def stone(seed, flat=0.7):
@@ -679,12 +688,49 @@ def air_bubbles():
     return scene_text(lines, "make_gallery_models.py")
 
 
+# A lens on a stand, and a book; in centimetres
+
+def lens(radius=4.4, curvature=12.0, edge=0.25):
+    """Biconvex, about z."""
+    half = math.degrees(math.asin(radius / curvature))
+    z = curvature * math.cos(math.radians(half)) - edge / 2
+    lower = [(r, -h) for r, h in reversed(arc((0, -z), curvature, 90 - half, 90, 20))]
+    upper = [(r, h) for r, h in arc((0, -z), curvature, 90 - half, 90, 20)]
+    lower[0], upper[-1] = (0, lower[0][1]), (0, upper[-1][1])
+    return lathe([lower, line(lower[-1], upper[0]), upper], 96)
+
+
+def lens_stand():
+    """A ring about x at the height of 9.5, on a pillar with a round foot."""
+    ring = lathe([spline([(4.3, -0.42), (4.75, -0.5), (5.0, 0), (4.75, 0.5), (4.3, 0.42)], 6), line((4.3, 0.42), (4.3, -0.42))], 96)
+    mesh = Mesh()
+    mesh.vertices = [((z, -y, x + 9.5), (nz, -ny, nx)) for (x, y, z), (nx, ny, nz) in ring.vertices]
+    mesh.triangles = list(ring.triangles)
+    return lathe([line((0, 0), (3.4, 0)), arc((3.4, 0.2), 0.2, -90, 90, 6),
+                  spline([(3.4, 0.4), (2.6, 0.55), (1.2, 0.75), (0.6, 1.2), (0.42, 1.9), (0.55, 2.3), (0.75, 2.6), (0.5, 2.9), (0.34, 3.3), (0.34, 4.4), (0.5, 4.7)], 6)], 48, mesh)
+
+
+def book(width, depth, thick):
+    """A closed book on z = 0, its back towards -y: the cover, the pages."""
+    cover = boxes((-width / 2, -depth / 2 + 0.3, 0, width / 2, depth / 2, 0.25), (-width / 2, -depth / 2 + 0.3, thick - 0.25, width / 2, depth / 2, thick))
+    back = [(-depth / 2 + 0.3 - 0.35 * math.sin(math.radians(a)), thick / 2 - 0.5 * thick * math.cos(math.radians(a))) for a in range(0, 181, 15)]
+    rows = [[cover.vertex((x, y, z), (0, -math.sin(math.radians(15 * i)), -math.cos(math.radians(15 * i)))) for i, (y, z) in enumerate(back)]
+            for x in (-width / 2, width / 2)]
+    cover.strip(*rows[::-1])
+    for x, side in ((-width / 2, -1), (width / 2, 1)):
+        cover.polygon([(x, y, z) for y, z in back[::side]], (side, 0, 0))
+    return cover, boxes((-width / 2 + 0.35, -depth / 2 + 0.3, 0.25, width / 2 - 0.35, depth / 2 - 0.35, thick - 0.25))
+
+
 def files():
     """Name and content of every file, before compression."""
     meshes = {"cloth": cloth(), "bowl": bowl(),
               "leaves": leaves(700, 4, (0, 420, 60), (800, 120, 200), 11),
               "leaves-far": leaves(900, 5, (0, 520, 60), (1100, 120, 320), 16)}
     meshes |= whisky() | church() | aquarium() | {"diamond-band": band(), "diamond-head": head()}
+    meshes |= {"lens": lens(), "lens-stand": lens_stand()}
+    for name, parts in (("book-a", book(21, 15, 3)), ("book-b", book(18, 13, 2.4))):
+        meshes |= {f"{name}-{part}": mesh for part, mesh in zip(("cover", "pages"), parts)}
     for name, parts in (("highball", highball()),):
         meshes |= {f"{name}-{part}": mesh for part, mesh in zip(("glass", "liquid-in-glass", "liquid-top"), parts)}
     # Multiples of 2^-12: short mantissas pack well.
