@@ -434,7 +434,7 @@ def church_placements():
 def church():
     return {"church-vault": rib_vault(WIDTH, BAY, 5.4, 0.13), "church-aisle-vault": rib_vault(AISLE, BAY, 3.4, 0.1, 10),
             "church-pier": pier(5, 0.52), "church-arcade": arcade_panel(BAY, 4.42, 1.8, 0.9),
-            "church-clerestory": window_panel(BAY, 7.4, 1.0, 0.9, 3.4, 0.9), "church-aisle-wall": window_panel(BAY, 8.6, 0.85, 1.9, 4.6, 0.7),
+            "church-clerestory": window_panel(BAY, 7.4, 1.0, 0.9, 3.4, 0.5), "church-aisle-wall": window_panel(BAY, 8.6, 0.85, 1.9, 4.6, 0.7),
             "church-shaft": wall_shaft(6), "church-pew": pew(3.5), "church-east": window_panel(3.0, 17, 0.95, 4.2, 8.6, 0.8),
             "church-east-middle": window_panel(3.0, 17, 1.05, 4.2, 10.4, 0.8)}
 
