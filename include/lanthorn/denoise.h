@@ -30,6 +30,13 @@ bool can_denoise(const Image& picture);
 /// are processed in tiles of that size. Throws Error if `can_denoise` is false.
 DenoisedPicture denoise(const Image& picture);
 
+/// As above, for a crop. `around`: the same render with pixels around it (`with_margin`), from which its border is
+/// denoised as well as its inside. Throws Error also if `around` does not contain it.
+DenoisedPicture denoise(const Image& picture, const Image& around);
+
+/// The margin (ViewOptions::margin) beyond which pixels around a crop hardly matter.
+inline constexpr int denoising_margin = 24;
+
 /// Denoised R, G, B, for display while a render is in progress: ten times as fast as `denoise`, but leaves more noise.
 /// Treats `color` as a single layer, so there are no denoised layers that add up to it, and caustics are less sharp.
 /// The result does not depend on the number of threads. Throws Error as `denoise` does.

@@ -50,15 +50,15 @@ bool has_halves(const Image& picture) {
 
 bool is_repeated(const std::string& layer) { return layer == "media"; }
 
-std::vector<Tile> tiles_of(int width, int height) {
+std::vector<Tile> tiles_of(const Part& part, int width, int height) {
   // Multiples of the pyramid's coarsest pixels and of the spacing of regressions.
   constexpr int size = 1024, margin = 96;
+  const int right = part.x + part.width, bottom = part.y + part.height;
   std::vector<Tile> tiles;
-  for (int y = 0; y < height; y += size)
-    for (int x = 0; x < width; x += size) {
-      Tile t{
-          x, y, std::min(size, width - x), std::min(size, height - y), std::max(0, x - margin), std::max(0, y - margin),
-          0, 0};
+  for (int y = part.y; y < bottom; y += size)
+    for (int x = part.x; x < right; x += size) {
+      Tile t{x, y, std::min(size, right - x), std::min(size, bottom - y), std::max(0, x - margin),
+             std::max(0, y - margin), 0, 0};
       t.outer_width = std::min(width, x + size + margin) - t.outer_x;
       t.outer_height = std::min(height, y + size + margin) - t.outer_y;
       tiles.push_back(t);

@@ -38,8 +38,12 @@ struct Tile {
   int x, y, width, height;
   int outer_x, outer_y, outer_width, outer_height;
 };
-/// Tiles that cover a picture of this size.
-std::vector<Tile> tiles_of(int width, int height);
+/// A rectangle of pixels of a picture.
+struct Part {
+  int x = 0, y = 0, width = 0, height = 0;
+};
+/// Tiles that cover a part of a picture of this size.
+std::vector<Tile> tiles_of(const Part& part, int width, int height);
 
 /// Access to the picture's channels; non-finite pixels are read as black.
 class NoisyPicture {
