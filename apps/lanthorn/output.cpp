@@ -208,7 +208,8 @@ StatePicture::StatePicture(const RenderState& state, const std::vector<fs::path>
   if (is_denoised && !is_denoised_)
     warn("a picture of a single pass is not denoised: the noise is measured from differences between passes");
   needs_all_layers_ = is_denoised_ || std::any_of(files.begin(), files.end(), has_layers);
-  if (statistics.error_passes == summary_.pass_count) error_ = statistics.error;
+  // While a picture is denoised, the statistics may have the error of the denoised one.
+  if (!is_denoised_ && statistics.error_passes == summary_.pass_count) error_ = statistics.error;
 }
 
 const Image& StatePicture::with_all_layers() {

@@ -239,6 +239,7 @@ void render_view(const RenderCommand& a, Team* team, const Prepared& prepared, c
   stop.interrupted = &stop_requested();
   stop.drop = &drop_requested();
   stop.team = team;
+  if (stop.noise && a.output.denoise) stop.error_of = denoised_error(*stop.noise);
   if (team) plan_gathering(onlookers, a, *team);
   const RenderStatistics statistics = session.render(stop, make_observer(a, onlookers));
   onlookers.progress.finish();

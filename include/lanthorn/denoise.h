@@ -3,8 +3,11 @@
 // Denoises rendered pictures layer by layer, guided by the sample statistics that the renderer saved with them.
 #pragma once
 
+#include <functional>
+
 #include "lanthorn/error_estimate.h"
 #include "lanthorn/image.h"
+#include "lanthorn/state.h"
 
 namespace lanthorn {
 
@@ -36,6 +39,11 @@ DenoisedPicture denoise(const Image& picture, const Image& around);
 
 /// The margin (ViewOptions::margin) beyond which pixels around a crop hardly matter.
 inline constexpr int denoising_margin = 24;
+
+/// For StopRule::error_of: estimates the error of the denoised picture. While the noisy picture's error is more than 8
+/// times `limit`, which denoising cannot make up for, it is that of the noisy picture; and after an estimate, which
+/// costs as much as denoising, it stays the same until most of the passes are done that it lets expect.
+std::function<ErrorEstimate(const RenderState&)> denoised_error(double limit);
 
 /// Denoised R, G, B, for display while a render is in progress: ten times as fast as `denoise`, but leaves more noise.
 /// Treats `color` as a single layer, so there are no denoised layers that add up to it, and caustics are less sharp.

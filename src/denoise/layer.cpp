@@ -161,6 +161,14 @@ std::vector<Halves> pyramid_of(const Halves& light, std::size_t levels) {
   return pyramid;
 }
 
+Halves midpoint(const Halves& a, const Halves& b) {
+  Halves out = a;
+  for (std::size_t h = 0; h < 2; ++h)
+    for (std::size_t c = 0; c < color_channels; ++c)
+      out[h][c].fill([&](std::size_t i) { return (a[h][c][i] + b[h][c][i]) / 2; });
+  return out;
+}
+
 // The best result of the first regressions.
 Halves regress_once(const Halves& light, const Shares& shares, const std::vector<Surroundings>& levels,
                     const RegressionSettings& settings) {
@@ -263,6 +271,7 @@ DenoisedLayer denoise_layer(const Halves& light, const Shares& shares, const std
   add_pyramid(
       levels.size(), [&](std::size_t k) { return regress_again(of_level[k], before[k], shares, levels[k], again); },
       candidates);
+  candidates.push_back(midpoint(before[0], candidates.back()));  // their errors differ
   return choose(light, candidates, shares, levels[0].scale);
 }
 

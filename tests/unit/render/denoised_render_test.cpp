@@ -141,6 +141,21 @@ TEST(DenoisedRender, DenoisesTheBorderOfACropFromItsMargin) {
             0.2 * difference_at_border(denoise(crop).picture, of_whole));
 }
 
+TEST(DenoisedRender, StopsWhenTheDenoisedPictureIsGood) {
+  const SharedScene scene = box();
+  constexpr double limit = 0.2;
+  Session noisy(scene, options("path", 32)), denoised(scene, options("path", 32));
+  noisy.render({.passes = {0, 256}, .noise = limit});
+  const RenderStatistics statistics =
+      denoised.render({.passes = {0, 256}, .noise = limit, .error_of = denoised_error(limit)});
+  EXPECT_LT(denoised.pass_count(), noisy.pass_count() / 2);
+  const DenoisedPicture picture = denoise(with_noise(denoised.state(), picture_of(denoised.state())));
+  EXPECT_LE(picture.error.bound, limit);
+  ASSERT_TRUE(statistics.error);
+  EXPECT_EQ(statistics.error->bound, picture.error.bound);
+  EXPECT_FALSE(estimate_error(denoised.state()).is_below(limit));
+}
+
 TEST(DenoisedRender, HasLessErrorByAnyMethod) {
   const SharedScene scene = box();
   constexpr int size = 48;
