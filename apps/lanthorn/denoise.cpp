@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 
 #include "commands.h"
@@ -35,6 +36,7 @@ struct Input {
   Image picture;
   nlohmann::json metadata;
   bool measures_exposure = false;
+  std::optional<Image> around{};  // with a crop's margin
 };
 
 Input read_input(const DenoiseCommand& a) {
@@ -43,16 +45,17 @@ Input read_input(const DenoiseCommand& a) {
     const StateSummary summary = summarize(*state);
     const MeasuredPicture measured = measured_picture_of(*state);
     return {with_noise(*state, measured.picture),
-            metadata_of(summary, measured.error, a.settings.reproducible, nullptr), summary.measures_exposure};
+            metadata_of(summary, measured.error, a.settings.reproducible, nullptr), summary.measures_exposure,
+            with_margin(*state)};
   }
   const std::string metadata = read_image_metadata(a.input);
   return {read_image(a.input, ColorEncoding::automatic, a.max_pixels),
           metadata.empty() ? nlohmann::json::object() : nlohmann::json::parse(metadata)};
 }
 
-DenoisedPicture denoise_file(const std::string& name, const Image& picture) {
+DenoisedPicture denoise_file(const std::string& name, const Input& input) {
   try {
-    return denoise(picture);
+    return input.around ? denoise(input.picture, *input.around) : denoise(input.picture);
   } catch (const Error& e) {
     throw Error({name}, e.message);
   }
@@ -61,7 +64,7 @@ DenoisedPicture denoise_file(const std::string& name, const Image& picture) {
 void run(const DenoiseCommand& a) {
   check_outputs({{a.input, "the picture"}}, {{a.output, "-o", picture_extensions()}}, a.settings.force);
   Input input = read_input(a);
-  DenoisedPicture denoised = denoise_file(a.input, input.picture);
+  DenoisedPicture denoised = denoise_file(a.input, input);
   input.metadata["denoised_error"] = estimate_json(denoised.error);
   const bool beside = fs::path(a.output).extension() == ".exr" && !a.replace;
   write_picture(a.output, beside ? denoised.picture : with_denoised_light(denoised.picture), a.settings,

@@ -208,7 +208,8 @@ StatePicture::StatePicture(const RenderState& state, const std::vector<fs::path>
   if (is_denoised && !is_denoised_)
     warn("a picture of a single pass is not denoised: the noise is measured from differences between passes");
   needs_all_layers_ = is_denoised_ || std::any_of(files.begin(), files.end(), has_layers);
-  if (statistics.error_passes == summary_.pass_count) error_ = statistics.error;
+  // While a picture is denoised, the statistics may have the error of the denoised one.
+  if (!is_denoised_ && statistics.error_passes == summary_.pass_count) error_ = statistics.error;
 }
 
 const Image& StatePicture::with_all_layers() {
@@ -217,7 +218,8 @@ const Image& StatePicture::with_all_layers() {
   error_ = std::move(measured.error);
   all_layers_ = with_noise(state_, measured.picture);
   if (!is_denoised_) return *all_layers_;
-  DenoisedPicture denoised = denoise(*all_layers_);
+  const std::optional<Image> around = with_margin(state_);
+  DenoisedPicture denoised = around ? denoise(*all_layers_, *around) : denoise(*all_layers_);
   denoised_error_ = std::move(denoised.error);
   return all_layers_.emplace(std::move(denoised.picture));
 }

@@ -27,6 +27,7 @@ class Previews {
   const OutputSettings& settings_;
   double interval_;
   std::uint64_t last_pass_;
+  bool stops_denoised_;  // the error in the statistics may be that of the denoised picture
   ProgressDisplay& progress_;
   double next_ = 0;  // seconds since the render's start
 };

@@ -15,6 +15,7 @@
 #include "commands.h"
 #include "console.h"
 #include "frames.h"
+#include "lanthorn/denoise.h"
 #include "lanthorn/error.h"
 #include "lanthorn/image_file.h"
 #include "lanthorn/scene.h"
@@ -206,12 +207,20 @@ void save_view(const RenderCommand& a, const std::vector<fs::path>& outputs, con
                     session.pass_count()));
 }
 
+// A state that is resumed has a margin or not, whatever is asked for now.
+RenderOptions with_margin_for_denoising(const RenderCommand& a, const RenderState* resumed) {
+  RenderOptions options = a.options;
+  options.margin = resumed ? summarize(*resumed).margin : a.output.denoise ? denoising_margin : 0;
+  return options;
+}
+
 void render_view(const RenderCommand& a, Team* team, const Prepared& prepared, const ViewDescription& view,
                  Film& film) {
   const std::vector<fs::path>& outputs = prepared.outputs;
   const SharedScene scene = scale_lights(prepared.scene, a.changes.lights);
-  Session session(scene, view, a.options);
-  if (!a.resume.empty()) session.resume(open_state(a.resume), a.resume);
+  const std::shared_ptr<RenderState> resumed = a.resume.empty() ? nullptr : open_state(a.resume);
+  Session session(scene, view, with_margin_for_denoising(a, resumed.get()));
+  if (resumed) session.resume(resumed, a.resume);
   if (!is_first(team)) return help_to_render(session, *team);
   check_states(a, outputs, session);
 
@@ -230,6 +239,7 @@ void render_view(const RenderCommand& a, Team* team, const Prepared& prepared, c
   stop.interrupted = &stop_requested();
   stop.drop = &drop_requested();
   stop.team = team;
+  if (stop.noise && a.output.denoise) stop.error_of = denoised_error(*stop.noise);
   if (team) plan_gathering(onlookers, a, *team);
   const RenderStatistics statistics = session.render(stop, make_observer(a, onlookers));
   onlookers.progress.finish();

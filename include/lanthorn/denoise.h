@@ -3,8 +3,11 @@
 // Denoises rendered pictures layer by layer, guided by the sample statistics that the renderer saved with them.
 #pragma once
 
+#include <functional>
+
 #include "lanthorn/error_estimate.h"
 #include "lanthorn/image.h"
+#include "lanthorn/state.h"
 
 namespace lanthorn {
 
@@ -29,6 +32,18 @@ bool can_denoise(const Image& picture);
 /// The result does not depend on the number of threads. Memory: about 1.6 GB for 1024 x 1024 pixels; larger pictures
 /// are processed in tiles of that size. Throws Error if `can_denoise` is false.
 DenoisedPicture denoise(const Image& picture);
+
+/// As above, for a crop. `around`: the same render with pixels around it (`with_margin`), from which its border is
+/// denoised as well as its inside. Throws Error also if `around` does not contain it.
+DenoisedPicture denoise(const Image& picture, const Image& around);
+
+/// The margin (ViewOptions::margin) beyond which pixels around a crop hardly matter.
+inline constexpr int denoising_margin = 24;
+
+/// For StopRule::error_of: estimates the error of the denoised picture. While the noisy picture's error is more than 8
+/// times `limit`, which denoising cannot make up for, it is that of the noisy picture; and after an estimate, which
+/// costs as much as denoising, it stays the same until most of the passes are done that it lets expect.
+std::function<ErrorEstimate(const RenderState&)> denoised_error(double limit);
 
 /// Denoised R, G, B, for display while a render is in progress: ten times as fast as `denoise`, but leaves more noise.
 /// Treats `color` as a single layer, so there are no denoised layers that add up to it, and caustics are less sharp.

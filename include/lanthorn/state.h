@@ -53,6 +53,7 @@ struct StateSummary {
   bool measures_exposure = false, display_emission = false;  ///< see description::Film
   int width = 0, height = 0;                                 ///< pixels
   ImageWindow window;                                        ///< position of these pixels in the whole picture
+  int margin = 0;                                            ///< ViewOptions::margin
   FilmReport report;
   /// The share of path throughput that reached the limit of scattering events (PathEnds), from the camera or from
   /// lights, whichever is larger: an indication of how much light the limit may have cut off.
@@ -71,6 +72,10 @@ Image picture_without_error(const RenderState& state);
 /// noise.NAME, the first half of the passes minus all passes; and the channel noise.share, the fraction of the samples
 /// that belongs to this half.
 Image with_noise(const RenderState& state, const Image& picture);
+
+/// As `with_noise` of the picture and all pixels around it that were rendered for `denoise` (ViewOptions::margin);
+/// nullopt if there are none.
+std::optional<Image> with_margin(const RenderState& state);
 
 /// Estimated error of `picture_of`. Costs about as much as the picture.
 ErrorEstimate estimate_error(const RenderState& state);

@@ -32,6 +32,7 @@ class OwnMethod final : public Integrator {
     scene_ = std::make_shared<const Scene>(job.scene.data());
   }
   FilmContents film_contents(const Scene&) const override { return {}; }
+  bool crops_are_exact() const override { return false; }
   // Computes the whole pass before adding any of it to the film, so that an exception leaves no partial pass.
   PassReport render_pass(const RenderJob& job, std::uint32_t pass, const FilmPass& film,
                          const PhaseObserver& begin) override {

@@ -126,10 +126,7 @@ struct Session::Impl {
   }
   Image of(const Film& film, const std::vector<PassRange>& ranges, std::uint64_t passes) const {
     if (passes == 0) throw Error("there is no picture before the end of the first pass");
-    Image image = measured_picture_of(plan.state, film, ranges).picture;
-    const PixelWindow& window = plan.view.window;
-    image.window = {window.x0, window.y0, plan.view.camera.width(), plan.view.camera.height()};
-    return image;
+    return measured_picture_of(plan.state, film, ranges).picture;
   }
 };
 

@@ -87,10 +87,12 @@ View make_view(const ViewDescription& description, const ViewOptions& options) {
   const std::array<int, 2> resolution = choose_resolution(film, options);
   View view{Camera(description.camera, resolution[0], resolution[1], filter_margin(description.filter)),
             medium_id(description.camera.medium),
+            {},
             choose_window(film, resolution, options),
             Filter(filter_shape(description.filter)),
             {},
             film.imaging_ratio};
+  view.window = view.crop.grown(std::max(0, options.margin), resolution[0], resolution[1]);
   if (film.white_balance) view.sensor.balance = white_balance(*film.white_balance, film.color_space);
   view.sensor.largest_component = film.largest_component;
   if (options.clamp && !(*options.clamp > 0))

@@ -19,7 +19,8 @@ namespace lanthorn {
 struct View {
   Camera camera;
   MediumId medium = MediumId::vacuum;  ///< medium around the camera
-  PixelWindow window;                  ///< rendered part of the camera's film
+  PixelWindow window;                  ///< rendered part of the camera's film: the crop and its margin
+  PixelWindow crop;                    ///< the part that is shown
   Filter filter;
   Sensor sensor;
   float imaging_ratio = 1;  ///< pixel value / radiance (realistic camera: irradiance)

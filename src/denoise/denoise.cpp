@@ -77,17 +77,27 @@ std::vector<Surroundings> surroundings_of(const NoisyPicture& picture, const Til
   return levels;
 }
 
-// Writes the tile's pixels to a channel.
-void write(const Plane& plane, const Tile& tile, std::size_t channel, Image& to) {
+// Writes the tile's pixels to a channel of the picture of this part.
+void write(const Plane& plane, const Tile& tile, const Part& part, std::size_t channel, Image& to) {
   for (int y = 0; y < tile.height; ++y) {
     const float* const from = plane.row(tile.y - tile.outer_y + y) + tile.x - tile.outer_x;
-    for (int x = 0; x < tile.width; ++x) to.at(tile.x + x, tile.y + y, channel) = from[x];
+    for (int x = 0; x < tile.width; ++x) to.at(tile.x - part.x + x, tile.y - part.y + y, channel) = from[x];
   }
+}
+
+// Where the picture is in `around`.
+Part part_of(const Image& picture, const Image& around) {
+  const Part part{picture.window.x - around.window.x, picture.window.y - around.window.y, picture.width,
+                  picture.height};
+  if (part.x < 0 || part.y < 0 || part.x + part.width > around.width || part.y + part.height > around.height)
+    throw Error("the picture is no part of the picture around it: their data windows do not fit");
+  return part;
 }
 
 class Denoiser {
  public:
-  explicit Denoiser(const Image& picture) : noisy_(picture), layers_(light_layers(picture)) {
+  Denoiser(const Image& picture, const Image& around)
+      : picture_(picture), part_(part_of(picture, around)), noisy_(around), layers_(light_layers(around)) {
     std::vector<std::string> channels;
     const auto add = [&](const std::string& layer) {
       for (const char* const c : components) channels.push_back(denoised_prefix + layer + c);
@@ -100,32 +110,36 @@ class Denoiser {
   }
 
   DenoisedPicture run() {
-    for (const Tile& tile : tiles_of(denoised_.width, denoised_.height)) denoise_tile(tile);
+    for (const Tile& tile : tiles_of(part_, noisy_.image().width, noisy_.image().height)) denoise_tile(tile);
     estimate();
-    return {with_layers(without_denoised(noisy_.image()), denoised_), error_};
+    return {with_layers(without_denoised(picture_), denoised_), error_};
   }
 
  private:
   void denoise_tile(const Tile& tile) {
     const std::vector<Surroundings> levels = surroundings_of(noisy_, tile, add_features);
     Halves light = black(tile), result = light;  // sums over layers
+    Plane optimism = light[0][0];
     for (std::size_t l = 0; l < layers_.size(); ++l) {
       const Halves noisy = noisy_.read_halves(tile, layers_[l], components);
-      const Halves smooth = at_least_0(denoise_layer(noisy, noisy_.shares(), levels));
+      DenoisedLayer denoised = denoise_layer(noisy, noisy_.shares(), levels);
+      const Halves smooth = at_least_0(std::move(denoised.light));
       for (std::size_t c = 0; c < color_channels; ++c)
-        write(mean_of(smooth, c, noisy_.shares()), tile, (1 + l) * color_channels + c, denoised_);
+        write(mean_of(smooth, c, noisy_.shares()), tile, part_, (1 + l) * color_channels + c, denoised_);
       if (is_repeated(layers_[l])) continue;
       add(noisy, light);
       add(smooth, result);
+      optimism.fill([&](std::size_t i) { return optimism[i] + denoised.optimism[i]; });
     }
     write_sum(tile);
-    write_error(tile, light, result, levels[0].scale);
+    write_error(tile, light, result, optimism, levels[0].scale.light2);
   }
 
   // Sums up the layers as the film does.
   void write_sum(const Tile& tile) {
-    for (int y = tile.y; y < tile.y + tile.height; ++y)
-      for (int x = tile.x; x < tile.x + tile.width; ++x)
+    const int left = tile.x - part_.x, top = tile.y - part_.y;
+    for (int y = top; y < top + tile.height; ++y)
+      for (int x = left; x < left + tile.width; ++x)
         for (std::size_t c = 0; c < color_channels; ++c) {
           double sum = 0;
           for (std::size_t l = 0; l < layers_.size(); ++l)
@@ -134,11 +148,24 @@ class Denoiser {
         }
   }
 
-  void write_error(const Tile& tile, const Halves& light, const Halves& result, const ErrorScale& of_errors) {
+  Plane grey(const Halves& light) const {
+    Plane sum = mean_of(light, 0, noisy_.shares());
+    for (std::size_t c = 1; c < color_channels; ++c) {
+      const Plane channel = mean_of(light, c, noisy_.shares());
+      sum.fill([&](std::size_t i) { return sum[i] + channel[i]; });
+    }
+    sum.fill([&](std::size_t i) { return sum[i] / color_channels; });
+    return sum;
+  }
+
+  // `optimism`: relative to `light2`, the square of the light by which results were selected.
+  void write_error(const Tile& tile, const Halves& light, const Halves& result, const Plane& optimism,
+                   const Plane& light2) {
     constexpr int radius = 4;
+    const ErrorScale of_errors = noisy_.scale_of(grey(result));
     const Plane& scale = of_errors.light2;
     Plane error = squared_error(light, result, noisy_.shares(), of_errors);
-    error.fill([&](std::size_t i) { return sqr(optimism) * error[i]; });
+    error.fill([&](std::size_t i) { return error[i] + optimism[i] * light2[i] / scale[i]; });
     Plane bias(scale.width(), scale.height());
     if (has_layer(noisy_.image(), "bias", components))
       for (const char* const c : components) {
@@ -151,7 +178,7 @@ class Denoiser {
     const Plane standard_error = Plane::of(
         scale.width(), scale.height(), [&](std::size_t i) { return std::sqrt(std::max(0.0f, smooth[i]) * scale[i]); });
     for (std::size_t c = 0; c < color_channels; ++c)
-      write(standard_error, tile, (1 + layers_.size()) * color_channels + c, denoised_);
+      write(standard_error, tile, part_, (1 + layers_.size()) * color_channels + c, denoised_);
   }
 
   // Means over blocks of pixels, which are treated as independent values.
@@ -179,7 +206,7 @@ class Denoiser {
 
   void estimate() {
     constexpr double fewest_passes = 2, confidence_z = 1.28;  // 90th percentile of the normal distribution
-    const auto count = static_cast<double>(noisy_.pixel_count()), blocks = static_cast<double>(blocks_.size());
+    const auto count = static_cast<double>(part_.width) * part_.height, blocks = static_cast<double>(blocks_.size());
     Block sum;
     double squares = 0;
     for (const Block& b : blocks_) {
@@ -187,7 +214,8 @@ class Denoiser {
       sum.noise += b.noise;
       squares += b.error * b.error;
     }
-    const double error2 = std::max(0.0, sum.error / count), noise2 = std::min(error2, sum.noise / count);
+    // The estimate is noisy itself, but the error cannot be less than the noise.
+    const double noise2 = sum.noise / count, error2 = std::max(noise2, sum.error / count);
     const double variance = std::max(0.0, squares - sum.error * sum.error / blocks);
     ErrorEstimate& e = error_;
     e.error = std::sqrt(error2);
@@ -197,14 +225,12 @@ class Denoiser {
     if (noisy_.fewest_passes() < fewest_passes) e.doubt = "there are too few passes";
   }
 
-  // Correction of the estimate, which is too small because it takes the least of several candidates and the second
-  // guide knows both halves. True errors are mostly 1.1 to 1.5 times as large (48 renders of 4 to 64 passes).
-  static constexpr float optimism = 1.3f;
-
   struct Block {
     double error = 0, noise = 0;
   };
 
+  const Image& picture_;
+  Part part_;  // of the noisy picture
   NoisyPicture noisy_;
   std::vector<std::string> layers_;
   Image denoised_;
@@ -222,9 +248,11 @@ void require_halves(const Image& picture) {
 
 bool can_denoise(const Image& picture) { return has_halves(picture); }
 
-DenoisedPicture denoise(const Image& picture) {
-  require_halves(picture);
-  return Denoiser(picture).run();
+DenoisedPicture denoise(const Image& picture) { return denoise(picture, picture); }
+
+DenoisedPicture denoise(const Image& picture, const Image& around) {
+  require_halves(around);
+  return Denoiser(picture, around).run();
 }
 
 Image preview_without_noise(const Image& picture) {
@@ -232,13 +260,14 @@ Image preview_without_noise(const Image& picture) {
   const NoisyPicture noisy(picture);
   Image preview(picture.width, picture.height, {components.begin(), components.end()});
   preview.window = picture.window;
-  for (const Tile& tile : tiles_of(picture.width, picture.height)) {
+  const Part whole{0, 0, picture.width, picture.height};
+  for (const Tile& tile : tiles_of(whole, picture.width, picture.height)) {
     Halves light = black(tile);
     for (const std::string& layer : light_layers(picture))
       if (!is_repeated(layer)) add(noisy.read_halves(tile, layer, components), light);
     const std::vector<Surroundings> levels = surroundings_of(noisy, tile, add_noisy_features);
     const Halves smooth = at_least_0(preview_layer(light, noisy.shares(), levels));
-    for (std::size_t c = 0; c < color_channels; ++c) write(mean_of(smooth, c, noisy.shares()), tile, c, preview);
+    for (std::size_t c = 0; c < color_channels; ++c) write(mean_of(smooth, c, noisy.shares()), tile, whole, c, preview);
   }
   return preview;
 }

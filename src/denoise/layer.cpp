@@ -92,9 +92,7 @@ Halves regress_again(const Halves& light, const Halves& before, const Shares& sh
   Guide guide{{}, variance_of_mean(before, shares, variance_radius)};
   for (std::size_t c = 0; c < color_channels; ++c) guide.color[c] = mean_of(before, c, shares);
   guide.variance.fill([&](std::size_t i) { return guide.variance[i] + unseen * around.scale.light2[i]; });
-  Halves result = light;
-  for (std::size_t h = 0; h < 2; ++h) result[h] = regress(light[h], guide, around.features[h], settings);
-  return result;
+  return regress(light, guide, around.features, settings);
 }
 
 // Adds the results of `filter(level)` at the first level: alone, with low frequencies from the second level, from the
@@ -110,26 +108,46 @@ void add_pyramid(std::size_t levels, Filter&& filter, std::vector<Halves>& candi
   }
 }
 
-// For each pixel, the candidate with the least error around it.
-Halves choose(const Halves& light, const std::vector<Halves>& candidates, const Shares& shares,
-              const ErrorScale& scale) {
-  constexpr int error_radius = 4, border_radius = 2;  // pixels
-  std::vector<Plane> errors, parts(candidates.size(), Plane(scale.light2.width(), scale.light2.height()));
+// Estimated errors of the candidates around each pixel, by each half of their results.
+std::vector<std::array<Plane, 2>> errors_of(const Halves& light, const std::vector<Halves>& candidates,
+                                            const Shares& shares, const ErrorScale& scale) {
+  constexpr int radius = 4;  // pixels
+  std::vector<std::array<Plane, 2>> errors;
   errors.reserve(candidates.size());
-  for (const Halves& candidate : candidates)
-    errors.push_back(
-        box_filtered(box_filtered(squared_error(light, candidate, shares, scale), error_radius), error_radius));
-  for (std::size_t i = 0; i < scale.light2.size(); ++i) {
-    std::size_t best = 0;
-    for (std::size_t k = 1; k < candidates.size(); ++k)
-      if (errors[k][i] < errors[best][i]) best = k;
-    parts[best][i] = 1;
+  for (const Halves& candidate : candidates) {
+    errors.push_back(squared_errors(light, candidate, shares, scale));
+    for (Plane& error : errors.back()) error = box_filtered(box_filtered(error, radius), radius);
   }
+  return errors;
+}
+
+// For each pixel, the candidate with the least error around it.
+DenoisedLayer choose(const Halves& light, const std::vector<Halves>& candidates, const Shares& shares,
+                     const ErrorScale& scale) {
+  constexpr int border_radius = 2;  // pixels
+  const std::vector<std::array<Plane, 2>> errors = errors_of(light, candidates, shares, scale);
+  std::vector<Plane> parts(candidates.size(), Plane(scale.light2.width(), scale.light2.height()));
+  DenoisedLayer result{light, parts[0]};
+  result.optimism.for_each_row([&](int y) {
+    const auto w = static_cast<std::size_t>(scale.light2.width());
+    for (std::size_t i = static_cast<std::size_t>(y) * w, end = i + w; i < end; ++i) {
+      const auto all = [&](std::size_t k) { return shares[0] * errors[k][0][i] + shares[1] * errors[k][1][i]; };
+      std::size_t best = 0;
+      std::array<std::size_t, 2> best_of{};
+      for (std::size_t k = 1; k < candidates.size(); ++k) {
+        if (all(k) < all(best)) best = k;
+        for (std::size_t h = 0; h < 2; ++h)
+          if (errors[k][h][i] < errors[best_of[h]][h][i]) best_of[h] = k;
+      }
+      parts[best][i] = 1;
+      result.optimism[i] =
+          shares[0] * errors[best_of[1]][0][i] + shares[1] * errors[best_of[0]][1][i] - all(best);
+    }
+  });
   for (Plane& part : parts) part = box_filtered(part, border_radius);
-  Halves result = light;
   for (std::size_t h = 0; h < 2; ++h)
     for (std::size_t c = 0; c < color_channels; ++c)
-      result[h][c].fill([&](std::size_t i) {
+      result.light[h][c].fill([&](std::size_t i) {
         float sum = 0;
         for (std::size_t k = 0; k < candidates.size(); ++k) sum += parts[k][i] * candidates[k][h][c][i];
         return sum;
@@ -141,6 +159,14 @@ std::vector<Halves> pyramid_of(const Halves& light, std::size_t levels) {
   std::vector<Halves> pyramid{light};
   while (pyramid.size() < levels) pyramid.push_back(halved(pyramid.back()));
   return pyramid;
+}
+
+Halves midpoint(const Halves& a, const Halves& b) {
+  Halves out = a;
+  for (std::size_t h = 0; h < 2; ++h)
+    for (std::size_t c = 0; c < color_channels; ++c)
+      out[h][c].fill([&](std::size_t i) { return (a[h][c][i] + b[h][c][i]) / 2; });
+  return out;
 }
 
 // The best result of the first regressions.
@@ -156,7 +182,7 @@ Halves regress_once(const Halves& light, const Shares& shares, const std::vector
                                  shares, variance_radius, settings);
       },
       candidates);
-  return choose(light, candidates, shares, levels[0].scale);
+  return choose(light, candidates, shares, levels[0].scale).light;
 }
 
 }  // namespace
@@ -166,19 +192,35 @@ Plane mean_of(const Halves& light, std::size_t channel, const Shares& shares) {
   return Plane::of(a.width(), a.height(), [&](std::size_t i) { return shares[0] * a[i] + shares[1] * b[i]; });
 }
 
-Plane squared_error(const Halves& light, const Halves& result, const Shares& shares, const ErrorScale& scale) {
+std::array<Plane, 2> squared_errors(const Halves& light, const Halves& result, const Shares& shares,
+                                    const ErrorScale& scale) {
   const float wa = shares[0], wb = shares[1];
   const auto seen = [&](const Plane& plane, std::size_t i) { return std::min(plane[i], scale.white); };
-  return Plane::of(scale.light2.width(), scale.light2.height(), [&](std::size_t i) {
-    float sum = 0;
-    for (std::size_t c = 0; c < color_channels; ++c) {
-      const float a = seen(light[0][c], i), b = seen(light[1][c], i), da = seen(result[0][c], i),
-                  db = seen(result[1][c], i);
-      const float noise = sqr(a - b);  // weighted by wa it is the variance of b, by wb that of a
-      sum += wa * (sqr(da - b) - wa * noise) + wb * (sqr(db - a) - wb * noise) - wa * wb * sqr(da - db);
+  Plane of_a(scale.light2.width(), scale.light2.height()), of_b = of_a;
+  of_a.for_each_row([&](int y) {
+    const auto w = static_cast<std::size_t>(of_a.width());
+    for (std::size_t i = static_cast<std::size_t>(y) * w, end = i + w; i < end; ++i) {
+      float sum_a = 0, sum_b = 0;
+      for (std::size_t c = 0; c < color_channels; ++c) {
+        const float a = seen(light[0][c], i), b = seen(light[1][c], i), da = seen(result[0][c], i),
+                    db = seen(result[1][c], i);
+        const float noise = sqr(a - b);  // weighted by wa it is the variance of b, by wb that of a
+        const float averaged = wa * wb * sqr(da - db);
+        sum_a += sqr(da - b) - wa * noise - averaged;
+        sum_b += sqr(db - a) - wb * noise - averaged;
+      }
+      const float share = 1 / (static_cast<float>(color_channels) * scale.light2[i]);
+      of_a[i] = sum_a * share;
+      of_b[i] = sum_b * share;
     }
-    return sum / (static_cast<float>(color_channels) * scale.light2[i]);
   });
+  return {std::move(of_a), std::move(of_b)};
+}
+
+Plane squared_error(const Halves& light, const Halves& result, const Shares& shares, const ErrorScale& scale) {
+  std::array<Plane, 2> errors = squared_errors(light, result, shares, scale);
+  errors[0].fill([&](std::size_t i) { return shares[0] * errors[0][i] + shares[1] * errors[1][i]; });
+  return std::move(errors[0]);
 }
 
 Surroundings halved(const Surroundings& surroundings) {
@@ -209,7 +251,8 @@ void add_features(const Halves& halves, const Shares& shares, std::array<Feature
   if (!is_noisy(halves)) return add_noisy_features(halves, shares, features);
   const Halves smooth =
       choose(halves, {halves, regress_crosswise(halves, halves, {}, shares, variance_radius, settings)}, shares,
-             {.light2 = Plane(halves[0][0].width(), halves[0][0].height(), 1)});
+             {.light2 = Plane(halves[0][0].width(), halves[0][0].height(), 1)})
+          .light;
   add_noisy_features(smooth, shares, features);
 }
 
@@ -218,16 +261,17 @@ Halves preview_layer(const Halves& light, const Shares& shares, const std::vecto
   return is_noisy(light) ? regress_once(light, shares, levels, settings) : light;
 }
 
-Halves denoise_layer(const Halves& light, const Shares& shares, const std::vector<Surroundings>& levels) {
+DenoisedLayer denoise_layer(const Halves& light, const Shares& shares, const std::vector<Surroundings>& levels) {
   constexpr RegressionSettings crosswise{.window = 7, .patch = 3, .stride = 4, .strength = 0.5f},
       again{.window = 7, .patch = 1, .stride = 2, .strength = 1};
-  if (!is_noisy(light)) return light;
+  if (!is_noisy(light)) return {light, Plane(light[0][0].width(), light[0][0].height())};
   const std::vector<Halves> of_level = pyramid_of(light, levels.size()),
                             before = pyramid_of(regress_once(light, shares, levels, crosswise), levels.size());
   std::vector<Halves> candidates{light, before[0]};
   add_pyramid(
       levels.size(), [&](std::size_t k) { return regress_again(of_level[k], before[k], shares, levels[k], again); },
       candidates);
+  candidates.push_back(midpoint(before[0], candidates.back()));  // their errors differ
   return choose(light, candidates, shares, levels[0].scale);
 }
 

@@ -28,6 +28,11 @@ struct ErrorScale {
 /// differs from it by the error of a and by its own noise, whose variance follows from the difference of the halves.
 Plane squared_error(const Halves& light, const Halves& result, const Shares& shares, const ErrorScale& scale);
 
+/// The same estimate by half a of the result alone and by half b alone, which differ in noise: that of half b of the
+/// light, and that of half a. Their mean, weighted by `shares`, is `squared_error`.
+std::array<Plane, 2> squared_errors(const Halves& light, const Halves& result, const Shares& shares,
+                                    const ErrorScale& scale);
+
 /// Data that all layers of a picture share, at one resolution.
 struct Surroundings {
   std::array<FeaturePlanes, 2> features;  ///< for each half
@@ -44,13 +49,20 @@ void add_features(const Halves& halves, const Shares& shares, std::array<Feature
 /// As `add_features`, without denoising.
 void add_noisy_features(const Halves& halves, const Shares& shares, std::array<FeaturePlanes, 2>& features);
 
+struct DenoisedLayer {
+  Halves light;
+  /// What `squared_error` of `light` leaves out, because the candidates of least estimated error were selected: each
+  /// half's estimate of the error of what the other half selects is free of this. Smooth.
+  Plane optimism;
+};
+
 /// Both halves of a layer, denoised. `levels`: surroundings at full resolution, half, a quarter and so on.
 ///
 /// At each level, each half is regressed with weights from patches of the other half, after removal of texture; low
 /// frequencies are taken from coarser levels, which reach farther and average noise that neighbouring pixels share, as
 /// photons within a kernel do. The result then guides a second regression, since it shows edges better. For each pixel,
 /// cross-validation selects the result of least error, which may be the unfiltered light.
-Halves denoise_layer(const Halves& light, const Shares& shares, const std::vector<Surroundings>& levels);
+DenoisedLayer denoise_layer(const Halves& light, const Shares& shares, const std::vector<Surroundings>& levels);
 
 /// Only the first regression, with small windows: much faster, but leaves more noise.
 Halves preview_layer(const Halves& light, const Shares& shares, const std::vector<Surroundings>& levels);

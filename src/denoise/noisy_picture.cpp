@@ -50,15 +50,15 @@ bool has_halves(const Image& picture) {
 
 bool is_repeated(const std::string& layer) { return layer == "media"; }
 
-std::vector<Tile> tiles_of(int width, int height) {
+std::vector<Tile> tiles_of(const Part& part, int width, int height) {
   // Multiples of the pyramid's coarsest pixels and of the spacing of regressions.
   constexpr int size = 1024, margin = 96;
+  const int right = part.x + part.width, bottom = part.y + part.height;
   std::vector<Tile> tiles;
-  for (int y = 0; y < height; y += size)
-    for (int x = 0; x < width; x += size) {
-      Tile t{
-          x, y, std::min(size, width - x), std::min(size, height - y), std::max(0, x - margin), std::max(0, y - margin),
-          0, 0};
+  for (int y = part.y; y < bottom; y += size)
+    for (int x = part.x; x < right; x += size) {
+      Tile t{x, y, std::min(size, right - x), std::min(size, bottom - y), std::max(0, x - margin),
+             std::max(0, y - margin), 0, 0};
       t.outer_width = std::min(width, x + size + margin) - t.outer_x;
       t.outer_height = std::min(height, y + size + margin) - t.outer_y;
       tiles.push_back(t);
@@ -141,16 +141,19 @@ Halves NoisyPicture::read_halves(const Tile& tile, const std::string& layer,
 
 ErrorScale NoisyPicture::scale_of(const Tile& tile) const {
   constexpr int radius = 2;
-  constexpr float dark = 0.01f, tiny = 1e-30f, bright = 10;
-  const float white = bright * mean_;
+  const float white = this->white();
   Plane light(tile.outer_width, tile.outer_height);
   for (const char* const c : components) {
     const Plane color = read(tile, c);
     light.fill([&](std::size_t i) { return light[i] + std::min(color[i], white) / 3; });
   }
-  light = box_filtered(light, radius);
-  light.fill([&](std::size_t i) { return sqr(light[i]) + dark * sqr(mean_) + tiny; });
-  return {std::move(light), white};
+  return scale_of(box_filtered(light, radius));
+}
+
+ErrorScale NoisyPicture::scale_of(Plane light) const {
+  constexpr float dark = 0.01f, tiny = 1e-30f;
+  light.fill([&](std::size_t i) { return sqr(std::min(light[i], white())) + dark * sqr(mean_) + tiny; });
+  return {std::move(light), white()};
 }
 
 ColorPlanes NoisyPicture::demodulation_of(const std::array<FeaturePlanes, 2>& features) const {

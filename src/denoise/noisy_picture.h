@@ -38,8 +38,12 @@ struct Tile {
   int x, y, width, height;
   int outer_x, outer_y, outer_width, outer_height;
 };
-/// Tiles that cover a picture of this size.
-std::vector<Tile> tiles_of(int width, int height);
+/// A rectangle of pixels of a picture.
+struct Part {
+  int x = 0, y = 0, width = 0, height = 0;
+};
+/// Tiles that cover a part of a picture of this size.
+std::vector<Tile> tiles_of(const Part& part, int width, int height);
 
 /// Access to the picture's channels; non-finite pixels are read as black.
 class NoisyPicture {
@@ -58,11 +62,14 @@ class NoisyPicture {
   Halves read_halves(const Tile& tile, const std::string& layer, const std::array<const char*, 3>& names) const;
   /// As in `ErrorEstimate`; values above ten times the picture's mean are clamped to it.
   ErrorScale scale_of(const Tile& tile) const;
+  /// The same by the mean of the colour channels of a better picture.
+  ErrorScale scale_of(Plane light) const;
   /// Factors that divide light by the albedo of these features.
   ColorPlanes demodulation_of(const std::array<FeaturePlanes, 2>& features) const;
 
  private:
   std::size_t channel_of(const std::string& name) const { return *picture_.find_channel(name); }
+  float white() const { return 10 * mean_; }
   // Checks that the layers add up, because other programs may have omitted some. `light`: sum of color over all pixels.
   void check_sum(double light) const;
 

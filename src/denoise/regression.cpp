@@ -32,10 +32,13 @@ class PaddedPlane {
       const int period = 2 * count, at = ((i % period) + period) % period;
       return at < count ? at : period - 1 - at;
     };
+    const int width = plane.width(), right = border + width;
     plane_.for_each_row([&](int y) {
       const float* from = plane.row(inside(y - border, plane.height()));
       float* to = plane_.row(y);
-      for (int x = 0; x < plane_.width(); ++x) to[x] = from[inside(x - border, plane.width())];
+      for (int x = 0; x < border; ++x) to[x] = from[inside(x - border, width)];
+      std::copy_n(from, width, to + border);
+      for (int x = right; x < plane_.width(); ++x) to[x] = from[inside(x - border, width)];
     });
   }
   const float* at(int x, int y) const { return plane_.row(y + border_) + x + border_; }
@@ -72,81 +75,58 @@ LanePair all_lanes(float x) { return {Lanes(x), Lanes(x)}; }
 
 using Coefficients = std::array<std::array<float, color_channels>, most_terms>;
 
-class Regression {
+// Calls `body(x, y)` for the corners of all tiles. Tiles that run at the same time are so far apart that their
+// neighbourhoods do not overlap: a pixel's sums are accumulated in the same order for any number of threads.
+template <class Body>
+void for_each_tile(int width, int height, Body&& body) {
+  const int across = (width + tile_size - 1) / tile_size, down = (height + tile_size - 1) / tile_size;
+  for (const auto& [first_x, first_y] : {std::pair{0, 0}, {1, 0}, {0, 1}, {1, 1}}) {
+    std::vector<std::pair<int, int>> tiles;
+    for (int y = first_y; y < down; y += 2)
+      for (int x = first_x; x < across; x += 2) tiles.emplace_back(x * tile_size, y * tile_size);
+    parallel_for(std::size_t{0}, tiles.size(), [&](std::size_t i) { body(tiles[i].first, tiles[i].second); });
+  }
+}
+
+// exp(-y) for y >= 0, to a tenth of its value up to 7, and 0 from 256 on: (1 - y / 256)^256.
+Lanes falling(const Lanes& y) {
+  Lanes x = max(Lanes(0.0f), Lanes(1.0f) - y * (1.0f / 256));
+  for (int i = 0; i < 8; ++i) x = x * x;
+  return x;
+}
+
+// The weights of the neighbourhoods of a tile's centres.
+class Weights {
  public:
-  Regression(const ColorPlanes& light, const Guide& guide, const FeaturePlanes& features,
-             const RegressionSettings& settings)
-      : light_(light),
-        features_(features),
-        settings_(settings),
-        width_(light[0].width()),
-        height_(light[0].height()),
+  Weights(const Guide& guide, const RegressionSettings& settings)
+      : settings_(settings),
+        width_(guide.variance.width()),
+        height_(guide.variance.height()),
         side_(2 * settings.window + 1),
-        terms_(1 + features.values.size()),
         points_(tile_size / settings.stride),
-        variance_(guide.variance, border()),
-        weight_sums_(Plane(width_, height_), span) {
+        variance_(guide.variance, border()) {
     for (const Plane& plane : guide.color) color_.emplace_back(plane, border());
-    for (const Plane& plane : features.values) values_.emplace_back(plane, span);
-    observations_.resize(light[0].size());
-    light[0].for_each_row([&](int y) {
-      for (int x = 0; x < width_; ++x) observe(index(x, y));
-    });
-    sums_.fill(weight_sums_);
   }
 
-  // Tiles of the same phase are so far apart that their neighbourhoods do not overlap: a pixel's sums are accumulated
-  // in the same order for any number of threads.
-  void run() {
-    const int across = (width_ + tile_size - 1) / tile_size, down = (height_ + tile_size - 1) / tile_size;
-    for (const auto& [first_x, first_y] : {std::pair{0, 0}, {1, 0}, {0, 1}, {1, 1}}) {
-      std::vector<std::pair<int, int>> tiles;
-      for (int y = first_y; y < down; y += 2)
-        for (int x = first_x; x < across; x += 2) tiles.emplace_back(x * tile_size, y * tile_size);
-      parallel_for(std::size_t{0}, tiles.size(), [&](std::size_t i) { fit_tile(tiles[i].first, tiles[i].second); });
-    }
+  /// Centres in a row of a tile.
+  int points() const { return points_; }
+  /// Of the tile at (x0, y0), in the order of `index_of`.
+  std::vector<float> of_tile(int x0, int y0) const {
+    std::vector<float> weights(index_of(0, points_));
+    for (int dy = -settings_.window; dy <= settings_.window; ++dy)
+      for (int dx = -settings_.window; dx <= settings_.window; ++dx) weigh_shift(x0, y0, dx, dy, weights);
+    return weights;
   }
-
-  ColorPlanes result() const {
-    constexpr float own = 1e-2f;  // weight of a pixel's own light, for pixels that resemble no others
-    ColorPlanes result = light_;
-    for (std::size_t c = 0; c < color_channels; ++c)
-      result[c].for_each_row([&](int y) {
-        float* const light = result[c].row(y);
-        const float *sums = sums_[c].at(0, y), *weights = weight_sums_.at(0, y);
-        for (int x = 0; x < width_; ++x) light[x] = (sums[x] + own * light[x]) / (weights[x] + own);
-      });
-    return result;
-  }
-
- private:
-  // Covers the patches of all centres that a tile may have, inside the picture or not.
-  int border() const { return settings_.window + settings_.patch + tile_size; }
-  std::size_t index(int x, int y) const { return size(y) * size(width_) + size(x); }
-
-  void observe(std::size_t pixel) {
-    Observation& v = observations_[pixel];
-    v.fill(0);
-    v[0] = 1;
-    for (std::size_t f = 1; f < terms_; ++f) v[f] = features_.values[f - 1][pixel];
-    for (std::size_t c = 0; c < color_channels; ++c) v[most_terms + c] = light_[c][pixel];
-  }
-
-  // Index of the weights of a centre's neighbourhood, row by row.
-  std::size_t weights_of(int column, int row) const {
+  /// Index of the weights of a centre's neighbourhood, row by row.
+  std::size_t index_of(int column, int row) const {
     return (size(row) * size(points_) + size(column)) * size(side_) * size(span);
   }
 
-  void fit_tile(int x0, int y0) {
-    std::vector<float> weights(weights_of(0, points_));
-    for (int dy = -settings_.window; dy <= settings_.window; ++dy)
-      for (int dx = -settings_.window; dx <= settings_.window; ++dx) weigh_shift(x0, y0, dx, dy, weights);
-    for (int row = 0; row < points_; ++row)
-      for (int column = 0; column < points_; ++column) {
-        const int x = x0 + settings_.stride * column, y = y0 + settings_.stride * row;
-        if (x < width_ && y < height_) fit(x, y, &weights[weights_of(column, row)]);
-      }
-  }
+ private:
+  static constexpr int most_points = tile_size / 2;
+
+  // Covers the patches of all centres that a tile may have, inside the picture or not.
+  int border() const { return settings_.window + settings_.patch + tile_size; }
 
   // Squared differences between pixels and those at offset (dx, dy), divided by their variance.
   void compare(int x, int y, int dx, int dy, int count, float* out) const {
@@ -167,8 +147,6 @@ class Regression {
     std::array<float, most * most> differences;
     for (int j = 0; j < extent; ++j)
       compare(x0 - settings_.patch, y0 + j - settings_.patch, dx, dy, extent, &differences[size(j) * size(most)]);
-    const float mean = 1 / static_cast<float>(patch * patch);
-    const float scale = 1 / (settings_.strength * settings_.strength);
     std::array<float, most> sums;
     for (int row = 0; row < points_; ++row) {
       const int y = y0 + settings_.stride * row + dy;
@@ -178,15 +156,97 @@ class Regression {
         const float* in = &differences[size(settings_.stride * row + k) * size(most)];
         for (int i = 0; i < extent; ++i) sums[size(i)] += in[i];
       }
+      const std::array<float, most_points> of_row = weights_of_row(sums.data());
+      float* const out = &weights[index_of(0, row) + size(dy + settings_.window) * size(span) +
+                                  size(dx + settings_.window)];
       for (int column = 0; column < points_; ++column) {
         const int x = x0 + settings_.stride * column + dx;
-        if (x < 0 || x >= width_) continue;
-        float sum = 0;
-        for (int k = 0; k < patch; ++k) sum += sums[size(settings_.stride * column + k)];
-        weights[weights_of(column, row) + size(dy + settings_.window) * size(span) + size(dx + settings_.window)] =
-            std::exp(-std::max(0.0f, sum * mean - 1) * scale);
+        if (x >= 0 && x < width_) out[index_of(column, 0)] = of_row[size(column)];
       }
     }
+  }
+
+  // Of the centres in a row of a tile. `sums`: sums of differences over the height of a patch.
+  std::array<float, most_points> weights_of_row(const float* sums) const {
+    const int patch = 2 * settings_.patch + 1;
+    const float mean = 1 / static_cast<float>(patch * patch);
+    const float scale = 1 / (settings_.strength * settings_.strength);
+    std::array<float, most_points> weights{};
+    for (int column = 0; column < points_; ++column)
+      for (int k = 0; k < patch; ++k) weights[size(column)] += sums[settings_.stride * column + k];
+    static_assert(columns == most_points);
+    const LanePair all = LanePair::load(weights.data());
+    const auto weigh = [&](const Lanes& sum) { return falling(max(Lanes(0.0f), sum * mean - 1.0f) * scale); };
+    LanePair{weigh(all.low), weigh(all.high)}.store(weights.data());
+    return weights;
+  }
+
+  RegressionSettings settings_;
+  int width_, height_, side_, points_;
+  PaddedPlane variance_;
+  std::vector<PaddedPlane> color_;
+};
+
+class Regression {
+ public:
+  Regression(const ColorPlanes& light, const FeaturePlanes& features, const RegressionSettings& settings)
+      : light_(light),
+        features_(features),
+        settings_(settings),
+        width_(light[0].width()),
+        height_(light[0].height()),
+        terms_(1 + features.values.size()),
+        weight_sums_(Plane(width_, height_), span) {
+    for (const Plane& plane : features.values) values_.emplace_back(plane, span);
+    observations_.resize(light[0].size());
+    light[0].for_each_row([&](int y) {
+      for (int x = 0; x < width_; ++x) observe(index(x, y));
+    });
+    sums_.fill(weight_sums_);
+  }
+
+  // True if the result is 0 in all pixels that this tile contributes to, whatever it contributes: all fits that they
+  // are predicted by see no light.
+  bool is_dark_around(int x0, int y0) const {
+    const int reach = 3 * settings_.window;
+    const int left = std::max(0, x0 - reach), right = std::min(width_, x0 + tile_size + reach);
+    for (int y = std::max(0, y0 - reach); y < std::min(height_, y0 + tile_size + reach); ++y)
+      for (const Plane& plane : light_) {
+        const float* const row = plane.row(y);
+        if (std::any_of(row + left, row + right, [](float x) { return x != 0; })) return false;
+      }
+    return true;
+  }
+
+  void fit_tile(int x0, int y0, const Weights& order, const std::vector<float>& weights) {
+    for (int row = 0; row < order.points(); ++row)
+      for (int column = 0; column < order.points(); ++column) {
+        const int x = x0 + settings_.stride * column, y = y0 + settings_.stride * row;
+        if (x < width_ && y < height_) fit(x, y, &weights[order.index_of(column, row)]);
+      }
+  }
+
+  ColorPlanes result() const {
+    constexpr float own = 1e-2f;  // weight of a pixel's own light, for pixels that resemble no others
+    ColorPlanes result = light_;
+    for (std::size_t c = 0; c < color_channels; ++c)
+      result[c].for_each_row([&](int y) {
+        float* const light = result[c].row(y);
+        const float *sums = sums_[c].at(0, y), *weights = weight_sums_.at(0, y);
+        for (int x = 0; x < width_; ++x) light[x] = (sums[x] + own * light[x]) / (weights[x] + own);
+      });
+    return result;
+  }
+
+ private:
+  std::size_t index(int x, int y) const { return size(y) * size(width_) + size(x); }
+
+  void observe(std::size_t pixel) {
+    Observation& v = observations_[pixel];
+    v.fill(0);
+    v[0] = 1;
+    for (std::size_t f = 1; f < terms_; ++f) v[f] = features_.values[f - 1][pixel];
+    for (std::size_t c = 0; c < color_channels; ++c) v[most_terms + c] = light_[c][pixel];
   }
 
   void fit(int x, int y, const float* weights) {
@@ -296,11 +356,9 @@ class Regression {
   const ColorPlanes& light_;
   const FeaturePlanes& features_;
   RegressionSettings settings_;
-  int width_, height_, side_;
+  int width_, height_;
   std::size_t terms_;
-  int points_;  // centres in a row of a tile
-  PaddedPlane variance_;
-  std::vector<PaddedPlane> color_, values_;
+  std::vector<PaddedPlane> values_;
   std::vector<Observation> observations_;
   PaddedPlane weight_sums_;
   std::array<PaddedPlane, color_channels> sums_;
@@ -310,9 +368,24 @@ class Regression {
 
 ColorPlanes regress(const ColorPlanes& light, const Guide& guide, const FeaturePlanes& features,
                     const RegressionSettings& settings) {
-  Regression regression(light, guide, features, settings);
-  regression.run();
+  const Weights weights(guide, settings);
+  Regression regression(light, features, settings);
+  for_each_tile(light[0].width(), light[0].height(), [&](int x, int y) {
+    if (!regression.is_dark_around(x, y)) regression.fit_tile(x, y, weights, weights.of_tile(x, y));
+  });
   return regression.result();
+}
+
+Halves regress(const Halves& light, const Guide& guide, const std::array<FeaturePlanes, 2>& features,
+               const RegressionSettings& settings) {
+  const Weights weights(guide, settings);
+  std::array regressions{Regression(light[0], features[0], settings), Regression(light[1], features[1], settings)};
+  for_each_tile(light[0][0].width(), light[0][0].height(), [&](int x, int y) {
+    if (regressions[0].is_dark_around(x, y) && regressions[1].is_dark_around(x, y)) return;
+    const std::vector<float> of_tile = weights.of_tile(x, y);
+    for (Regression& regression : regressions) regression.fit_tile(x, y, weights, of_tile);
+  });
+  return {regressions[0].result(), regressions[1].result()};
 }
 
 }  // namespace lanthorn::denoising

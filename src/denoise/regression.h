@@ -31,7 +31,7 @@ struct Guide {
 struct RegressionSettings {
   int window;      ///< radius in pixels of the neighbourhood over which a pixel's light is regressed; at most 7
   int patch;       ///< radius in pixels of the compared patches; at most 3
-  int stride;      ///< pixels between the centres of regressions
+  int stride;      ///< pixels between the centres of regressions; at least 2
   float strength;  ///< weight 1/e at this many standard deviations beyond the noise
 };
 
@@ -41,5 +41,9 @@ struct RegressionSettings {
 /// all pixels of its neighbourhood; a pixel is the weighted mean of its predictions.
 ColorPlanes regress(const ColorPlanes& light, const Guide& guide, const FeaturePlanes& features,
                     const RegressionSettings& settings);
+
+/// Both halves, with the weights of one guide.
+Halves regress(const Halves& light, const Guide& guide, const std::array<FeaturePlanes, 2>& features,
+               const RegressionSettings& settings);
 
 }  // namespace lanthorn::denoising

@@ -22,6 +22,11 @@ struct PixelWindow {
     const auto y = static_cast<int>(std::clamp(raster.y, static_cast<float>(y0), static_cast<float>(y1 - 1)));
     return static_cast<std::uint32_t>((y - y0) * width() + x - x0);
   }
+  /// The window with as many more pixels on each side, where a film of this size has them.
+  PixelWindow grown(int margin, int film_width, int film_height) const {
+    return {std::max(0, x0 - margin), std::max(0, y0 - margin), std::min(film_width, x1 + margin),
+            std::min(film_height, y1 + margin)};
+  }
   friend bool operator==(const PixelWindow&, const PixelWindow&) = default;
 };
 

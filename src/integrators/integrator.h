@@ -113,6 +113,8 @@ class Integrator {
   virtual bool passes_may_overlap() const { return false; }
   /// False if a pass depends on earlier ones. Such a render can be resumed but not sharded.
   virtual bool passes_are_independent() const { return true; }
+  /// False if a pixel may change with the part of the film that is rendered, beyond the part that is shown.
+  virtual bool crops_are_exact() const { return true; }
   /// Peak memory with these settings. Zero for methods that do not store light paths.
   virtual MemoryUse memory_use(const RenderSettings& /*settings*/) const { return {}; }
   /// State that later passes depend on, beyond the film. If passes are independent, the state only saves them work and

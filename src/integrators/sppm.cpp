@@ -84,6 +84,7 @@ class StochasticProgressivePhotonMapper final : public Integrator {
             .media = records_for(photon_source_.volume())};
   }
   bool passes_are_independent() const override { return false; }
+  bool crops_are_exact() const override { return false; }
   std::vector<std::byte> save() const override {
     const auto bytes = std::as_bytes(std::span(radii_));
     return {bytes.begin(), bytes.end()};

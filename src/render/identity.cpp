@@ -130,7 +130,7 @@ nlohmann::json identity(const Scene& scene, const ViewDescription& view, const R
   const SceneDescription& description = scene.description();
   const RenderSettings& s = plan.settings;
   const Camera& camera = plan.view.camera;
-  const PixelWindow& window = plan.view.window;
+  const PixelWindow &crop = plan.view.crop, &window = plan.view.window;
   nlohmann::json result{
       {"version", version},
       {"scene_hash", hash_text(hash_of(description))},
@@ -142,7 +142,7 @@ nlohmann::json identity(const Scene& scene, const ViewDescription& view, const R
       {"max_depth", s.max_depth},
       {"photons", s.photons * s.parts},
       {"resolution", {camera.width(), camera.height()}},
-      {"crop", {window.x0, window.y0, window.x1, window.y1}},
+      {"crop", {crop.x0, crop.y0, crop.x1, crop.y1}},
       {"filter", describe_filter(view.filter)},
   };
   // Named after the density of wavelengths: passes drawn with another density have another colour balance.
@@ -150,6 +150,8 @@ nlohmann::json identity(const Scene& scene, const ViewDescription& view, const R
     result["plateau_wavelength_sets"] = s.parts;
     if (scene.has_dispersion()) result["heroes_in_blocks"] = true;  // by `wavelengths_in_order`
   }
+  if (window != crop)
+    result["margin"] = {crop.x0 - window.x0, crop.y0 - window.y0, window.x1 - crop.x1, window.y1 - crop.y1};
   if (plan.view.sensor.path_limit) result["clamp"] = *plan.view.sensor.path_limit;
   // The scene file's own view is part of the file, whose hash stands for it.
   const std::uint64_t hash = ViewNumbers(view).hash();

@@ -38,14 +38,35 @@ Passes passes_in(const Passes& passes, FilmHalf half) {
   return own;
 }
 
-// `color`: of all passes.
-MeasuredError measure_error(const RenderState& state, const Film& film, const Passes& passes, Image color) {
+// The part of a picture of the film that is shown.
+Image shown(const ShownPart& part, Image image) {
+  if (image.pixels.empty()) return image;
+  Image out(part.width, part.height, std::move(image.channels));
+  out.window = part.window;
+  if (out.pixels.size() == image.pixels.size()) {
+    out.pixels = std::move(image.pixels);
+    return out;
+  }
+  const std::size_t row = static_cast<std::size_t>(part.width) * out.channel_count();
+  const std::size_t all = static_cast<std::size_t>(image.width) * out.channel_count();
+  for (int y = 0; y < part.height; ++y) {
+    const std::size_t from = static_cast<std::size_t>(part.y + y) * all + static_cast<std::size_t>(part.x) * out.channel_count();
+    std::copy_n(image.pixels.begin() + static_cast<std::ptrdiff_t>(from), row,
+                out.pixels.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(y) * row));
+  }
+  return out;
+}
+
+// `color`: of all passes and of the same part.
+MeasuredError measure_error(const RenderState& state, const Film& film, const ShownPart& part, const Passes& passes,
+                            Image color) {
   PictureHalves pictures{.picture = std::move(color)};
   for (const FilmHalf half : {FilmHalf::first, FilmHalf::second}) {
     const auto h = static_cast<std::size_t>(half);
     const Passes own = passes_in(passes, half);
     pictures.passes[h] = count(own);
-    pictures.halves[h] = film.resolve_half(half, pictures.passes[h], colour_balance(state, own));
+    HalfPicture resolved = film.resolve_half(half, pictures.passes[h], colour_balance(state, own));
+    pictures.halves[h] = {shown(part, std::move(resolved.color)), shown(part, std::move(resolved.bias))};
   }
   MeasuredError measured = lanthorn::measure_error(pictures);
   if (nlohmann::json::parse(state.settings).contains("bias_not_measured"))
@@ -76,37 +97,56 @@ Image noise_of(const Image& picture, Image first_half) {
 
 }  // namespace
 
-MeasuredPicture measured_picture_of(const RenderState& state, const Film& film, const Passes& passes) {
-  Image image = film.resolve(passes_or_one(passes), colour_balance(state, passes));
-  MeasuredError error = measure_error(state, film, passes, *select_layer(image, "color"));
+namespace {
+
+MeasuredPicture measured_part(const RenderState& state, const Film& film, const ShownPart& part, const Passes& passes) {
+  Image image = shown(part, film.resolve(passes_or_one(passes), colour_balance(state, passes)));
+  MeasuredError error = measure_error(state, film, part, passes, *select_layer(image, "color"));
   image = with_layers(image, prefixed("error.", std::move(error.standard_error)));
   if (film.contents().bias) image = with_layers(image, prefixed("bias.", std::move(error.bias)));
   return {std::move(image), std::move(error.estimate)};
 }
 
+// `picture`: of the same part.
+Image part_with_noise(const RenderState& state, const ShownPart& part, const Image& picture) {
+  const Passes first = passes_in(state.passes, FilmHalf::first);
+  Image half = shown(part, state.film.resolve_first_half(count(first), colour_balance(state, first)));
+  return with_layers(picture, prefixed("noise.", noise_of(picture, std::move(half))));
+}
+
+}  // namespace
+
+MeasuredPicture measured_picture_of(const RenderState& state, const Film& film, const Passes& passes) {
+  return measured_part(state, film, shown_part(state), passes);
+}
+
 MeasuredPicture measured_picture_of(const RenderState& state) {
-  MeasuredPicture measured = measured_picture_of(state, state.film, state.passes);
-  measured.picture.window = window_of(state);
-  return measured;
+  return measured_picture_of(state, state.film, state.passes);
 }
 
 Image picture_of(const RenderState& state) { return measured_picture_of(state).picture; }
 
 Image picture_without_error(const RenderState& state) {
-  Image image = state.film.resolve(passes_or_one(state.passes), colour_balance(state));
-  image.window = window_of(state);
-  return image;
+  return shown(shown_part(state), state.film.resolve(passes_or_one(state.passes), colour_balance(state)));
 }
 
 Image with_noise(const RenderState& state, const Image& picture) {
-  const Passes first = passes_in(state.passes, FilmHalf::first);
-  Image noise = noise_of(picture, state.film.resolve_first_half(count(first), colour_balance(state, first)));
-  return with_layers(picture, prefixed("noise.", std::move(noise)));
+  return part_with_noise(state, shown_part(state), picture);
+}
+
+std::optional<Image> with_margin(const RenderState& state) {
+  const ShownPart inner = shown_part(state);
+  if (!inner.has_margin(state.film)) return std::nullopt;
+  ShownPart all{0, 0, state.film.width(), state.film.height(), inner.window};
+  all.window.x -= inner.x;
+  all.window.y -= inner.y;
+  return part_with_noise(state, all, measured_part(state, state.film, all, state.passes).picture);
 }
 
 ErrorEstimate estimate_error(const RenderState& state) {
-  Image color = state.film.resolve_color(passes_or_one(state.passes), colour_balance(state));
-  return measure_error(state, state.film, state.passes, std::move(color)).estimate;
+  const ShownPart part = shown_part(state);
+  Image color = shown(part, state.film.resolve_color(passes_or_one(state.passes), colour_balance(state)));
+  return measure_error(state, state.film, part, state.passes, std::move(color)).estimate;
 }
 
 }  // namespace lanthorn

@@ -70,8 +70,8 @@ RenderSettings choose_settings(const Scene& scene, const ViewDescription& descri
   if (buckets && s.color == ColorMode::rgb)
     throw Error("--color rgb: the scene's film is \"spectral\", which only spectral rendering can fill");
   s.max_depth = options.max_depth ? *options.max_depth : scene_max_depth(scene);
-  const PixelWindow& window = plan.view.window;
-  const auto pixels = static_cast<std::uint64_t>(window.width()) * static_cast<std::uint64_t>(window.height());
+  const PixelWindow& crop = plan.view.crop;
+  const auto pixels = static_cast<std::uint64_t>(crop.width()) * static_cast<std::uint64_t>(crop.height());
   const LightPathRange& range = plan.info->light_paths;
   const std::uint64_t automatic = std::clamp(pixels, range.fewest, range.most);
   const std::uint64_t of_pass = choose_light_paths(hints, options, plan.info->name, automatic);
@@ -110,6 +110,7 @@ RenderPlan plan_render(const Scene& scene, const ViewDescription& view, const Re
   require_shutter_of(scene, view.camera);
   const IntegratorInfo& info = find_integrator(choose_integrator(hints, options));
   RenderPlan plan{view_in(scene, view, options), &info, choose_parameters(hints, options, info)};
+  if (!plan.integrator->crops_are_exact()) plan.view.window = plan.view.crop;
   FilmContents contents = plan.integrator->film_contents(scene);
   contents.buckets = view.film.buckets;
   plan.settings = choose_settings(scene, view, options, plan);

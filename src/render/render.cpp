@@ -69,14 +69,14 @@ bool must_stop(const StopRule& stop, const RenderStatistics& statistics) {
 class ErrorLooks {
  public:
   ErrorLooks(const StopRule& stop, const Film& film)
-      : is_needed_(stop.noise.has_value()), cost_(guessed_per_pixel * film.pixel_count()) {}
+      : stop_(stop), cost_(guessed_per_pixel * film.pixel_count()) {}
 
   /// After a pass, `seconds` into the render.
   void look_if_due(const RenderState& state, RenderStatistics& statistics, double seconds) {
     if (!is_look(state.pass_count())) return;
-    if (!is_needed_ && seconds - last_ < cost_ / most_of_time) return;
+    if (!stop_.noise && seconds - last_ < cost_ / most_of_time) return;
     const Clock::time_point start = Clock::now();
-    statistics.error = estimate_error(state);
+    statistics.error = stop_.noise && stop_.error_of ? stop_.error_of(state) : estimate_error(state);
     statistics.error_passes = state.pass_count();
     cost_ = seconds_between(start, Clock::now());
     last_ = seconds + cost_;
@@ -85,7 +85,7 @@ class ErrorLooks {
  private:
   static constexpr double guessed_per_pixel = 1e-6, most_of_time = 0.01;
 
-  bool is_needed_;
+  const StopRule& stop_;
   double cost_, last_ = 0;  // seconds
 };
 

@@ -71,7 +71,7 @@ std::optional<Difference> find_difference(const json& a, const json& b, const st
 }
 
 // In order of cause and effect: another resolution also changes the window and the number of photons.
-const std::vector<std::string> causes{"version", "scene_hash", "files", "integrator", "resolution", "crop"};
+const std::vector<std::string> causes{"version", "scene_hash", "files", "integrator", "resolution", "crop", "margin"};
 
 // The option as the user typed it, or would type it.
 std::string field_name(const std::vector<std::string>& path) {
@@ -80,6 +80,7 @@ std::string field_name(const std::vector<std::string>& path) {
   if (field == "scene_hash") return "the content of the scene file";
   if (field == "files" && path.size() == 2) return "the content of " + printable(path[1]);
   if (field == "parameters" && path.size() == 2) return "--set " + excerpt(path[1]);
+  if (field == "margin") return "the margin that --denoise adds to --crop";
   if (field == "filter") return excerpt(fmt::format("the scene's {}", fmt::join(path, ".")));
   if (field == "max_depth") return "--max-depth";
   for (const char* option : {"integrator", "resolution", "crop", "seed", "color", "photons"})

@@ -36,9 +36,15 @@ struct RenderState {
   bool has_pass(std::uint64_t pass) const;
 };
 
-/// The window of the state's pixels in the whole picture. A state without these settings counts as one of the whole
-/// film.
-ImageWindow window_of(const RenderState& state);
+/// The part of a film that is shown, and its place in the whole picture. The pixels around it are a margin.
+struct ShownPart {
+  int x = 0, y = 0;  ///< of the first pixel that is shown, in the film
+  int width = 0, height = 0;
+  ImageWindow window;
+  bool has_margin(const Film& film) const { return width != film.width() || height != film.height(); }
+};
+/// A state without these settings shows its whole film.
+ShownPart shown_part(const RenderState& state);
 
 /// Throws `lanthorn::Error` if the state's identity differs from that of these settings; the message names the first
 /// difference and `file`.

@@ -3,6 +3,7 @@
 #include "lanthorn/state.h"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -37,14 +38,26 @@ bool is_set(const RenderState& state, const char* setting) {
 
 }  // namespace
 
-ImageWindow window_of(const RenderState& state) {
+ShownPart shown_part(const RenderState& state) {
   const json identity = json::parse(state.settings).value("identity", json::object());
-  const auto resolution = integers(identity, "resolution", 2), crop = integers(identity, "crop", 4);
-  if (!resolution || !crop) return {};
-  return {(*crop)[0], (*crop)[1], (*resolution)[0], (*resolution)[1]};
+  const auto resolution = integers(identity, "resolution", 2), crop = integers(identity, "crop", 4),
+             margin = integers(identity, "margin", 4);
+  ShownPart part{0, 0, state.film.width(), state.film.height(), {}};
+  if (!resolution || !crop) return part;
+  part.window = {(*crop)[0], (*crop)[1], (*resolution)[0], (*resolution)[1]};
+  if (!margin) return part;
+  const auto& [left, top, right, bottom] = std::array{(*margin)[0], (*margin)[1], (*margin)[2], (*margin)[3]};
+  // A file may hold anything.
+  if (left + right >= part.width || top + bottom >= part.height) return part;
+  part.x = left;
+  part.y = top;
+  part.width -= left + right;
+  part.height -= top + bottom;
+  return part;
 }
 
 StateSummary summarize(const RenderState& state) {
+  const ShownPart shown = shown_part(state);
   return {.integrator = state.integrator,
           .passes = state.passes,
           .pass_count = state.pass_count(),
@@ -53,9 +66,11 @@ StateSummary summarize(const RenderState& state) {
           .settings = state.settings,
           .measures_exposure = is_set(state, "measures_exposure"),
           .display_emission = is_set(state, "display_emission"),
-          .width = state.film.width(),
-          .height = state.film.height(),
-          .window = window_of(state),
+          .width = shown.width,
+          .height = shown.height,
+          .window = shown.window,
+          .margin = std::max({shown.x, shown.y, state.film.width() - shown.width - shown.x,
+                              state.film.height() - shown.height - shown.y}),
           .report = state.film.report(),
           .cut_share = std::max(state.eye.share(), state.light.share())};
 }

@@ -113,6 +113,27 @@ TEST_F(Cli, DevelopMakesThePngThatRenderWrites) {
   refuse({"convert", "a.exr", "x.png"}, "develop makes a .png of it");
 }
 
+// The pixels around a crop that --denoise renders are in the state alone, and a state goes on as it began.
+TEST_F(Cli, DenoiseRendersAMarginAroundACrop) {
+  const Words crop{"--crop", "4,5,12,9", "--reproducible"};
+  succeed(render(crop + Words{"-p", "4", "-o", "plain.exr", "-o", "plain.state"}));
+  succeed(render(crop + Words{"-p", "4", "--denoise", "-o", "a.exr", "-o", "a.state"}));
+  const Image plain = read_image(path("plain.exr")), both = read_image(path("a.exr"));
+  EXPECT_EQ(both.width, plain.width);
+  EXPECT_EQ(both.window, plain.window);
+  for (std::size_t i = 0; i < plain.pixels.size(); ++i) {
+    const std::size_t channel = i % plain.channel_count(), pixel = i / plain.channel_count();
+    ASSERT_EQ(plain.channels[channel], both.channels[channel]);
+    ASSERT_EQ(plain.pixels[i], both.pixels[pixel * both.channel_count() + channel]) << plain.channels[channel];
+  }
+  succeed({"denoise", "a.state", "-o", "b.exr", "--reproducible"});
+  expect_equal_files("b.exr", "a.exr");
+  EXPECT_TRUE(contains(succeed({"info", "a.state"}).out, "8 x 4 pixels, the part 4,5,12,9 of 16 x 16"));
+  succeed(render(crop + Words{"-p", "6", "-o", "more.exr", "--resume", "a.state"}));
+  succeed(render(crop + Words{"-p", "6", "--denoise", "-o", "more.exr", "--resume", "plain.state"}));
+  refuse({"merge", "a.state", "plain.state", "-o", "x.exr"}, "the margin that --denoise adds to --crop");
+}
+
 TEST_F(Cli, DenoiseAfterwardsIsTheSameAsWhileRendering) {
   succeed(render({"-p", "6", "--denoise", "-o", "a.exr", "-o", "a.png", "-o", "a.state", "--reproducible"}));
   succeed(render({"-p", "6", "-o", "plain.exr", "--reproducible", "--threads", "3"}));

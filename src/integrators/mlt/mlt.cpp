@@ -56,6 +56,7 @@ class MetropolisLightTransport final : public Integrator {
   MemoryUse memory_use(const RenderSettings&) const override { return settings_.memory_use(); }
   void prepare(const RenderJob& job) override;
   bool passes_share_wavelengths() const override { return true; }
+  bool crops_are_exact() const override { return false; }
   PassReport render_pass(const RenderJob& job, std::uint32_t number, const FilmPass& film,
                          const PhaseObserver& begin) override;
 

@@ -39,6 +39,7 @@ class PhotonMapper final : public Integrator {
   }
   bool passes_share_wavelengths() const override { return true; }
   bool passes_may_overlap() const override { return true; }
+  bool crops_are_exact() const override { return !settings_.estimates.cache; }
   PassReport render_pass(const RenderJob& job, std::uint32_t pass, const FilmPass& film,
                          const PhaseObserver& begin) override;
 

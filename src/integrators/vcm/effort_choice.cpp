@@ -147,7 +147,7 @@ double EffortChoice::work_of_light(float light_paths) const {
 }
 
 double EffortChoice::count_per_pixel(float light_paths, double of_pilot) const {
-  const PixelWindow& window = job_.view.window;
+  const PixelWindow& window = job_.view.crop;
   const double pixels = static_cast<double>(window.width()) * static_cast<double>(window.height());
   return static_cast<double>(light_paths) * static_cast<double>(job_.settings.photons) / pixels * of_pilot /
          std::max(1.0, m_.light_paths);
@@ -168,7 +168,7 @@ void EffortChoice::count_work(EffortReport& report) const {
 }
 
 double EffortChoice::per_pixel(float light_paths) const {
-  const PixelWindow& window = job_.view.window;
+  const PixelWindow& window = job_.view.crop;
   const auto paths = static_cast<double>(light_paths) * static_cast<double>(job_.settings.photons);
   return paths * job_.settings.parts / (static_cast<double>(window.width()) * static_cast<double>(window.height()));
 }
@@ -270,7 +270,7 @@ Effort EffortChoice::best() const {
   std::vector<PlaceEffort> places;
   for (const std::size_t k : best.candidates) places.push_back(place_of(m_.candidates[k]));
   const auto paths = static_cast<double>(best_paths) * static_cast<double>(job_.settings.photons);
-  return {static_cast<std::uint64_t>(std::ceil(paths)), job_.view.window, m_.grid.columns(), std::move(places),
+  return {static_cast<std::uint64_t>(std::ceil(paths)), job_.view.crop, m_.grid.columns(), std::move(places),
           report_on(best, best_paths)};
 }
 

@@ -68,7 +68,7 @@ struct SeenLight {
 
 double spread_of(const View& view, const Vec2& raster) {
   double sum = 0;
-  const PixelWindow& window = view.window;
+  const PixelWindow& window = view.crop;
   view.filter.for_each_pixel(raster - window.corner(), window.width(), window.height(),
                              [&](int, int, float filter) { sum += static_cast<double>(sqr(filter)); });
   return sum;
@@ -79,8 +79,8 @@ class Pilot {
   Pilot(const RenderJob& job, const VcmSettings& settings)
       : job_(job),
         settings_(settings),
-        measured_(job.view.window),
-        blocks_(places_of(job.view.window, measured_.grid)) {
+        measured_(job.view.crop),
+        blocks_(places_of(job.view.crop, measured_.grid)) {
     measured_.scale = static_cast<float>(job.settings.photons) / static_cast<float>(pilot_light_paths(job));
     measured_.candidates =
         all_candidates(measured_.scale, draw_for_pass(job, 0).is_of_one_time(),
@@ -93,7 +93,7 @@ class Pilot {
     cells_.resize(pixel_count(measured_.grid.cells()) * measured_.candidates.size());
     for (EffortBlock& block : measured_.blocks) {
       block.moments.resize(measured_.candidates.size());
-      block.pixels = static_cast<double>(pixel_count(job.view.window)) / static_cast<double>(measured_.blocks.size());
+      block.pixels = static_cast<double>(pixel_count(job.view.crop)) / static_cast<double>(measured_.blocks.size());
     }
   }
 

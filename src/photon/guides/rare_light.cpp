@@ -178,7 +178,7 @@ double rare_light_share(const RenderJob& job) {
   if (pilot.first.empty()) return 0;
   find_chances(pilot);
   const LandingMap surfaces(pilot.surfaces), media(pilot.media);
-  const PixelWindow& window = job.view.window;
+  const PixelWindow& window = job.view.crop;
   const int columns = std::min(eye_grid, window.width()), rows = std::min(eye_grid, window.height());
   std::vector<float> shares(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows), -1.0f);
   for_each_pilot_path(job, draw, window, columns, rows, [&](const PathContext&, const Ray&, std::uint32_t index) {

@@ -116,6 +116,7 @@ class FrameIntegrator final : public Integrator {
     frame_.views.seed = job.settings.seed;
   }
   bool knows_bias() const override { return false; }
+  bool crops_are_exact() const override { return false; }
   std::string limitation(const Scene& scene) const override {
     std::vector<std::string> missing;
     if (technique_.limitations != nullptr) missing = technique_.limitations(scene, nullptr);

@@ -3,8 +3,10 @@
 // The data that a render gives the denoiser, and the denoised result.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <string>
 
 #include "lanthorn/denoise.h"
@@ -74,6 +76,84 @@ TEST(DenoisedRender, PositionsAreThoseOfTheFirstSurfaceThatIsNoMirror) {
       seen.extend(p);
     }
   EXPECT_GT(seen.max.x - seen.min.x, 0.1f);
+}
+
+// The pixels around a crop are in none of its pictures, and change nothing but its denoised layers.
+TEST(DenoisedRender, KeepsACropThatHasAMargin) {
+  const SharedScene scene = box();
+  for (const std::string method : {"path", "vcm", "auto", "sppm"}) {
+    RenderOptions crop = options(method, 48);
+    crop.crop = {4, 12, 24, 36};
+    Session plain(scene, crop);
+    crop.margin = 8;
+    Session with(scene, crop);
+    for (Session* session : {&plain, &with}) session->render({.passes = {0, 2}});
+    const Image picture = with.picture();
+    EXPECT_EQ(picture.pixels, plain.picture().pixels) << method;
+    EXPECT_EQ(picture.window, plain.picture().window);
+    EXPECT_EQ(picture_without_error(with.state()).pixels, picture_without_error(plain.state()).pixels);
+    EXPECT_EQ(estimate_error(with.state()).error, estimate_error(plain.state()).error);
+    EXPECT_EQ(with_noise(with.state(), picture).pixels, with_noise(plain.state(), picture).pixels);
+    EXPECT_EQ(summarize(with.state()).width, 20);
+    EXPECT_FALSE(with_margin(plain.state()));
+    const std::optional<Image> around = with_margin(with.state());
+    ASSERT_EQ(around.has_value(), method != "sppm");
+    if (!around) continue;
+    EXPECT_EQ(around->window, (ImageWindow{0, 4, 48, 48}));
+    EXPECT_EQ(around->width, 32);
+    EXPECT_EQ(around->height, 40);
+    const std::size_t red = *picture.find_channel("R");
+    EXPECT_EQ(around->at(4 + 3, 8 + 5, red), picture.at(3, 5, red));
+    EXPECT_EQ(summarize(with.state()).margin, 8);
+  }
+}
+
+// Mean square difference of denoised layers in the outer 8 pixels of a crop of the whole picture.
+double difference_at_border(const Image& part, const Image& whole) {
+  constexpr int ring = 8;
+  double sum = 0;
+  for (int y = 0; y < part.height; ++y)
+    for (int x = 0; x < part.width; ++x) {
+      if (std::min({x, y, part.width - 1 - x, part.height - 1 - y}) >= ring) continue;
+      for (const char* channel : {"denoised.R", "denoised.G", "denoised.B"}) {
+        const std::size_t c = *part.find_channel(channel);
+        const float difference =
+            part.at(x, y, c) - whole.at(part.window.x + x, part.window.y + y, *whole.find_channel(channel));
+        sum += static_cast<double>(difference * difference);
+      }
+    }
+  return sum;
+}
+
+TEST(DenoisedRender, DenoisesTheBorderOfACropFromItsMargin) {
+  const SharedScene scene = box();
+  RenderOptions render = options("path", 96);
+  Session whole(scene, render);
+  render.crop = {32, 32, 64, 64};
+  render.margin = denoising_margin;
+  Session part(scene, render);
+  for (Session* session : {&whole, &part}) session->render({.passes = {0, 4}});
+  const Image of_whole = denoise(with_noise(whole.state(), whole.picture())).picture;
+  const Image crop = with_noise(part.state(), part.picture());
+  const DenoisedPicture with = denoise(crop, *with_margin(part.state()));
+  EXPECT_EQ(with.picture.width, 32);
+  EXPECT_LT(difference_at_border(with.picture, of_whole),
+            0.2 * difference_at_border(denoise(crop).picture, of_whole));
+}
+
+TEST(DenoisedRender, StopsWhenTheDenoisedPictureIsGood) {
+  const SharedScene scene = box();
+  constexpr double limit = 0.2;
+  Session noisy(scene, options("path", 32)), denoised(scene, options("path", 32));
+  noisy.render({.passes = {0, 256}, .noise = limit});
+  const RenderStatistics statistics =
+      denoised.render({.passes = {0, 256}, .noise = limit, .error_of = denoised_error(limit)});
+  EXPECT_LT(denoised.pass_count(), noisy.pass_count() / 2);
+  const DenoisedPicture picture = denoise(with_noise(denoised.state(), picture_of(denoised.state())));
+  EXPECT_LE(picture.error.bound, limit);
+  ASSERT_TRUE(statistics.error);
+  EXPECT_EQ(statistics.error->bound, picture.error.bound);
+  EXPECT_FALSE(estimate_error(denoised.state()).is_below(limit));
 }
 
 TEST(DenoisedRender, HasLessErrorByAnyMethod) {
