@@ -39,13 +39,21 @@ struct ConvergeCommand : RenderArguments {
 
 std::string format_slope(const std::optional<double>& slope) { return slope ? fmt::format("{:.3f}", *slope) : "-"; }
 
+void print_slopes(const Convergence& c, const ConvergenceSettings& settings) {
+  if (!c.variance_slope) {
+    print("no exponents: they take two numbers of passes, the first of them {} (--fit-from)\n", settings.fit_from);
+    return;
+  }
+  print("from {} passes on: variance ~ passes^{}{}\n", settings.fit_from, format_slope(c.variance_slope),
+        c.bias_slope ? ", bias ~ passes^" + format_slope(c.bias_slope) : "");
+}
+
 void print_table(const Convergence& c, const ConvergenceSettings& settings) {
   const auto optional = [](const std::optional<double>& x) { return x ? fmt::format("{:.5g}", *x) : "-"; };
   print("{:>8}  {:>12}  {:>12}  {:>12}\n", "passes", "deviation", "bias", "RMS error");
   for (const ConvergencePoint& p : c.points)
     print("{:>8}  {:>12.5g}  {:>12}  {:>12}\n", p.passes, p.deviation, optional(p.bias), optional(p.error));
-  print("from {} passes on: variance ~ passes^{}, bias ~ passes^{}\n", settings.fit_from,
-        format_slope(c.variance_slope), format_slope(c.bias_slope));
+  print_slopes(c, settings);
 }
 
 nlohmann::json report(const Convergence& c, const ConvergeCommand& a) {

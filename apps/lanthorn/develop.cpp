@@ -27,12 +27,7 @@ struct DevelopCommand {
 // For the layer color, reads all layers, which measuring the exposure needs.
 Image picture_of(const DevelopCommand& a) {
   if (a.layer == "color") return read_image(a.picture, ColorEncoding::automatic, a.max_pixels);
-  Image image = read_layer(a.picture, a.layer, a.max_pixels);
-  if (image.channel_count() == 1)
-    image.channels = {"Y"};
-  else
-    image.channels = {"R", "G", "B"};
-  return image;
+  return as_color(read_layer(a.picture, a.layer, a.max_pixels));
 }
 
 std::vector<std::string> display_extensions() {

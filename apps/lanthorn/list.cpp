@@ -14,12 +14,12 @@ namespace {
 
 void run(const std::string& name) {
   if (name.empty()) {
-    for (const MethodInfo& info : methods()) print("{:<10} {} ({})\n", info.name, info.summary, info.paper);
+    for (const MethodInfo& info : methods()) print("{:<16} {} ({})\n", info.name, info.summary, info.paper);
     return;
   }
   const MethodInfo& info = find_method(name);
   print("{}: {} ({})\n", info.name, info.summary, info.paper);
-  for (const ParameterInfo& p : info.parameters) print("  {:<16} default {:<14} {}\n", p.name, p.default_value, p.help);
+  for (const ParameterInfo& p : info.parameters) print("  {:<17} default {:<14} {}\n", p.name, p.default_value, p.help);
 }
 
 }  // namespace

@@ -13,7 +13,6 @@
 #include "console.h"
 #include "lanthorn/error.h"
 #include "lanthorn/realtime.h"
-#include "lanthorn/scene.h"
 #include "lanthorn/threads.h"
 #include "lanthorn/version.h"
 #include "rescue.h"
@@ -22,7 +21,7 @@
 namespace lanthorn::program {
 namespace {
 
-// A scene alone is rendered; "help render --all" is "render --help --all".
+// A file alone is rendered: no subcommand has a dot in its name. "help render --all" is "render --help --all".
 std::vector<std::string> completed(std::vector<std::string> words) {
   if (words.empty() || words.front().starts_with('-')) return words;
   if (words.front() == "help") {
@@ -31,7 +30,7 @@ std::vector<std::string> completed(std::vector<std::string> words) {
     words.resize(std::min<std::size_t>(words.size(), 1));
     words.emplace_back("--help");
     if (shows_all) words.emplace_back("--all");
-  } else if (is_scene_file(words.front())) {
+  } else if (words.front().find('.') != std::string::npos) {
     words.insert(words.begin(), "render");
   }
   return words;

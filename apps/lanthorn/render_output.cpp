@@ -191,7 +191,8 @@ void save_render(const RenderFiles& a, const RenderOptions& options, const std::
   if (!options.max_depth) warn_of_limit(summary);  // otherwise the user chose the limit
   if (a.quiet) return;
   for (const fs::path& path : paths)
-    announce("{}: {} passes by {} in {}, error {}{}\n", path.string(), summary.pass_count, summary.integrator,
+    announce("{}: {} by {} in {}, error {}{}\n", path.string(),
+             summary.pass_count == 1 ? "1 pass" : fmt::format("{} passes", summary.pass_count), summary.integrator,
              format_duration(summary.seconds), describe_error(picture.error()),
              describe_denoised(picture.denoised_error()));
 }

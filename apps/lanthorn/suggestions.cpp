@@ -69,6 +69,8 @@ std::string describe(const CLI::App& program, const CLI::Error& error) {
     return unknown_option(command, *option);
   if (!unknown.empty() && error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError))
     return fmt::format("'{}' was not expected: it belongs to no option of {}", unknown.front(), command.get_name());
+  if (chosen.empty() && error.get_exit_code() == static_cast<int>(CLI::ExitCodes::RequiredError))
+    return "a scene or a subcommand is missing, such as 'lanthorn scene.pbrt' or 'lanthorn serve scene.pbrt'";
   const std::string text = error.what();
   const std::size_t twice = text.find(": At Most 1 required");
   return twice == text.npos ? text : text.substr(0, twice) + " was given more than once";

@@ -111,7 +111,7 @@ class FinalRender:
 
     def _tell_progress(self, answer):
         seconds, left = answer["seconds"], answer.get("seconds_left")
-        text = f"{answer['passes']} passes"
+        text = "1 pass" if answer["passes"] == 1 else f"{answer['passes']} passes"
         error = answer.get("error")
         if error and not error.get("doubt"):
             text += f", error below {100 * error['bound']:.1f} %"

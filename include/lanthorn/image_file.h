@@ -37,8 +37,11 @@ struct DisplaySettings {
   bool display_emission = false;   ///< show the layer `emission` unchanged: without exposure, curve and view
 };
 
-/// The layer `color` ready for a display: R, G, B in [0,1], encoded as sRGB or by the OpenColorIO view. Throws Error if
-/// the picture has no such layer or the view is not available.
+/// A picture of one layer, such as `select_layer` returns, with its channels renamed so that it is the layer `color`.
+Image as_color(Image layer);
+
+/// The layer `color`, or the only layer of a picture, ready for a display: R, G, B in [0,1], encoded as sRGB or by the
+/// OpenColorIO view. Throws Error if the picture has several layers without `color`, or the view is not available.
 Image displayed(const Image& image, const DisplaySettings& display = {});
 
 /// Exposure in stops, a multiple of 0.1, at which the picture is neither too dark nor washed out: a white surface is
@@ -55,8 +58,8 @@ float measured_exposure(const Image& image);
 /// "lanthorn:NAME" (numbers and strings as such, all other types as JSON text). Equal input gives equal bytes.
 std::vector<unsigned char> encode_exr(const Image& image, const std::string& metadata = {});
 
-/// A PNG file of the layer `color` as 8-bit sRGB; all metadata is stored as text. Throws Error if the picture has no
-/// such layer.
+/// A PNG file of what `displayed` returns as 8-bit sRGB; all metadata is stored as text. Throws Error as `displayed`
+/// does.
 std::vector<unsigned char> encode_png(const Image& image, const DisplaySettings& display = {},
                                       const std::string& metadata = {});
 

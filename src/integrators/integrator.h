@@ -105,7 +105,7 @@ class Integrator {
   virtual std::string findings() const { return {}; }
   /// The film's layers for this scene and whether the method splats. Default: the layers of the path classes.
   virtual FilmContents film_contents(const Scene& scene) const { return path_layers(scene); }
-  /// False if the method has a bias that its film does not estimate (FilmContents::bias).
+  /// False if the method has an error that passes leave and its film does not estimate (FilmContents::bias).
   virtual bool knows_bias() const { return true; }
   /// True if all light of a pass, or of its part, has the wavelengths of `draw_for_pass`.
   virtual bool passes_share_wavelengths() const { return false; }

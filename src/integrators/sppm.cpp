@@ -83,6 +83,8 @@ class StochasticProgressivePhotonMapper final : public Integrator {
             .per_pixel = static_cast<double>(hits_.count) * sizeof(Radius) + 2 * sizeof(float),
             .media = records_for(photon_source_.volume())};
   }
+  // Fixed hit points see the same points of a pixel in every pass: the halves of the passes share that error.
+  bool knows_bias() const override { return !hits_.fixed; }
   bool passes_are_independent() const override { return false; }
   bool crops_are_exact() const override { return false; }
   std::vector<std::byte> save() const override {

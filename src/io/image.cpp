@@ -146,9 +146,18 @@ std::vector<unsigned char> encode_exr(const Image& image, const std::string& met
   return encode_openexr(renamed, attributes);
 }
 
+Image as_color(Image layer) {
+  if (layer.channel_count() == 1)
+    layer.channels = {"Y"};
+  else
+    layer.channels = {"R", "G", "B"};
+  return layer;
+}
+
 Image displayed(const Image& image, const DisplaySettings& display) {
   std::optional<Image> color = select_layer(image, "color");
-  if (!color) throw Error("cannot write: the picture has no channels R, G, B");
+  if (!color && layer_names(image).size() == 1) color = select_layer(as_color(image), "color");
+  if (!color) throw Error("cannot show: the picture has several layers, but none is the colour (R, G, B)");
   if (color->pixels.empty()) throw Error("cannot write: the picture is empty");
   color->channels = {"R", "G", "B"};
   std::vector<float>& values = color->pixels;

@@ -116,6 +116,13 @@ auto discreet(const FileAccess& access, const std::string& name, Read&& read) {
   }
 }
 
+// How to render a scene of another format, for a message.
+const char* way_of_other_formats(const std::string& extension) {
+  if (extension == ".blend") return "the add-on renders Blender's files (docs/blender.md)";
+  if (extension == ".xml") return "docs/from-mitsuba.md has the ways from Mitsuba";
+  return "many programs, such as Blender, export .glb";
+}
+
 }  // namespace
 
 bool is_scene_file(const std::filesystem::path& path) {
@@ -130,7 +137,8 @@ SceneSource::SceneSource(const std::filesystem::path& path, const ReadOptions& o
       methods_(std::move(methods)),
       access_(access_for(folder_, options)) {
   if (!is_scene_file(path))
-    throw Error(name_ + ": unknown kind of scene file; expected .pbrt, .gltf, .glb or .obj, each also as .gz");
+    throw Error(name_ + ": unknown kind of scene file; expected .pbrt, .gltf, .glb or .obj, each also as .gz; " +
+                way_of_other_formats(scene_extension(path)));
   if (!options.camera.empty() && !is_gltf(path))
     throw Error(name_ + ": --camera: only glTF files have several cameras");
 }

@@ -50,6 +50,28 @@ PassRange choose_passes(const description::RenderHints& hints, const RenderOptio
   return {0, hints.pixel_samples ? static_cast<std::uint64_t>(std::max(1, *hints.pixel_samples)) : default_passes};
 }
 
+}  // namespace
+
+void check_error_bound(double bound) {
+  if (!(bound > 0 && bound <= 1))
+    throw Error(fmt::format("--noise {}: expected a share above 0 and at most 1, such as 0.02 for 2 %", bound));
+}
+
+namespace {
+
+// Throws Error for limits that no render can keep.
+void check_limits(const RenderOptions& options) {
+  if (options.passes == 0U) throw Error("--passes 0: expected 1 or more");
+  if (options.photons == 0U) throw Error("--photons 0: expected 1 or more");
+  if (options.max_depth && *options.max_depth < 1)
+    throw Error(fmt::format("--max-depth {}: expected 1 or more", *options.max_depth));
+  if (const auto& range = options.pass_range; range && range->begin >= range->end)
+    throw Error(fmt::format("--pass-range {}:{}: expected an end after the first pass", range->begin, range->end));
+  if (options.seconds && !(*options.seconds > 0))
+    throw Error(fmt::format("--time {}: expected a number of seconds above 0", *options.seconds));
+  if (options.noise) check_error_bound(*options.noise);
+}
+
 // `auto` finds its own number from `automatic`. A file's number of photons for another method does not apply to it.
 std::uint64_t choose_light_paths(const description::RenderHints& hints, const RenderOptions& options,
                                  const std::string& method, std::uint64_t automatic) {
@@ -108,6 +130,7 @@ void require_shutter_of(const Scene& scene, const description::Camera& camera) {
 RenderPlan plan_render(const Scene& scene, const ViewDescription& view, const RenderOptions& options) {
   const description::RenderHints& hints = scene.description().hints;
   require_shutter_of(scene, view.camera);
+  check_limits(options);
   const IntegratorInfo& info = find_integrator(choose_integrator(hints, options));
   RenderPlan plan{view_in(scene, view, options), &info, choose_parameters(hints, options, info)};
   if (!plan.integrator->crops_are_exact()) plan.view.window = plan.view.crop;

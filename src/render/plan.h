@@ -37,6 +37,9 @@ struct RenderPlan {
   }
 };
 
+/// Throws Error unless the number is a bound of a picture's error, in (0, 1].
+void check_error_bound(double bound);
+
 /// Resolves options against scene and view. Throws Error for unknown integrators or parameters, values out of range,
 /// and a shutter that is not the scene's although something moves.
 RenderPlan plan_render(const Scene& scene, const ViewDescription& view, const RenderOptions& options);

@@ -339,6 +339,7 @@ void PassLoop::give_up() {
 }  // namespace
 
 RenderStatistics render(const Scene& scene, RenderPlan& plan, const StopRule& stop, const Observer& observer) {
+  if (stop.noise) check_error_bound(*stop.noise);
   const RenderJob job = plan.job(scene);
   RenderStatistics statistics;
   const Clock::time_point start = Clock::now();

@@ -391,6 +391,7 @@ TEST_F(Cli, MeasuresConvergence) {
   EXPECT_LT(report["variance_slope"].get<double>(), -0.8);  // -1 for independent samples, smaller for stratified ones
   EXPECT_GT(report["points"][0]["rms_error"], report["points"][4]["rms_error"]);
   EXPECT_GT(fs::file_size(path("c.svg")), 500u);
+  EXPECT_TRUE(contains(succeed(converge + Words{"8x8"}).out, "no exponents: "));  // 16 passes, and --fit-from 16
   refuse(converge + Words{"9x8", "--reference", "reference.exr"}, "8 x 8");
   refuse({"converge", "tiny.pbrt", "--runs", "1"}, "--runs");
 }
@@ -414,7 +415,12 @@ TEST_F(Cli, RendersModelsWithoutCameraOrLight) {
   dir_.write("broken.gltf", "{\"asset\": {\"version\": \"2.0\"}, \"scene\": 4}");
   dir_.write("model.stl", "solid");
   refuse({"render", "broken.gltf", "-o", "a.png"}, "broken.gltf#/scene: is 4, but there are 0 scenes");
+  dir_.write("ring.blend", "BLENDER");
   refuse({"render", "model.stl", "-o", "a.png"}, "unknown kind of scene file");
+  refuse({"model.stl"}, "such as Blender, export .glb");  // a file alone is no subcommand
+  refuse({"ring.blend"}, "the add-on renders Blender's files");
+  refuse({"none.glb"}, "none.glb: expected an existing file");
+  refuse({}, "a scene or a subcommand is missing, such as 'lanthorn scene.pbrt'");
 }
 
 TEST_F(Cli, WritesToTheSceneFilesOwnNameAndReportsProgress) {

@@ -106,7 +106,7 @@ TEST_F(Noise, AllFilesTellTheSameError) {
 }
 
 TEST_F(Noise, MethodsThatDoNotKnowTheirBiasSayNothing) {
-  for (const char* method : {"photonmap", "reversephotonmap"}) {
+  for (const char* method : {"photonmap", "reversephotonmap", "ppm"}) {
     refuse(until(method, "10%", {"-o", "a.exr"}), "has a bias that it does not measure");
     succeed(render({"-i", method, "-p", "12", "-o", "a.state", "--force"}));
     EXPECT_TRUE(contains(succeed({"info", "a.state"}).out, "not known: the bias of ")) << method;

@@ -227,10 +227,21 @@ class Sessions(unittest.TestCase):
         self.assertEqual(session.pass_count, 3)
         session.render(noise=0.9)
         self.assertLess(session.picture().error.bound, 0.9)
-        with self.assertRaisesRegex(lanthorn.Error, "integrator 'path' has no"):
-            lanthorn.Session(self.scene, integrator="path", sedd=3)
         with self.assertRaisesRegex(lanthorn.Error, "passes: expected a whole number"):
             lanthorn.Session(self.scene, passes="many")
+
+    def test_wrong_options(self):
+        scene = lanthorn.load_file(CORNELL)
+        for options, message in (
+            ({"width": 3}, "width: there is no such option, .*the options are .*resolution"),
+            ({"integrator": "path", "sedd": 3}, "sedd: .*did you mean seed"),
+            ({"integrator": "probppm", "raduis": 0.1}, "raduis: .*did you mean radius"),
+            ({"radius": 0.1}, "'auto' has no parameters"),
+            ({"passes": 0}, "expected 1 or more"),
+            ({"noise": 5}, "expected a share"),
+        ):
+            with self.assertRaisesRegex(lanthorn.Error, message):
+                lanthorn.Session(scene, **options)
 
     def test_save_resume_merge(self):
         whole = lanthorn.render(self.scene, **{**SMALL, "passes": 4}).array

@@ -3,7 +3,10 @@
 // glTF 2.0 §3.9 and the KHR_materials extensions.
 #include "io/gltf/materials.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -211,9 +214,25 @@ class MaterialReader {
       result_.base_color = times_vertex_color(result_.base_color);
       return;
     }
+    warn_of_lost_shader(*pbr);
     result_.base_color = base_color(*pbr);
     result_.metallic = factor(*pbr, "metallicFactor", 1, "metallicRoughnessTexture", blue);
     result_.roughness = factor(*pbr, "roughnessFactor", 1, "metallicRoughnessTexture", green);
+  }
+
+  // Exporters that cannot express a shader leave everything out.
+  void warn_of_lost_shader(const Value& pbr) {
+    constexpr std::array pbr_keys{"baseColorFactor", "baseColorTexture", "metallicFactor", "roughnessFactor",
+                                  "metallicRoughnessTexture"};
+    constexpr std::array keys{"extensions", "emissiveFactor", "emissiveTexture", "normalTexture"};
+    const auto has_any = [](const Value& value, const auto& names) {
+      return std::any_of(names.begin(), names.end(), [&](const char* name) { return value.find(name).has_value(); });
+    };
+    if (has_any(pbr, pbr_keys) || has_any(material_, keys)) return;
+    document_.warn("empty material", pbr,
+                   fmt::format("nothing is set, so material {} is rough white metal, the default of glTF; Blender "
+                               "exports the Principled BSDF, but neither the Glass nor the Glossy BSDF",
+                               in_quotes(material_.text("name", ""))));
   }
 
   // KHR_materials_pbrSpecularGlossiness: a diffuse base under a coloured reflection.
@@ -265,6 +284,13 @@ class MaterialReader {
     result_.transmission = factor(*transmission, "transmissionFactor", 0, "transmissionTexture", red, neutral_effect);
     const auto volume = material_.extension("KHR_materials_volume");
     result_.thin = !volume || !(volume->number("thicknessFactor", 0) > 0);
+    // A thin sheet rarely has an index of its own. Blender writes gems and water like this.
+    if (!volume && ior && (result_.transmission.texture || result_.transmission.value > 0))
+      document_.warn("thin sheet", *transmission,
+                     fmt::format("material {} has no KHR_materials_volume, so it is a thin sheet, which does not bend "
+                                 "light; solid glass needs a thickness (in Blender, the socket Thickness of the group "
+                                 "\"glTF Settings\")",
+                                 in_quotes(material_.text("name", ""))));
   }
 
   void read_diffuse_transmission() {

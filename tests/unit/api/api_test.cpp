@@ -7,6 +7,7 @@
 #include <atomic>
 #include <chrono>
 #include <filesystem>
+#include <limits>
 #include <numbers>
 #include <numeric>
 #include <string>
@@ -17,6 +18,7 @@
 
 #include "lanthorn/error.h"
 #include "lanthorn/image.h"
+#include "lanthorn/image_file.h"
 #include "lanthorn/photons.h"
 #include "lanthorn/rays.h"
 #include "lanthorn/scene.h"
@@ -66,6 +68,20 @@ TEST(Api, RendersALayeredPicture) {
   double sum = 0;
   for (int x = 0; x < image.width; ++x) sum += static_cast<double>(image.at(x, 8, 0));
   EXPECT_GT(sum, 0.1);
+}
+
+TEST(Api, ALayerIsAPictureOfItsOwn) {
+  lanthorn::Image image(2, 1, {"R", "G", "B", "caustic.R", "caustic.G", "caustic.B", "depth.Z"});
+  image.pixels = {0, 0, 0, 1, 0.2f, 0, 0.5f, 0, 0, 0, 0, 0.2f, 1, 0.25f};
+  const lanthorn::Image caustic = *lanthorn::select_layer(image, "caustic");
+  EXPECT_EQ(lanthorn::displayed(caustic).pixels, lanthorn::displayed(lanthorn::as_color(caustic)).pixels);
+  EXPECT_EQ(lanthorn::displayed(caustic).pixels[0], 1);
+  const std::vector<float> depth = lanthorn::displayed(*lanthorn::select_layer(image, "depth")).pixels;
+  ASSERT_EQ(depth.size(), 6U);
+  EXPECT_GT(depth[2], depth[5]);
+  EXPECT_EQ(depth[3], depth[5]);  // grey
+  lanthorn::Image without_color(2, 1, {"caustic.R", "caustic.G", "caustic.B", "depth.Z"});
+  EXPECT_THROW(lanthorn::displayed(without_color), lanthorn::Error);
 }
 
 TEST(Api, PassesOneByOneAreTheSameRender) {
@@ -367,6 +383,20 @@ TEST(Api, WrongOptionsThrow) {
   options = small("probppm");
   options.set["nosuch"] = "1";
   EXPECT_THROW(Session(scene, options), lanthorn::Error);
+  const auto refuse = [&](auto member, auto value) {
+    RenderOptions wrong = small();
+    wrong.*member = value;
+    EXPECT_THROW(Session(scene, wrong), lanthorn::Error);
+  };
+  refuse(&RenderOptions::passes, std::uint64_t{0});
+  refuse(&RenderOptions::photons, std::uint64_t{0});
+  refuse(&RenderOptions::max_depth, 0);
+  refuse(&RenderOptions::pass_range, lanthorn::PassRange{2, 2});
+  for (const double no_time : {0.0, -1.0}) refuse(&RenderOptions::seconds, no_time);
+  for (const double no_share : {0.0, -0.1, 2.0, std::numeric_limits<double>::quiet_NaN()}) {
+    refuse(&RenderOptions::noise, no_share);
+    EXPECT_THROW(Session(scene, small()).render({.passes = {0, 1}, .noise = no_share}), lanthorn::Error) << no_share;
+  }
 }
 
 }  // namespace

@@ -465,6 +465,35 @@ TEST(GltfMaterial, BasisTexturesAreNamedAndHaveFallbacks) {
   EXPECT_EQ(warnings(other).size(), 1u);  // of the stand-ins
 }
 
+// As Blender writes a Glass BSDF, and a Principled BSDF with Transmission and an index.
+TEST(GltfMaterial, GlassThatAnExporterLost) {
+  const auto messages = [](const json& material) {
+    GltfWriter file;
+    file.mesh(corners, {0, 1, 2}, file.add("materials", material));
+    file.node({{"mesh", 0}});
+    std::vector<std::string> all = warnings(read_gltf(file));
+    std::erase_if(all, [](const std::string& text) { return text.find("material \"gem\"") == text.npos; });
+    return all;
+  };
+  const auto glass = [](const json& extensions) {
+    return json{{"name", "gem"}, {"pbrMetallicRoughness", {{"metallicFactor", 0}}}, {"extensions", extensions}};
+  };
+  const json clear = {{"transmissionFactor", 1}}, diamond = {{"ior", 2.417}};
+  const auto lost = messages({{"name", "gem"}, {"doubleSided", true}, {"pbrMetallicRoughness", json::object()}});
+  ASSERT_EQ(lost.size(), 1u);
+  EXPECT_NE(lost[0].find("rough white metal"), std::string::npos);
+  const auto sheet = messages(glass({{"KHR_materials_transmission", clear}, {"KHR_materials_ior", diamond}}));
+  ASSERT_EQ(sheet.size(), 1u);
+  EXPECT_NE(sheet[0].find("thin sheet"), std::string::npos);
+  EXPECT_TRUE(messages(glass({{"KHR_materials_transmission", clear}})).empty());  // a pane
+  EXPECT_TRUE(messages(glass({{"KHR_materials_transmission", clear},
+                              {"KHR_materials_ior", diamond},
+                              {"KHR_materials_volume", {{"thicknessFactor", 1}}}}))
+                  .empty());
+  EXPECT_TRUE(
+      messages({{"name", "gem"}, {"emissiveFactor", {1, 1, 1}}, {"pbrMetallicRoughness", json::object()}}).empty());
+}
+
 TEST(GltfMaterial, ApproximationsAreSaidOnce) {
   GltfWriter file;
   for (int i = 0; i < 2; ++i)
