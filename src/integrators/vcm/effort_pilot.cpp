@@ -3,6 +3,7 @@
 #include "integrators/vcm/effort_pilot.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <concepts>
 #include <limits>
@@ -90,6 +91,7 @@ class Pilot {
     };
     for (EffortCandidate& c : measured_.candidates)
       c.merge_area = sqr(radius(c.light_paths / measured_.scale) / radius(1 / measured_.scale));
+    candidates_ = CandidateArrays(measured_.candidates);
     cells_.resize(pixel_count(measured_.grid.cells()) * measured_.candidates.size());
     for (EffortBlock& block : measured_.blocks) {
       block.moments.resize(measured_.candidates.size());
@@ -115,6 +117,11 @@ class Pilot {
     double sum = 0, squares = 0;
   };
 
+  // Each cell has one eye path per pass, but both sets of light paths reach all pixels of its block: the part of their
+  // light that counts.
+  static double share_of(const EffortBlock& block) {
+    return static_cast<double>(sqr(PilotGrid::cells_per_block)) / (2 * block.pixels);
+  }
   static std::size_t pixel_count(const PixelWindow& window) {
     return static_cast<std::size_t>(window.width()) * static_cast<std::size_t>(window.height());
   }
@@ -146,7 +153,9 @@ class Pilot {
   const VcmSettings& settings_;
   EffortMeasurement measured_;
   Effort blocks_;
+  CandidateArrays candidates_;
   std::vector<Cell> cells_;
+  std::vector<std::vector<SeenLight>> seen_;  // by chunk of light paths
   LightVertices vertices_, other_vertices_;
 };
 
@@ -169,33 +178,29 @@ void Pilot::run(std::uint32_t number, const VcmPreparation& prepared) {
 }
 
 void Pilot::trace_light(const VcmPass& pass) {
-  std::vector<std::vector<SeenLight>> chunks(pass.light_paths.chunk_count());
+  seen_.resize(pass.light_paths.chunk_count());
+  for (std::vector<SeenLight>& chunk : seen_) chunk.clear();
   const RayCounts rays = trace_light_paths(
       pass, nullptr,
       [&](const LightArrival& light, const LensLight& seen, const PlaceEffort& effort, std::size_t chunk) {
         TechniqueSum weighed;
         Bidirectional there = pass.bidirectional_at(seen.raster, effort);
         there.weighed = &weighed;
-        const float weight = light.weight(there, seen);
-        chunks[chunk].push_back({static_cast<std::uint32_t>(blocks_.block_of(seen.raster)),
-                                 weight * flux_of(seen.light, seen.dispersed, pass.draw.w),
-                                 light.layers.path_class == PathClass::caustic, spread_of(job_.view, seen.raster),
-                                 weighed});
+        const float found = light.weight(there, seen) * flux_of(seen.light, seen.dispersed, pass.draw.w);
+        if (!(found > 0)) return;
+        seen_[chunk].push_back({static_cast<std::uint32_t>(blocks_.block_of(seen.raster)), found,
+                                light.layers.path_class == PathClass::caustic, spread_of(job_.view, seen.raster),
+                                weighed});
       });
   measured_.light_rays += static_cast<double>(rays.walk);
   measured_.light_paths += static_cast<double>(pass.light_paths.total());
-  for (std::size_t c = 0; c < chunks.size(); ++c) {
+  for (std::size_t c = 0; c < seen_.size(); ++c) {
     measured_.light_vertices += static_cast<double>(pass.vertices.chunk(c).vertices.size());
-    add(chunks[c]);
+    add(seen_[c]);
   }
 }
 
-// Each cell has one eye path per pass, but both sets of light paths reach all pixels of its block; `share_of`
-// compensates for this.
 void Pilot::add(std::span<const SeenLight> seen) {
-  const auto share_of = [](const EffortBlock& block) {
-    return static_cast<double>(sqr(PilotGrid::cells_per_block)) / (2 * block.pixels);
-  };
   for (const SeenLight& s : seen) {
     EffortBlock& block = measured_.blocks[s.block];
     const double light = share_of(block) * static_cast<double>(s.light);
@@ -203,17 +208,25 @@ void Pilot::add(std::span<const SeenLight> seen) {
     block.from_light_paths += light;
     if (s.is_caustic) block.caustic += light;
   }
-  parallel_for(std::size_t{0}, measured_.candidates.size(), [&](std::size_t k) {
-    const EffortCandidate& c = measured_.candidates[k];
-    const auto samples = static_cast<double>(c.samples(&TechniqueDensities::lens));
+  constexpr std::size_t at_a_time = 16;  // candidates
+  parallel_chunks(candidates_.size(), at_a_time, [&](std::size_t, std::size_t begin, std::size_t end) {
+    std::array<float, at_a_time> ratios;
+    std::array<double, at_a_time> all, own;
+    const std::span<const float> samples = candidates_.samples(&TechniqueDensities::lens).subspan(begin, end - begin);
     for (const SeenLight& s : seen) {
+      candidates_.ratios(s.weighed, begin, std::span(ratios).first(samples.size()));
       EffortBlock& block = measured_.blocks[s.block];
-      const auto ratio = static_cast<double>(std::max(c.all(s.weighed) / s.weighed.all(), PathMoments::least_ratio));
-      const double all = share_of(block) * s.spread * sqr(static_cast<double>(s.light)) / ratio;
-      const double own = all * samples / ratio;
-      block.moments[k].second += own;
-      block.moments[k].squares += own;
-      block.moments[k].all_squares += all;
+      const double square = share_of(block) * s.spread * sqr(static_cast<double>(s.light));
+      for (std::size_t i = 0; i < samples.size(); ++i) {
+        all[i] = square / static_cast<double>(ratios[i]);
+        own[i] = all[i] * static_cast<double>(samples[i]) / static_cast<double>(ratios[i]);
+      }
+      for (std::size_t i = 0; i < samples.size(); ++i) {
+        EffortBlock::Moments& m = block.moments[begin + i];
+        m.second += own[i];
+        m.squares += own[i];
+        m.all_squares += all[i];
+      }
     }
   });
 }
@@ -222,7 +235,7 @@ void Pilot::add(std::span<const SeenLight> seen) {
 void Pilot::trace_eye(const VcmPass& pass, const VcmPass& other) {
   for_each_cell_by_blocks([&](EffortBlock& block, std::size_t cell) {
     stop_point();
-    PathMoments moments(measured_.candidates);
+    PathMoments moments(candidates_);
     const float caustic = trace_eye_path(pass, other, cell, moments);
     add(block, cell, moments, caustic);
   });

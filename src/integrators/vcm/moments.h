@@ -6,12 +6,13 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include "math/vec.h"
 #include "path/mis.h"
 
 namespace lanthorn {
@@ -36,16 +37,36 @@ struct EffortCandidate {
     if (technique == &TechniqueDensities::lens && !sees) return 0;
     return light_paths;
   }
-  /// Sum of the densities of all techniques with these numbers of samples.
-  float all(const TechniqueSum& s) const { return of(s.within) + (goes_on ? of(s.beyond) : 0.0f); }
+};
+
+/// A list of candidates in arrays, so that vector instructions judge several of them at a time.
+class CandidateArrays {
+ public:
+  CandidateArrays() = default;
+  explicit CandidateArrays(std::span<const EffortCandidate> candidates) {
+    for (std::size_t t = 0; t < techniques.size(); ++t)
+      for (const EffortCandidate& c : candidates) samples_[t].push_back(c.samples(techniques[t]));
+    for (const EffortCandidate& c : candidates) goes_on_.push_back(c.goes_on ? 1.0f : 0.0f);
+  }
+  std::size_t size() const { return goes_on_.size(); }
+
+  /// `EffortCandidate::samples` of all candidates.
+  std::span<const float> samples(float TechniqueDensities::*technique) const {
+    return samples_[static_cast<std::size_t>(std::ranges::find(techniques, technique) - techniques.begin())];
+  }
+  /// `EffortCandidate::goes_on` of all candidates: 1 or 0.
+  std::span<const float> goes_on() const { return goes_on_; }
+
+  /// R of the candidates from `first` on: their density of all techniques together over the pilot's.
+  void ratios(const TechniqueSum& s, std::size_t first, std::span<float> result) const;
 
  private:
-  float of(const TechniqueDensities& s) const {
-    const float c = light_paths > 0 ? connections : 0.0f;
-    return s.walk + c * s.connections +
-           light_paths *
-               ((sees ? s.lens : 0.0f) + (merges ? merge_area * s.merging : 0.0f) + (merges_in_media ? s.media : 0.0f));
-  }
+  static constexpr std::array techniques{&TechniqueDensities::walk, &TechniqueDensities::lens,
+                                         &TechniqueDensities::connections, &TechniqueDensities::merging,
+                                         &TechniqueDensities::media};
+
+  std::array<std::vector<float>, techniques.size()> samples_;
+  std::vector<float> goes_on_;
 };
 
 /// Counts of the costly operations of eye paths.
@@ -78,12 +99,12 @@ struct EyeWork {
 /// light paths avoid each other (stratification); the difference grows with s.
 class PathMoments {
  public:
-  explicit PathMoments(std::span<const EffortCandidate> candidates)
-      : candidates_(candidates), sums_(candidates.size()) {}
+  explicit PathMoments(const CandidateArrays& candidates)
+      : candidates_(candidates), ratios_(candidates.size()), sums_(candidates.size() * row_count) {}
 
   TechniqueSum weighed;          ///< of the contribution that comes next
   EyeWork work, short_work;      ///< with both sets; of the part that a short eye path does (`Techniques::goes_on`)
-  int set = 0;                   ///< the set of light paths that the contribution comes from: 0 or 1
+  std::size_t set = 0;           ///< the set of light paths that the contribution comes from: 0 or 1
   float light = 0, by_walk = 0;  ///< X with the first set, and the part of it that needs no light path
 
   /// `is_short`: a short eye path performs this operation, too.
@@ -91,27 +112,8 @@ class PathMoments {
     ++(work.*what);
     if (is_short) ++(short_work.*what);
   }
-  void add(float c, float TechniqueDensities::*technique) {
-    if (!(c > 0) || !std::isfinite(c)) return;
-    const bool is_walk = technique == &TechniqueDensities::walk;
-    if (is_walk && set != 0) return;  // the same eye path again
-    if (set == 0) light += c;
-    if (is_walk) by_walk += c;
-    const float all = weighed.all();
-    const double share = is_walk ? 1 : 0.5;
-    for (std::size_t k = 0; k < sums_.size(); ++k) {
-      const EffortCandidate& candidate = candidates_[k];
-      const float ratio = std::max(candidate.all(weighed) / all, least_ratio);
-      Sums& s = sums_[k];
-      s.self += share * sqr(static_cast<double>(c)) / static_cast<double>(ratio);
-      if (candidate.samples(technique) == 0 || (weighed.is_beyond && !candidate.goes_on)) continue;
-      PathSum& sum = is_walk                                         ? s.walk
-                     : technique == &TechniqueDensities::connections ? s.connections[set]
-                     : technique == &TechniqueDensities::media       ? s.media[set]
-                                                                     : s.merges[set];
-      sum.add(static_cast<double>(c / ratio));
-    }
-  }
+  /// Adds a contribution c by a technique, with the densities `weighed`.
+  void add(float c, float TechniqueDensities::*technique);
   /// Estimates for candidate k, without light that the lens sees.
   struct Estimate {
     double light;          ///< E[X]
@@ -121,11 +123,10 @@ class PathMoments {
     double all_squares;    ///< Σ c² / R
   };
   Estimate estimate(std::size_t k) const {
-    const Sums& s = sums_[k];
-    const EffortCandidate& candidate = candidates_[k];
     const auto samples = [&](float TechniqueDensities::*technique) {
-      return static_cast<double>(candidate.samples(technique));
+      return static_cast<double>(candidates_.samples(technique)[k]);
     };
+    const Sums s = sums(k);
     const double m = samples(&TechniqueDensities::connections), n = samples(&TechniqueDensities::merging),
                  v = samples(&TechniqueDensities::media);
     const double w = s.walk.sum;
@@ -142,24 +143,35 @@ class PathMoments {
     return {w + (a + b) / 2, second_moment, of_eye_path, s.walk.squares + of_light, s.self};
   }
 
-  static constexpr float least_ratio = 1e-6f;  ///< stands in for 0: the candidate cannot find the path
-
  private:
   struct PathSum {
-    double sum = 0, squares = 0;
-    void add(double x) {
-      sum += x;
-      squares += sqr(x);
-    }
+    double sum, squares;
     // Products of two different samples.
     double pairs() const { return sqr(sum) - squares; }
   };
   struct Sums {
     PathSum walk, connections[2], merges[2], media[2];
-    double self = 0;
+    double self;
   };
-  std::span<const EffortCandidate> candidates_;
-  std::vector<Sums> sums_;
+  // `sums_` has a row for each number of Sums, with the sums of all candidates. Rows of PathSum:
+  static constexpr std::size_t walk = 0, connections = 2, merges = 6, media = 10, self = 14, row_count = 15;
+
+  double sum(std::size_t row, std::size_t k) const { return sums_[row * candidates_.size() + k]; }
+  PathSum path_sum(std::size_t row, std::size_t k) const { return {sum(row, k), sum(row + 1, k)}; }
+  Sums sums(std::size_t k) const {
+    return {path_sum(walk, k),
+            {path_sum(connections, k), path_sum(connections + 2, k)},
+            {path_sum(merges, k), path_sum(merges + 2, k)},
+            {path_sum(media, k), path_sum(media + 2, k)},
+            sum(self, k)};
+  }
+  std::span<double> row(std::size_t number) {
+    return std::span(sums_).subspan(number * candidates_.size(), candidates_.size());
+  }
+
+  const CandidateArrays& candidates_;
+  std::vector<float> ratios_;  // scratch
+  std::vector<double> sums_;
 };
 
 }  // namespace lanthorn
