@@ -73,8 +73,9 @@ def bowl():
 # A whisky on ice, in centimetres
 
 LEVEL = 4.55  # of the whisky
+# Middle, turn about z, axis and angle of the tilt
 ICE = (((-1.56, 0.35, 3.42), 24, (1, 0.3, 0), 5), ((1.58, -0.25, 3.42), -13, (0.2, 1, 0), 6),
-       ((1.2, 1.2, 6.4), 48, (1, 0.4, 0), 13), ((-1.45, -1.05, 6.3), 8, (0.3, 1, 0), 9))  # middle, turn about z, axis and angle of the tilt
+       ((1.2, 1.2, 6.4), 48, (1, 0.4, 0), 13), ((-1.45, -1.05, 6.3), 8, (0.3, 1, 0), 9))
 
 
 def flat_sided(facets, apothem, window, heights, around, sharpness=110):
@@ -244,7 +245,8 @@ def sweep(path, radius, sides=10, normal=(0, 0, 1)):
         normal = unit(sub(normal, mul(along, dot(normal, along))))
         other = cross(along, normal)
         r = radius(i) if callable(radius) else radius
-        spokes = [add(mul(normal, math.cos(a)), mul(other, math.sin(a))) for a in (math.tau * (k % sides) / sides for k in range(sides + 1))]
+        turns = (math.tau * (k % sides) / sides for k in range(sides + 1))
+        spokes = [add(mul(normal, math.cos(a)), mul(other, math.sin(a))) for a in turns]
         rows.append([mesh.vertex(add(p, mul(s, r)), s) for s in spokes])
     for lower, upper in zip(rows, rows[1:]):
         mesh.strip(lower, upper)
@@ -288,7 +290,8 @@ def small_stones():
                                  '"plymesh" "string filename" "../meshes/brilliant.ply"'))
             for z in (-0.62, 0.62):
                 beads.append(placed(f"Rotate {turn + side * 4.6:g} 0 0 1 Translate 10.07 0 {z}", '"sphere" "float radius" [0.2]'))
-    return {"small-stones.pbrt": scene_text(stones, "make_gallery_models.py"), "beads.pbrt": scene_text(beads, "make_gallery_models.py")}
+    return {"small-stones.pbrt": scene_text(stones, "make_gallery_models.py"),
+            "beads.pbrt": scene_text(beads, "make_gallery_models.py")}
 
 
 # An aquarium, in centimetres: 60 by 30 inside, its water 32 deep
@@ -324,8 +327,8 @@ def frame_of_tank():
 
 
 def ripples(columns=120, rows=60):
-    waves = ((0.62, 0.21, 0.11, 0.4), (-0.35, 0.7, 0.1, 1.9), (0.9, -0.55, 0.055, 0.8), (0.25, 1.25, 0.04, 2.6), (-1.3, 0.6, 0.03, 4.0), (1.6, 1.2, 0.017, 5.1),
-             (-0.7, -0.24, 0.07, 3.3))
+    waves = ((0.62, 0.21, 0.11, 0.4), (-0.35, 0.7, 0.1, 1.9), (0.9, -0.55, 0.055, 0.8), (0.25, 1.25, 0.04, 2.6),
+             (-1.3, 0.6, 0.03, 4.0), (1.6, 1.2, 0.017, 5.1), (-0.7, -0.24, 0.07, 3.3))
 
     def height(i, j):
         x, y = HALF_X * (2 * i / columns - 1), HALF_Y * (2 * j / rows - 1)
@@ -341,7 +344,8 @@ def sand(columns=110, rows=60):
     def height(i, j):
         u, v = x * (2 * i / columns - 1), y * (2 * j / rows - 1)
         ridges = 0.22 * math.sin(0.95 * v + 0.35 * u + 1.4 * math.sin(0.17 * u) + 0.5 * math.sin(0.4 * v))
-        return 3.4 + 0.085 * (v + y) + 0.7 * math.sin(0.11 * u + 0.6) * math.sin(0.1 * v + 0.3) + ridges * (0.4 + 0.6 * math.sin(0.09 * u + 1) ** 2)
+        dunes = 0.7 * math.sin(0.11 * u + 0.6) * math.sin(0.1 * v + 0.3)
+        return 3.4 + 0.085 * (v + y) + dunes + ridges * (0.4 + 0.6 * math.sin(0.09 * u + 1) ** 2)
 
     mesh = grid(height, columns, rows, (-x, x), (-y, y))
     # What the panes show of it from the side
@@ -358,14 +362,19 @@ def sand(columns=110, rows=60):
 def stone(seed, flat=0.7):
     """A stone of radius 1: a ball with dents and planes."""
     chance = random.Random(seed)
-    bumps = [(unit(tuple(chance.gauss(0, 1) for _ in range(3))), chance.uniform(1.5, 5), chance.uniform(-0.13, 0.1)) for _ in range(26)]
-    planes = [(unit(tuple(chance.gauss(0, 1) for _ in range(3))), chance.uniform(0.72, 0.95)) for _ in range(9)]
+
+    def direction():
+        return unit(tuple(chance.gauss(0, 1) for _ in range(3)))
+
+    bumps = [(direction(), chance.uniform(1.5, 5), chance.uniform(-0.13, 0.1)) for _ in range(26)]
+    planes = [(direction(), chance.uniform(0.72, 0.95)) for _ in range(9)]
 
     def position(u, v):
         d = (math.cos(u) * math.cos(v), math.sin(u) * math.cos(v), math.sin(v))
         r = 1 + sum(a * math.exp(k * 2 * (dot(d, b) - 1)) for b, k, a in bumps)
         r = sum(max(0.05, c / max(0.05, dot(d, n)) if dot(d, n) > 0 else 9) ** -14 for n, c in planes) + r ** -14
-        r = r ** (-1 / 14) + 0.012 * math.sin(9 * d[0] + 3 * d[1]) * math.sin(8 * d[1] - 5 * d[2]) + 0.006 * math.sin(23 * d[2] + 11 * d[0])
+        rough = 0.012 * math.sin(9 * d[0] + 3 * d[1]) * math.sin(8 * d[1] - 5 * d[2])
+        r = r ** (-1 / 14) + rough + 0.006 * math.sin(23 * d[2] + 11 * d[0])
         return (r * d[0], r * d[1], flat * r * d[2])
 
     return surface(position, [math.tau * i / 44 for i in range(45)], [math.radians(89.9 * (i / 15 - 1)) for i in range(31)])
@@ -388,7 +397,9 @@ def grass(count, seed, height, width, spread):
     for _ in range(count):
         tall = height * chance.uniform(0.6, 1.1)
         at = (spread * chance.gauss(0, 0.5), spread * chance.gauss(0, 0.5), 0)
-        joined(mesh, blade(tall, width * chance.uniform(0.7, 1.2), tall * chance.uniform(0.08, 0.4), chance.uniform(0, math.tau), chance.uniform(-1.5, 1.5)), 0, 1, at)
+        leaf = blade(tall, width * chance.uniform(0.7, 1.2), tall * chance.uniform(0.08, 0.4), chance.uniform(0, math.tau),
+                     chance.uniform(-1.5, 1.5))
+        joined(mesh, leaf, 0, 1, at)
     return mesh
 
 
@@ -422,7 +433,8 @@ def bush(stems, seed, height, leaf):
 
 def fish(length, tall, wide, seed=1):
     """A fish along x, its head towards +x: the back, the belly, the fins, the eyes."""
-    outline = spline([(0, 0.02), (0.04, 0.2), (0.12, 0.42), (0.28, 0.78), (0.45, 1.0), (0.6, 0.92), (0.78, 0.52), (0.9, 0.24), (1.0, 0.2)], 4)
+    outline = spline([(0, 0.02), (0.04, 0.2), (0.12, 0.42), (0.28, 0.78), (0.45, 1.0), (0.6, 0.92), (0.78, 0.52),
+                      (0.9, 0.24), (1.0, 0.2)], 4)
 
     def section(t):
         x = min(0.999, max(0, t))
@@ -441,7 +453,8 @@ def fish(length, tall, wide, seed=1):
             z = 0.5 * tall * r * math.sin(a) * (0.95 if math.sin(a) > 0 else 1.05)
             return (x, y + bend(x), z)
 
-        return surface(position, [math.radians(last + (first - last) * i / 14) for i in range(15)], [0.001 + 0.998 * i / 36 for i in range(37)])
+        turns = [math.radians(last + (first - last) * i / 14) for i in range(15)]
+        return surface(position, turns, [0.001 + 0.998 * i / 36 for i in range(37)])
 
     def fin(x0, x1, reach, sweep_back, z_sign, base):
         def position(s, t):
@@ -462,7 +475,8 @@ def fish(length, tall, wide, seed=1):
 
     def pectoral(sign):
         def position(s, t):
-            return (length * (0.2 - 0.15 * t - 0.03 * s), sign * (0.42 * wide + 0.2 * wide * t) + bend(0.2 * length), tall * (-0.16 - 0.2 * t * (s - 0.3)))
+            return (length * (0.2 - 0.15 * t - 0.03 * s), sign * (0.42 * wide + 0.2 * wide * t) + bend(0.2 * length),
+                    tall * (-0.16 - 0.2 * t * (s - 0.3)))
 
         return surface(position, [i / 8 for i in range(9)], [i / 6 for i in range(7)])
 
@@ -482,7 +496,8 @@ def fish(length, tall, wide, seed=1):
 def aquarium():
     panes, wet = tank()
     meshes = {"tank-panes": panes, "tank-wet": wet, "tank-frame": frame_of_tank(), "tank-water": ripples(), "tank-sand": sand(),
-              "grass-tall": grass(16, 3, 27, 0.55, 2.2), "grass-short": grass(34, 5, 6, 0.28, 2.6), "bush-red": bush(6, 2, 14, 2.6), "bush-green": bush(7, 9, 11, 3.2)}
+              "grass-tall": grass(16, 3, 27, 0.55, 2.2), "grass-short": grass(34, 5, 6, 0.28, 2.6),
+              "bush-red": bush(6, 2, 14, 2.6), "bush-green": bush(7, 9, 11, 3.2)}
     meshes |= {f"stone-{i}": stone(seed, flat) for i, (seed, flat) in enumerate(((2, 0.75), (7, 0.6), (12, 0.9)))}
     for name, parts in (("goldfish", fish(8.5, 4.0, 2.6)), ("tetra", fish(3.4, 1.1, 0.6, 2))):
         meshes |= {f"{name}-{part}": mesh for part, mesh in zip(("back", "belly", "fins", "eyes"), parts)}
@@ -496,7 +511,8 @@ def air_bubbles():
         t = i / 46
         z = 6.5 + (WATER - 7.3) * t + chance.uniform(-0.2, 0.2)
         x, y = (0.35 + 0.75 * t) * chance.gauss(0, 1), (0.35 + 0.75 * t) * chance.gauss(0, 1)
-        lines.append(placed(f"Translate {x:.2f} {y:.2f} {z:.2f}", f'"sphere" "float radius" [{chance.uniform(0.08, 0.2 + 0.12 * t):.3f}]'))
+        radius = chance.uniform(0.08, 0.2 + 0.12 * t)
+        lines.append(placed(f"Translate {x:.2f} {y:.2f} {z:.2f}", f'"sphere" "float radius" [{radius:.3f}]'))
     return scene_text(lines, "make_gallery_models.py")
 
 
@@ -519,15 +535,17 @@ def lens_stand():
     mesh.vertices = [((z, -y, x + 9.5), (nz, -ny, nx)) for (x, y, z), (nx, ny, nz) in ring.vertices]
     mesh.triangles = list(ring.triangles)
     return lathe([line((0, 0), (3.4, 0)), arc((3.4, 0.2), 0.2, -90, 90, 6),
-                  spline([(3.4, 0.4), (2.6, 0.55), (1.2, 0.75), (0.6, 1.2), (0.42, 1.9), (0.55, 2.3), (0.75, 2.6), (0.5, 2.9), (0.34, 3.3), (0.34, 4.4), (0.5, 4.7)], 6)], 48, mesh)
+                  spline([(3.4, 0.4), (2.6, 0.55), (1.2, 0.75), (0.6, 1.2), (0.42, 1.9), (0.55, 2.3), (0.75, 2.6),
+                          (0.5, 2.9), (0.34, 3.3), (0.34, 4.4), (0.5, 4.7)], 6)], 48, mesh)
 
 
 def book(width, depth, thick):
     """A closed book on z = 0, its back towards -y: the cover, the pages."""
-    cover = boxes((-width / 2, -depth / 2 + 0.3, 0, width / 2, depth / 2, 0.25), (-width / 2, -depth / 2 + 0.3, thick - 0.25, width / 2, depth / 2, thick))
-    back = [(-depth / 2 + 0.3 - 0.35 * math.sin(math.radians(a)), thick / 2 - 0.5 * thick * math.cos(math.radians(a))) for a in range(0, 181, 15)]
-    rows = [[cover.vertex((x, y, z), (0, -math.sin(math.radians(15 * i)), -math.cos(math.radians(15 * i)))) for i, (y, z) in enumerate(back)]
-            for x in (-width / 2, width / 2)]
+    cover = boxes((-width / 2, -depth / 2 + 0.3, 0, width / 2, depth / 2, 0.25),
+                  (-width / 2, -depth / 2 + 0.3, thick - 0.25, width / 2, depth / 2, thick))
+    turns = [(math.cos(math.radians(a)), math.sin(math.radians(a))) for a in range(0, 181, 15)]
+    back = [(-depth / 2 + 0.3 - 0.35 * s, thick / 2 - 0.5 * thick * c) for c, s in turns]
+    rows = [[cover.vertex((x, y, z), (0, -s, -c)) for (y, z), (c, s) in zip(back, turns)] for x in (-width / 2, width / 2)]
     cover.strip(*rows[::-1])
     for x, side in ((-width / 2, -1), (width / 2, 1)):
         cover.polygon([(x, y, z) for y, z in back[::side]], (side, 0, 0))
