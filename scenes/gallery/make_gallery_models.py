@@ -1,8 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The Lanthorn authors
 # SPDX-License-Identifier: Apache-2.0
-"""Makes the meshes of five more scenes of the gallery: a glass of water, a whisky on ice, a diamond ring, a torch with a
-lens, an aquarium.
+"""Makes the meshes of four more scenes of the gallery: a glass of water, a whisky on ice, a diamond ring, an aquarium.
 
 Usage: scenes/gallery/make_gallery_models.py [--check] [FOLDER]
 
@@ -516,51 +515,12 @@ def air_bubbles():
     return scene_text(lines, "make_gallery_models.py")
 
 
-# A lens on a stand, and a book; in centimetres
-
-def lens(radius=4.4, curvature=12.0, edge=0.25):
-    """Biconvex, about z."""
-    half = math.degrees(math.asin(radius / curvature))
-    z = curvature * math.cos(math.radians(half)) - edge / 2
-    lower = [(r, -h) for r, h in reversed(arc((0, -z), curvature, 90 - half, 90, 20))]
-    upper = [(r, h) for r, h in arc((0, -z), curvature, 90 - half, 90, 20)]
-    lower[0], upper[-1] = (0, lower[0][1]), (0, upper[-1][1])
-    return lathe([lower, line(lower[-1], upper[0]), upper], 96)
-
-
-def lens_stand():
-    """A ring about x at the height of 9.5, on a pillar with a round foot."""
-    ring = lathe([spline([(4.3, -0.42), (4.75, -0.5), (5.0, 0), (4.75, 0.5), (4.3, 0.42)], 6), line((4.3, 0.42), (4.3, -0.42))], 96)
-    mesh = Mesh()
-    mesh.vertices = [((z, -y, x + 9.5), (nz, -ny, nx)) for (x, y, z), (nx, ny, nz) in ring.vertices]
-    mesh.triangles = list(ring.triangles)
-    return lathe([line((0, 0), (3.4, 0)), arc((3.4, 0.2), 0.2, -90, 90, 6),
-                  spline([(3.4, 0.4), (2.6, 0.55), (1.2, 0.75), (0.6, 1.2), (0.42, 1.9), (0.55, 2.3), (0.75, 2.6),
-                          (0.5, 2.9), (0.34, 3.3), (0.34, 4.4), (0.5, 4.7)], 6)], 48, mesh)
-
-
-def book(width, depth, thick):
-    """A closed book on z = 0, its back towards -y: the cover, the pages."""
-    cover = boxes((-width / 2, -depth / 2 + 0.3, 0, width / 2, depth / 2, 0.25),
-                  (-width / 2, -depth / 2 + 0.3, thick - 0.25, width / 2, depth / 2, thick))
-    turns = [(math.cos(math.radians(a)), math.sin(math.radians(a))) for a in range(0, 181, 15)]
-    back = [(-depth / 2 + 0.3 - 0.35 * s, thick / 2 - 0.5 * thick * c) for c, s in turns]
-    rows = [[cover.vertex((x, y, z), (0, -s, -c)) for (y, z), (c, s) in zip(back, turns)] for x in (-width / 2, width / 2)]
-    cover.strip(*rows[::-1])
-    for x, side in ((-width / 2, -1), (width / 2, 1)):
-        cover.polygon([(x, y, z) for y, z in back[::side]], (side, 0, 0))
-    return cover, boxes((-width / 2 + 0.35, -depth / 2 + 0.3, 0.25, width / 2 - 0.35, depth / 2 - 0.35, thick - 0.25))
-
-
 def files():
     """Name and content of every file, before compression."""
     meshes = {"cloth": cloth(), "bowl": bowl(),
               "leaves": leaves(700, 4, (0, 420, 60), (800, 120, 200), 11),
               "leaves-far": leaves(900, 5, (0, 520, 60), (1100, 120, 320), 16)}
     meshes |= whisky() | aquarium() | {"diamond-band": band(), "diamond-head": head()}
-    meshes |= {"lens": lens(), "lens-stand": lens_stand()}
-    for name, parts in (("book-a", book(21, 15, 3)), ("book-b", book(18, 13, 2.4))):
-        meshes |= {f"{name}-{part}": mesh for part, mesh in zip(("cover", "pages"), parts)}
     for name, parts in (("highball", highball()),):
         meshes |= {f"{name}-{part}": mesh for part, mesh in zip(("glass", "liquid-in-glass", "liquid-top"), parts)}
     # Multiples of 2^-12: short mantissas pack well.
