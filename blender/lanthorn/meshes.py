@@ -12,6 +12,17 @@ def _get(collection, name, count, dtype):
     return values
 
 
+def _has_normals_of_vertices(mesh, smooth):
+    """Whether all corners at a vertex have its normal. `smooth`: of each polygon."""
+    if hasattr(mesh, "normals_domain"):  # from Blender 4.1 on
+        return mesh.normals_domain == "POINT"
+    return bool(smooth.all()) and not mesh.use_auto_smooth
+
+
+def _vertex_normals(mesh):
+    return _get(mesh.vertex_normals, "vector", 3 * len(mesh.vertices), numpy.float32).reshape(-1, 3)
+
+
 def _corner_normals(mesh, count):
     if hasattr(mesh, "corner_normals"):  # from Blender 4.1 on
         return _get(mesh.corner_normals, "vector", 3 * count, numpy.float32).reshape(-1, 3)
@@ -19,8 +30,15 @@ def _corner_normals(mesh, count):
     return _get(mesh.loops, "normal", 3 * count, numpy.float32).reshape(-1, 3)
 
 
-def _is_smooth(mesh):
-    return bool(_get(mesh.polygons, "use_smooth", len(mesh.polygons), bool).any())
+def _smooth_polygons(mesh):
+    return _get(mesh.polygons, "use_smooth", len(mesh.polygons), bool)
+
+
+def _slots(mesh, count):
+    """The number of the material of each triangle."""
+    if len(mesh.materials) < 2:  # numbers beyond the last slot count as the last one
+        return numpy.zeros(count, dtype=numpy.int32)
+    return _get(mesh.loop_triangles, "material_index", count, numpy.int32)
 
 
 def _corner_colors(mesh, attribute, vertices):
@@ -45,10 +63,16 @@ class Surface:
             return
         self.vertices = _get(mesh.loops, "vertex_index", loops, numpy.int32)
         self.positions = _get(mesh.vertices, "co", 3 * len(mesh.vertices), numpy.float32).reshape(-1, 3)
-        self.is_smooth = _is_smooth(mesh)
         self.triangles = _get(mesh.loop_triangles, "loops", 3 * count, numpy.int32).reshape(-1, 3)
-        self.slots = _get(mesh.loop_triangles, "material_index", count, numpy.int32)
-        self.normals = _corner_normals(mesh, loops) if self.is_smooth else None
+        self.slots = _slots(mesh, count)
+        smooth = _smooth_polygons(mesh)
+        self.is_smooth = bool(smooth.any())
+        self.vertex_normals = self.normals = None
+        if self.is_smooth and _has_normals_of_vertices(mesh, smooth):
+            self.vertex_normals = _vertex_normals(mesh)
+            self.normals = self.vertex_normals[self.vertices]
+        elif self.is_smooth:
+            self.normals = _corner_normals(mesh, loops)
         # Not before: the normals add a layer, which moves the others.
         self.uv_layers = {layer.name: _get(layer.data, "uv", 2 * loops, numpy.float32).reshape(-1, 2)
                           for layer in mesh.uv_layers}
@@ -67,7 +91,7 @@ class Surface:
         return self._stored[key]
 
     def used_slots(self):
-        return [] if self.is_empty else [int(slot) for slot in numpy.unique(self.slots)]
+        return [] if self.is_empty else numpy.flatnonzero(numpy.bincount(self.slots)).tolist()
 
     def shape(self, slot, color_name=None, is_welded=False):
         """The triangles of a slot as a mesh of Lanthorn, whose vertices are the corners of Blender's. Welded: one vertex
@@ -77,11 +101,16 @@ class Surface:
             self._shapes[key] = self._shape(*key)
         return self._shapes[key]
 
+    def _triangles_of(self, slot):
+        chosen = self.slots == slot
+        return self.triangles if chosen.all() else self.triangles[chosen]
+
     def _shape(self, slot, color_name, is_welded):
-        triangles = self.triangles[self.slots == slot]
+        triangles = self._triangles_of(slot)
         colors = self.colors.get(color_name)
-        if not self.is_smooth and self.uv_name is None and colors is None:
-            return _subset(self.vertices[triangles], {"positions": self.positions})
+        if self.uv_name is None and colors is None and (not self.is_smooth or self.vertex_normals is not None):
+            normals = {"normals": self.vertex_normals} if self.is_smooth else {}
+            return _subset(self.vertices[triangles], {"positions": self.positions, **normals})
         corners = {"positions": self.positions[self.vertices]}
         if self.is_smooth:
             corners["normals"] = self.normals
@@ -99,7 +128,7 @@ class Surface:
         return self._shapes[key]
 
     def _atlas_shape(self, slot, size):
-        corners = self.triangles[self.slots == slot].reshape(-1)
+        corners = self._triangles_of(slot).reshape(-1)
         shape = {"positions": self.positions[self.vertices[corners]], "uvs": self._atlas(slot, size)[0].reshape(-1, 2),
                  "triangles": numpy.arange(len(corners), dtype=numpy.uint32).reshape(-1, 3)}
         if self.is_smooth:
@@ -108,7 +137,7 @@ class Surface:
 
     def _atlas(self, slot, size):
         if (slot, size) not in self._atlases:
-            points = self.positions[self.vertices[self.triangles[self.slots == slot]]]
+            points = self.positions[self.vertices[self._triangles_of(slot)]]
             self._atlases[slot, size] = atlas.places(points, size)
         return self._atlases[slot, size]
 
@@ -121,14 +150,14 @@ class Surface:
     def _uv_bounds(self, slot):
         if self.uv_name is None:
             return numpy.zeros(2), numpy.ones(2)
-        uvs = self.uv_layers[self.uv_name][self.triangles[self.slots == slot].reshape(-1)]
+        uvs = self.uv_layers[self.uv_name][self._triangles_of(slot).reshape(-1)]
         low, high = uvs.min(axis=0).astype(numpy.float64), uvs.max(axis=0).astype(numpy.float64)
         low, high = numpy.floor(numpy.minimum(low, 0) + 1e-4), numpy.ceil(numpy.maximum(high, 1) - 1e-4)
         return low, high
 
     def atlas_arrays(self, slot, size):
         """What bake_worker.py needs to bake the slot."""
-        chosen = self.triangles[self.slots == slot]
+        chosen = self._triangles_of(slot)
         corners = chosen.reshape(-1)
         used, inverse = numpy.unique(self.vertices[corners], return_inverse=True)
         arrays = {"vertices": self.positions[used], "triangles": inverse.reshape(-1, 3), "is_smooth": self.is_smooth,
@@ -164,7 +193,9 @@ def _welded(triangles, vertices, corners):
 
 def _subset(triangles, corners):
     """The triangles with the corners that they have alone."""
-    used, inverse = numpy.unique(triangles, return_inverse=True)
-    part = {name: values[used] for name, values in corners.items()}
-    part["triangles"] = inverse.reshape(-1, 3).astype(numpy.uint32)
-    return part
+    used = numpy.zeros(len(corners["positions"]), dtype=bool)
+    used[triangles] = True
+    if used.all():
+        return {**corners, "triangles": triangles.astype(numpy.uint32)}
+    numbers = numpy.cumsum(used, dtype=numpy.uint32) - 1
+    return {**{name: values[used] for name, values in corners.items()}, "triangles": numbers[triangles]}
