@@ -1,6 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The Lanthorn authors
 # SPDX-License-Identifier: Apache-2.0
 """The render engine: final renders and the viewport."""
+import weakref
+
 import bpy
 import gpu
 
@@ -121,6 +123,20 @@ class FinalRender:
         self.engine.update_stats("", text)
 
 
+def redraw_of(engine):
+    """A function that redraws the engine's viewport as long as it is there, and does not keep it alive."""
+    reference = weakref.ref(engine)
+
+    def redraw():
+        found = reference()
+        try:
+            if found is not None:
+                found.tag_redraw()
+        except ReferenceError:  # Blender has freed it meanwhile
+            pass
+    return redraw
+
+
 class LanthornEngine(bpy.types.RenderEngine):
     bl_idname = "LANTHORN"
     bl_label = "Lanthorn"
@@ -144,16 +160,14 @@ class LanthornEngine(bpy.types.RenderEngine):
     # Blender makes an engine for each viewport, and calls no __init__ that it may not leave out.
     _viewport = None
 
-    def __del__(self):
-        if self._viewport is not None:
-            self._viewport.close()
-
     def view_update(self, context, depsgraph):
         settings_of_scene = context.scene.lanthorn
         try:
             if self._viewport is None:
-                self._viewport = viewport.Viewport(start_program(), self._redraw, settings_of_scene.viewport_options(),
+                self._viewport = viewport.Viewport(start_program(), redraw_of(self), settings_of_scene.viewport_options(),
                                                    settings_of_scene.denoise)
+                # Not __del__: a freed engine has no members any more.
+                weakref.finalize(self, self._viewport.close)
             self._viewport.update_scene(context, depsgraph)
         except LinkError as error:
             self.update_stats("Lanthorn", str(error))
@@ -171,12 +185,6 @@ class LanthornEngine(bpy.types.RenderEngine):
         self.unbind_display_space_shader()
         gpu.state.blend_set("NONE")
         self.update_stats("Lanthorn", self._viewport.problem or self._viewport.status)
-
-    def _redraw(self):
-        try:
-            self.tag_redraw()
-        except ReferenceError:  # the viewport is gone
-            pass
 
 
 def register():

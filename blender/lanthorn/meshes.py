@@ -93,10 +93,11 @@ class Surface:
     def used_slots(self):
         return [] if self.is_empty else numpy.flatnonzero(numpy.bincount(self.slots)).tolist()
 
-    def shape(self, slot, color_name=None, is_welded=False):
+    def shape(self, slot, color_name=None, is_welded=False, tangent=None):
         """The triangles of a slot as a mesh of Lanthorn, whose vertices are the corners of Blender's. Welded: one vertex
-        for all that are alike. The same arrays at each call, so that nobody need compare them."""
-        key = slot, color_name, is_welded
+        for all that are alike. `tangent`: see `_tangents`. The same arrays at each call, so that nobody need compare
+        them."""
+        key = slot, color_name, is_welded, tangent
         if key not in self._shapes:
             self._shapes[key] = self._shape(*key)
         return self._shapes[key]
@@ -105,10 +106,10 @@ class Surface:
         chosen = self.slots == slot
         return self.triangles if chosen.all() else self.triangles[chosen]
 
-    def _shape(self, slot, color_name, is_welded):
+    def _shape(self, slot, color_name, is_welded, tangent):
         triangles = self._triangles_of(slot)
         colors = self.colors.get(color_name)
-        if self.uv_name is None and colors is None and (not self.is_smooth or self.vertex_normals is not None):
+        if self.uv_name is None and colors is None and tangent is None and (not self.is_smooth or self.vertex_normals is not None):
             normals = {"normals": self.vertex_normals} if self.is_smooth else {}
             return _subset(self.vertices[triangles], {"positions": self.positions, **normals})
         corners = {"positions": self.positions[self.vertices]}
@@ -118,22 +119,72 @@ class Surface:
             corners["uvs"] = self.uv_layers[self.uv_name]
         if colors is not None:
             corners["colors"] = colors
+        if tangent is not None:
+            corners["tangents"] = self._tangents(*tangent)
         return _subset(_welded(triangles, self.vertices, corners) if is_welded else triangles, corners)
 
-    def atlas_shape(self, slot, size):
+    def atlas_shape(self, slot, size, tangent=None):
         """As `shape`, with a place of its own in an image for each triangle."""
-        key = slot, size
+        key = "atlas", slot, size, tangent
         if key not in self._shapes:
-            self._shapes[key] = self._atlas_shape(*key)
+            self._shapes[key] = self._atlas_shape(slot, size, tangent)
         return self._shapes[key]
 
-    def _atlas_shape(self, slot, size):
+    def _atlas_shape(self, slot, size, tangent):
         corners = self._triangles_of(slot).reshape(-1)
         shape = {"positions": self.positions[self.vertices[corners]], "uvs": self._atlas(slot, size)[0].reshape(-1, 2),
                  "triangles": numpy.arange(len(corners), dtype=numpy.uint32).reshape(-1, 3)}
         if self.is_smooth:
             shape["normals"] = self.normals[corners]
+        if tangent is not None:
+            shape["tangents"] = self._tangents(*tangent)[corners]
         return shape
+
+    def _tangents(self, kind, name, turn):
+        """The direction at each corner along which brushes went. RADIAL: around the axis `name` of the texture space; UV:
+        along u of the layer `name`. `turn`: around the normal, in full turns."""
+        around = self._around(name) if kind == "RADIAL" else self._along_u(name)
+        if turn == 0:
+            return around  # the program makes it perpendicular to the normal
+        normals = self.normals if self.is_smooth else self._facets()
+        along = around - normals * (around * normals).sum(axis=1, keepdims=True)
+        angle = 2 * numpy.pi * turn
+        return (numpy.cos(angle) * along + numpy.sin(angle) * numpy.cross(normals, along)).astype(numpy.float32)
+
+    def _around(self, axis):
+        middle, size = self._texture_space()
+        x, y, z = ((self.positions[self.vertices] - middle) / numpy.maximum(size, 1e-6)).T
+        zero = numpy.zeros_like(x)
+        columns = {"X": (zero, -z, y), "Y": (-z, zero, x), "Z": (-y, x, zero)}[axis]
+        return numpy.stack(columns, axis=1).astype(numpy.float32)
+
+    def _along_u(self, name):
+        uvs = self.uv_layers.get(name, self.uv_layers.get(self.uv_name))
+        if uvs is None:
+            return self._around("Z")
+        points, places = self.positions[self.vertices[self.triangles]], uvs[self.triangles]
+        (e1, e2), (d1, d2) = ([values[:, i] - values[:, 0] for i in (1, 2)] for values in (points, places))
+        along = e1 * d2[:, 1:] - e2 * d1[:, 1:]
+        along *= numpy.sign(d1[:, 0] * d2[:, 1] - d1[:, 1] * d2[:, 0])[:, None]
+        return self._of_corners(along)
+
+    def _facets(self):
+        points = self.positions[self.vertices[self.triangles]]
+        return self._of_corners(numpy.cross(points[:, 1] - points[:, 0], points[:, 2] - points[:, 0]))
+
+    def _of_corners(self, vectors):
+        """Vectors of triangles, as units, for their corners."""
+        vectors = vectors / numpy.maximum(numpy.linalg.norm(vectors, axis=1, keepdims=True), 1e-20)
+        of_corners = numpy.zeros((len(self.vertices), 3), dtype=numpy.float32)
+        of_corners[self.triangles] = vectors[:, None, :]
+        return of_corners
+
+    def _texture_space(self):
+        """Middle and half the extent of the box that Generated coordinates fill."""
+        if self.texspace is not None:
+            return numpy.array(self.texspace)
+        low, high = self.positions.min(axis=0), self.positions.max(axis=0)
+        return numpy.array([(low + high) / 2, numpy.maximum((high - low) / 2, 1e-6)])
 
     def _atlas(self, slot, size):
         if (slot, size) not in self._atlases:
@@ -165,11 +216,7 @@ class Surface:
         names = sorted(self.uv_layers, key=lambda name: name != self.uv_name)
         arrays.update({f"uv:{name}": self.uv_layers[name][corners] for name in names})
         arrays.update({f"color:{name}": values[corners] for name, values in self.colors.items()})
-        if self.texspace is not None:
-            arrays["texspace"] = numpy.array(self.texspace)
-        else:
-            low, high = self.positions.min(axis=0), self.positions.max(axis=0)
-            arrays["texspace"] = numpy.array([(low + high) / 2, numpy.maximum((high - low) / 2, 1e-6)])
+        arrays["texspace"] = self._texture_space()
         return arrays
 
     def square_arrays(self, low, high):

@@ -108,6 +108,7 @@ MATERIALS = {
     "principled-glass": (shader(PRINCIPLED, **BASE, Roughness=0.0, Transmission=1.0, IOR=1.45), 0.05),
     "clearcoat": (shader(PRINCIPLED, **BASE, Roughness=0.5, Clearcoat=1.0, **{"Clearcoat Roughness": 0.1}), 0.05),
     "sheen": (shader(PRINCIPLED, **BASE, Roughness=0.6, Sheen=0.5, **{"Sheen Tint": 0.0}), 0.05),
+    "velvet": (shader("ShaderNodeBsdfVelvet", Color=RED, Sigma=0.8), TOLERANCE),
     "coat-of-fresnel": (coat_of_fresnel, 0.05),
     "absorption": (volume("ShaderNodeVolumeAbsorption", GLASS, Color=(0.2, 0.6, 0.9, 1), Density=1.0), TOLERANCE),
     "scatter": (volume("ShaderNodeVolumeScatter", Color=(0.9, 0.6, 0.3, 1), Density=1.5, Anisotropy=0.3), TOLERANCE),
