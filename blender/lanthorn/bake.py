@@ -91,12 +91,13 @@ class Bakes:
         self.problem = ""
 
     def image(self, tree_owner, output, path_of_groups, textures, domain):
-        """The path of an image of this socket's values. `domain`: a member `key` and one `job`, see bake_worker.py."""
+        """The path of an image of this socket's values. `domain`: members `key` and `job`, see bake_worker.py, and perhaps
+        `size` and `extension`; npz: an array `texels`, rows from the bottom."""
         images = images_behind(output, textures.source)
         largest = max([0, *(side for image in images for side in image.size)])
         size = domain.get("size") or max(self.size, min(LARGEST_FROM_IMAGES, largest))
         text = f"{tree_owner.name_full} {signature_of(output, textures.source)} {domain['key']} {size}"
-        path = self._path(text, "exr")
+        path = self._path(text, domain.get("extension", "exr"))
         if not os.path.exists(path) and path not in self._failed:
             self._jobs[path] = {"kind": "surface", "material": tree_owner.original, "groups": path_of_groups, "size": size,
                                 "node": output.node.name, "output": output.identifier, "path": path,

@@ -55,6 +55,9 @@ class FinalRender:
             export.bake(parts, self.engine.test_break)
             if self.engine.test_break():
                 return
+            if export.is_unfinished:
+                parts = export.parts(self.depsgraph)
+                export.settle(parts)
             view = self.view_parts(export.report)
             motion.add_motion(self.engine, self.depsgraph, self.scene.camera, parts, view["camera"])
             changed, _ = export.changes(parts)

@@ -56,14 +56,15 @@ class Materials:
         self.parts, self.report, self.bakes = parts, report, bakes
         self.textures = Textures(parts, report, images, bakes)
         self._done, self._kinds, self._mixes, self._tangent = {}, {}, 0, None
+        self.unfinished = []  # materials whose media need a second export, after bakes
 
     def shape(self, material, surface, slot):
         """The triangles of a slot with their material, area_light, alpha."""
         name = material.name_full if material is not None else ""
         if name not in self._kinds:
-            self._kinds[name] = self._kind(material)
-        is_baked, is_atlas = self._kinds[name]
-        is_of_surface = is_atlas or (is_baked and not self._fills_unit_square(surface, slot))
+            self._kinds[name] = self._kind(material, surface)
+        is_baked, is_atlas, is_grid = self._kinds[name]
+        is_of_surface = is_atlas or is_grid or (is_baked and not self._fills_unit_square(surface, slot))
         key = (name, surface.key, slot) if is_of_surface else (name,)
         if key not in self._done:
             self._done[key] = self._add(material, surface, slot, is_atlas, " on ".join(map(str, key)))
@@ -73,6 +74,19 @@ class Materials:
         else:
             triangles = surface.shape(slot, colors, "displacement" in members, tangent)
         return {"type": "triangles", **triangles, **members}
+
+    def box_members(self, material, box):
+        """What the box around a volume object needs: its medium. Without a material, Blender has a Principled Volume."""
+        name = material.name_full if material is not None else ""
+        if material is None:
+            self.report.note(box.object_name, "a volume without a material is left out")
+            return {"material": self._interface()}
+        members = self._add(material, box, 0, False, f"{name} in {box.key}")[0]
+        return {"material": self._interface(), **{k: v for k, v in members.items() if k == "inside_medium"}}
+
+    def _interface(self):
+        self.parts["materials"].setdefault("interface", {"type": "interface"})
+        return "interface"
 
     def fibre_members(self, material):
         """What curves with this material need: material, area_light, alpha. Fibres have no texture coordinates."""
@@ -84,14 +98,19 @@ class Materials:
 
     def _put_out(self, members, material):
         """Fibres that emit would be lamps of many triangles each: they reflect the colour instead."""
-        lamp = members.pop("area_light", None)
-        if lamp is None:
-            return
-        self.report.note(material.name, "hair does not emit: it reflects the colour that it would emit")
-        if self.parts["materials"][members["material"]] == {"type": "diffuse", "reflectance": BLACK}:
-            color = self.parts["area_lights"][lamp]["radiance"]
-            self.parts["materials"][members["material"]] = {"type": "diffuse", "reflectance": clamped(color)}
-        del self.parts["area_lights"][lamp]
+        if "area_light" in members:
+            self.report.note(material.name, "hair does not emit: it reflects the colour that it would emit")
+            lamp = members["area_light"]
+            self.put_out(members)
+            del self.parts["area_lights"][lamp]
+
+    def put_out(self, members):
+        """Takes the lamp from a shape: a black surface reflects the colour that it would emit."""
+        lamp, materials = members.pop("area_light"), self.parts["materials"]
+        if materials[members["material"]] == {"type": "diffuse", "reflectance": BLACK}:
+            unlit = f"{members['material']} that reflects"
+            materials[unlit] = {"type": "diffuse", "reflectance": clamped(self.parts["area_lights"][lamp]["radiance"])}
+            members["material"] = unlit
 
     @staticmethod
     def _fills_unit_square(surface, slot):
@@ -103,11 +122,11 @@ class Materials:
             return None
         return material.node_tree.get_output_node("CYCLES") or material.node_tree.get_output_node("ALL")
 
-    def _kind(self, material):
-        """Whether a material needs images of its own, and whether triangle by triangle."""
+    def _kind(self, material, surface):
+        """Whether a material needs images of its own, whether triangle by triangle, and whether its volume varies."""
         output = self._output(material)
         if output is None:
-            return False, False
+            return False, False, False
         self.textures.groups = []
         nodes = [(node, outputs) for node, outputs in
                  self.textures.nodes_behind([output.inputs["Surface"], output.inputs["Displacement"]])
@@ -116,7 +135,9 @@ class Materials:
         solid = {node.type for node, outputs in nodes if self.textures.is_solid(node, outputs)}
         if not is_baked:
             solid -= {"VERTEX_COLOR"}
-        return is_baked or bool(solid), bool(solid)
+        volume = self.textures.source(output.inputs["Volume"])
+        is_grid = volume is not None and (surface.fields is not None or self.textures.varies_in_space(volume))
+        return is_baked or bool(solid), bool(solid), is_grid
 
     def _add(self, material, surface, slot, is_atlas, key):
         name = f"material {key}"
@@ -148,11 +169,18 @@ class Materials:
             return Look({"type": "diffuse", "reflectance": BLACK}), None, {}
         surface = self.textures.source(output.inputs["Surface"])
         volume = self.textures.source(output.inputs["Volume"])
-        medium = media.medium(volume.node, material.name, self.textures, self.report) if volume is not None else None
+        medium = self._medium(volume.node, material) if volume is not None else None
         if surface is None:
             return (Look() if medium is not None else Look({"type": "diffuse", "reflectance": BLACK})), medium, {}
         look = self._with_measured(self._look_of_output(surface, material.name), material)
         return look, medium, self._displacement(output.inputs["Displacement"], material, look)
+
+    def _medium(self, node, material):
+        volume = media.Volume(material.name, self.textures, self.report)
+        made = media.medium(volume, node)
+        if volume.is_missing:  # until the bake has come, the sockets' own values stand in
+            self.unfinished.append(material.name)
+        return made
 
     @staticmethod
     def _with_measured(look, material):

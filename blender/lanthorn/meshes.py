@@ -49,12 +49,33 @@ def _corner_colors(mesh, attribute, vertices):
     return colors[vertices] if attribute.domain == "POINT" else colors
 
 
+VALUES_OF = {"FLOAT": ("value", 1), "FLOAT_VECTOR": ("vector", 3)}
+
+
+def _corner_values(mesh, attribute, vertices):
+    """The numbers or vectors of an attribute at the corners, as colours; None for other attributes."""
+    if attribute.data_type not in VALUES_OF or attribute.name.startswith(".") or attribute.name == "position":
+        return None
+    member, count = VALUES_OF[attribute.data_type]
+    values = _get(attribute.data, member, count * len(attribute.data), numpy.float32).reshape(-1, count)
+    if attribute.domain == "POINT":
+        values = values[vertices]
+    elif attribute.domain == "FACE":
+        values = numpy.repeat(values, _get(mesh.polygons, "loop_total", len(mesh.polygons), numpy.int32), axis=0)
+    if len(values) != len(vertices):
+        return None
+    colors = numpy.ones((len(values), 4), dtype=numpy.float32)
+    colors[:, :3] = values
+    return colors
+
+
 class Surface:
     """A mesh: a copy of what shapes and bakes need, so that Blender's may go."""
 
     def __init__(self, mesh, key, texspace=None):
         self.key, self.texspace = key, texspace
         self.object_name, self.to_world = key, None
+        self.fields = None  # of fluids: volumes.Fields
         self._stored, self._atlases, self._shapes, self._bounds = {}, {}, {}, {}
         mesh.calc_loop_triangles()
         count, loops = len(mesh.loop_triangles), len(mesh.loops)
@@ -80,6 +101,8 @@ class Surface:
         self.uv_name = shown if shown is not None else next(iter(self.uv_layers), None)
         colors = {a.name: _corner_colors(mesh, a, self.vertices) for a in mesh.color_attributes}
         self.colors = {name: values for name, values in colors.items() if values is not None}
+        values = {a.name: _corner_values(mesh, a, self.vertices) for a in mesh.attributes if a.name not in colors}
+        self.values = {name: array for name, array in values.items() if array is not None}  # for bakes alone
         active = mesh.color_attributes.active_color
         self.color_name = active.name if active is not None and active.name in self.colors else None
 
@@ -152,7 +175,7 @@ class Surface:
         return (numpy.cos(angle) * along + numpy.sin(angle) * numpy.cross(normals, along)).astype(numpy.float32)
 
     def _around(self, axis):
-        middle, size = self._texture_space()
+        middle, size = self.texture_space()
         x, y, z = ((self.positions[self.vertices] - middle) / numpy.maximum(size, 1e-6)).T
         zero = numpy.zeros_like(x)
         columns = {"X": (zero, -z, y), "Y": (-z, zero, x), "Z": (-y, x, zero)}[axis]
@@ -179,7 +202,7 @@ class Surface:
         of_corners[self.triangles] = vectors[:, None, :]
         return of_corners
 
-    def _texture_space(self):
+    def texture_space(self):
         """Middle and half the extent of the box that Generated coordinates fill."""
         if self.texspace is not None:
             return numpy.array(self.texspace)
@@ -191,6 +214,9 @@ class Surface:
             points = self.positions[self.vertices[self._triangles_of(slot)]]
             self._atlases[slot, size] = atlas.places(points, size)
         return self._atlases[slot, size]
+
+    def has_attribute(self, name):
+        return name in self.colors or name in self.values or name in self.uv_layers
 
     def uv_bounds(self, slot):
         """The lowest and the highest texture coordinates of a slot; the unit square if it contains them."""
@@ -215,8 +241,8 @@ class Surface:
                   "atlas": self._atlas(slot, size)[0].reshape(-1, 2)}
         names = sorted(self.uv_layers, key=lambda name: name != self.uv_name)
         arrays.update({f"uv:{name}": self.uv_layers[name][corners] for name in names})
-        arrays.update({f"color:{name}": values[corners] for name, values in self.colors.items()})
-        arrays["texspace"] = self._texture_space()
+        arrays.update({f"color:{name}": values[corners] for name, values in {**self.values, **self.colors}.items()})
+        arrays["texspace"] = self.texture_space()
         return arrays
 
     def square_arrays(self, low, high):

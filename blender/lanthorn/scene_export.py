@@ -1,9 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The Lanthorn authors
 # SPDX-License-Identifier: Apache-2.0
 """A depsgraph as the parts of a scene that `lanthorn link` takes."""
+import collections
 import tempfile
 
-from . import camera, hair, lights, meshes, world
+from . import camera, hair, lights, meshes, volumes, world
 from .bake import Bakes
 from .materials import Materials
 from .report import Report
@@ -12,6 +13,7 @@ from .textures import ImageFiles
 MESH_TYPES = {"MESH", "CURVE", "SURFACE", "META", "FONT"}
 IGNORED_TYPES = {"CAMERA", "EMPTY", "ARMATURE", "LATTICE", "SPEAKER", "LIGHT_PROBE", "GPENCIL"}
 VISIBILITIES = ("visible_camera", "visible_diffuse", "visible_glossy", "visible_transmission", "visible_shadow")
+MOST_LAMPS = 1000000  # triangles that emit, at all places
 TABLES = ("float_textures", "spectrum_textures", "materials", "media", "area_lights", "shapes", "objects", "instances",
           "lights")
 
@@ -28,6 +30,7 @@ class SceneExport:
         self.folder = tempfile.TemporaryDirectory(prefix="lanthorn-")
         self.report = Report()
         self._images = ImageFiles(self.folder.name)
+        self.is_unfinished = False  # parts that must be exported again after the bake
         self.bakes = Bakes(self.folder.name)
         self._sent, self._is_viewport = empty_parts(), False
         self._surfaces = {}  # names and surface, by key; kept until `forget`
@@ -53,7 +56,22 @@ class SceneExport:
         scene_world = depsgraph.scene_eval.world
         if scene_world is not None:
             parts["lights"].update(world.lights_of_world(scene_world, self.report, self.bakes))
+        self._put_out_crowds(parts, materials)
+        self.is_unfinished = bool(materials.unfinished)
         return parts
+
+    def _put_out_crowds(self, parts, materials):
+        """Each triangle that emits is a lamp, at each place: meadows of them neither fit nor are worth it."""
+        places = collections.Counter(instance["object"] for instance in parts["instances"].values())
+        crowds = [(places[key] * len(shape["triangles"]), key, shape) for key, made in parts["objects"].items()
+                  for shape in made["shapes"] if "area_light" in shape]
+        total = sum(count for count, *_ in crowds)
+        for count, key, shape in sorted(crowds, key=lambda crowd: -crowd[0]):
+            if total <= MOST_LAMPS:
+                break
+            total -= count
+            self.report.note(key.split("|")[0], f"more than {MOST_LAMPS} triangles would emit: they reflect that colour instead")
+            materials.put_out(shape)
 
     def bake(self, parts, is_cancelled):
         """Makes the images that the parts refer to, and waits for them."""
@@ -90,8 +108,23 @@ class SceneExport:
                 parts["instances"][name] = {"object": key, "object_to_world": camera.rows(matrix)}
         elif object.type == "CURVES":
             self._add_curves(parts, materials, object, name, matrix)
+        elif object.type == "VOLUME":
+            self._add_volume(parts, materials, object, name, camera.rows(matrix))
         elif object.type not in IGNORED_TYPES:
             self.report.note(object.name, f"objects of the type {object.type} are left out")
+
+    def _add_volume(self, parts, materials, object, name, to_world):
+        key = f"{object.name_full}|VOLUME"
+        if key not in self._surfaces:
+            fields = volumes.of_volume(object, self.report)
+            self._surfaces[key] = {object.name_full, object.data.name_full}, fields and volumes.Box(key, fields)
+        box = self._surfaces[key][1]
+        if box is None:
+            return
+        box.object_name, box.to_world = object.name, to_world
+        material = object.material_slots[0].material if len(object.material_slots) else None
+        parts["objects"][key] = {"shapes": [{**box.shape(), **materials.box_members(material, box)}]}
+        parts["instances"][name] = {"object": key, "object_to_world": to_world}
 
     def _add_hair(self, parts, materials, instance, name):
         if instance.is_instance:
@@ -132,6 +165,8 @@ class SceneExport:
     def _shapes(self, key, object, materials, to_world):
         if key not in self._surfaces:
             self._surfaces[key] = {object.name_full, object.data.name_full}, self._surface(key, object)
+            if self._surfaces[key][1] is not None:
+                self._surfaces[key][1].fields = volumes.of_fluid(object)
         slots, shapes = object.material_slots, []
         surface = self._surfaces[key][1]
         if surface is None:
