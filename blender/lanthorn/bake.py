@@ -189,13 +189,14 @@ class Bakes:
         return process, [job["path"] for job in jobs]
 
     def _finish(self, process, paths, is_cancelled=lambda: False):
-        end = time.monotonic() + TIMEOUT
+        end, is_late = time.monotonic() + TIMEOUT, False
         while True:
             try:
                 process.wait(PATIENCE)
                 break
             except subprocess.TimeoutExpired:
-                if time.monotonic() > end or is_cancelled():
+                is_late = time.monotonic() > end
+                if is_late or is_cancelled():
                     process.kill()
         process.stdin.close()
         self.problem = ""
@@ -207,7 +208,8 @@ class Bakes:
             with open(self._log, encoding="utf-8", errors="replace") as log:
                 text = log.read()
             print(text)
-            lines = [line for line in text.splitlines() if "Error" in line] or ["no reason was given"]
+            lines = [f"it took longer than {TIMEOUT} s"] if is_late else \
+                [line for line in text.splitlines() if "Error" in line] or ["no reason was given"]
             self.problem = f"{len(missing)} of {len(paths)} images could not be baked: {lines[-1]}"
 
     def replace_missing(self, parts):

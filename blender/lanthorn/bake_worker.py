@@ -12,6 +12,7 @@ import numpy
 
 ATLAS = "lanthorn atlas"
 SAMPLES_OF_A_TEXEL = 4
+MANY_TEXELS = 1024  # along a side; with more, texels are small enough for one sample
 MARGIN = 3  # texels around a triangle, for interpolation
 SAMPLES_OF_SKY = 4
 TEXELS_OF_SUN = 128
@@ -130,7 +131,7 @@ def bake_surface(job):
     for other in bpy.context.scene.objects:
         other.select_set(other == made)
     bpy.context.view_layer.objects.active = made
-    bpy.context.scene.cycles.samples = SAMPLES_OF_A_TEXEL
+    bpy.context.scene.cycles.samples = SAMPLES_OF_A_TEXEL if job["size"] <= MANY_TEXELS else 1
     bpy.ops.object.bake(type="EMIT", margin=MARGIN, use_clear=True)
     write(image, job["path"])
     mesh = made.data

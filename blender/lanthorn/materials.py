@@ -584,10 +584,22 @@ class Materials:
             look = self._mixed(first, second, HALFWAY, owner)
             look.strength *= 2
             return look
-        look = Look(first.material or second.material)
+        solid = first if first.material is not None else second
+        look = Look(solid.material, alpha=solid.alpha)
         self._add_emission(look, first, 1, owner)
         self._add_emission(look, second, 1, owner)
+        if any(part.material is None and is_black(part.emission) for part in (first, second)):
+            self._add_hole(look, owner)
         return look
+
+    def _add_hole(self, look, owner):
+        if look.material is not None:
+            self.report.note(owner, "what a Transparent shader adds to a surface is left out")
+        elif not is_black(look.emission):  # half of it, twice as bright
+            self.report.note(owner, "an emission with Transparent added lets half of the light pass")
+            look.alpha, look.strength = HALFWAY, 2 * look.strength
+        else:
+            look.alpha = 0.0
 
 
 SHADERS = {"BSDF_DIFFUSE": Materials.diffuse, "BSDF_TRANSLUCENT": Materials.translucent,

@@ -96,7 +96,8 @@ def of_volume(object, report):
         grid.copyToArray(values, ijk=tuple(int(i) for i in first))
         arrays[name] = numpy.moveaxis(values.reshape(*(last - first + 1), -1), 2, 0).swapaxes(1, 2)
     place = next(iter(read.values())).transform
-    low, high = (numpy.array(place.indexToWorld(tuple(float(i) for i in corner))) for corner in (first - 0.5, first + 0.5))
+    # As in Cycles, cell i reaches from i to i + 1.
+    low, high = (numpy.array(place.indexToWorld(tuple(float(i) for i in corner))) for corner in (first, first + 1))
     return _fields(arrays, low, high - low)
 
 

@@ -13,7 +13,7 @@ import numpy
 import stage
 
 TOLERANCE = 0.03     # of the mean of the picture
-OF_BLOCKS = 0.06     # the largest difference of blocks of 16 × 16 pixels, of the mean of the picture
+OF_BLOCKS = 0.03     # the largest difference of blocks of 16 × 16 pixels, of the mean of the picture
 FOLDER = sys.argv[sys.argv.index("--") + 1] if sys.argv[-1] != "--" and "--" in sys.argv else None
 
 
