@@ -88,13 +88,29 @@ class Materials:
         self.parts["materials"].setdefault("interface", {"type": "interface"})
         return "interface"
 
-    def fibre_members(self, material):
-        """What curves with this material need: material, area_light, alpha. Fibres have no texture coordinates."""
-        key = ("fibres", material.name_full if material is not None else "")
+    def fibre_members(self, material, color=None):
+        """What curves with this material need: material, area_light, alpha. Fibres have no texture coordinates; images
+        have the `color` that they have at the root."""
+        name = "fibres " + (material.name_full if material is not None else "")
+        key = name if color is None else f"{name} of {' '.join(f'{c:.4f}' for c in color)}"
         if key not in self._done:
-            self._done[key] = self._add(material, None, 0, False, " ".join(key))
+            self.textures.color_at_root = color
+            self._done[key] = self._add(material, None, 0, False, key)
+            self.textures.color_at_root = None
             self._put_out(self._done[key][0], material)
         return {k: v for k, v in self._done[key][0].items() if k != "displacement"}
+
+    def image_of_fibres(self, material):
+        """The image that colours a material by texture coordinates; None if there is none, or no pixels."""
+        output = self._output(material)
+        if output is None:
+            return None
+        self.textures.groups = []
+        images = [node.image for node, outputs in self.textures.nodes_behind([output.inputs["Surface"]])
+                  if node.type == "TEX_IMAGE" and "Color" in outputs and node.image is not None and node.image.size[0]]
+        if len(set(images)) > 1:
+            self.report.note(material.name, "of several images of hair, the first one counts")
+        return images[0] if images else None
 
     def _put_out(self, members, material):
         """Fibres that emit would be lamps of many triangles each: they reflect the colour instead."""

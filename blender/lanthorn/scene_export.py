@@ -131,21 +131,28 @@ class SceneExport:
             if len(instance.object.particle_systems):
                 self.report.note(instance.object.name, "hair of instances is left out")
             return
-        object = instance.object
-        for system, slot, curves in hair.particle_shapes(object, self._is_viewport):
-            parts["shapes"][f"{name}/{system}"] = {**curves, **self._fibre_members(materials, object, slot)}
+        for strands in hair.strands(instance.object, self._is_viewport):
+            key = f"{name}/{strands.system.name}"
+            material = self._material_of(instance.object, strands.slot)
+            image = materials.image_of_fibres(material)
+            roots = strands.roots() if image is not None else None
+            if roots is None:
+                parts["shapes"][key] = {**strands.shape(), **materials.fibre_members(material)}
+                continue
+            for number, (color, chosen) in enumerate(hair.groups_of_color(image, roots)):
+                parts["shapes"][f"{key}/{number}"] = {**strands.shape(chosen), **materials.fibre_members(material, color)}
 
     def _add_curves(self, parts, materials, object, name, matrix):
         curves = hair.curves_shape(object)
         if curves is not None:
             key = f"{name}|CURVES"
-            parts["objects"][key] = {"shapes": [{**curves, **self._fibre_members(materials, object, 0)}]}
+            parts["objects"][key] = {"shapes": [{**curves, **materials.fibre_members(self._material_of(object, 0))}]}
             parts["instances"][name] = {"object": key, "object_to_world": camera.rows(matrix)}
 
     @staticmethod
-    def _fibre_members(materials, object, slot):
+    def _material_of(object, slot):
         slots = object.material_slots
-        return materials.fibre_members(slots[min(slot, len(slots) - 1)].material if len(slots) else None)
+        return slots[min(slot, len(slots) - 1)].material if len(slots) else None
 
     @staticmethod
     def name_of(instance):

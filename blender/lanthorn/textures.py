@@ -121,6 +121,7 @@ class Textures:
         self.parts, self.report, self.images, self.bakes = parts, report, images, bakes
         self.groups = []  # group nodes that were entered
         self.uses_colors = None  # of vertices, by their name
+        self.color_at_root = None  # of images, for hair
 
     def begin(self, material, surface, slot, is_atlas, prefix):
         """What follows is about this material on a slot of this surface. Names of parts begin with the prefix."""
@@ -262,6 +263,8 @@ class Textures:
         if of_ray is not None:
             return [of_ray] * 3
         made = None
+        if self.color_at_root is not None and output.node.type == "TEX_IMAGE" and output.name == "Color":
+            return list(self.color_at_root)
         if not self.is_atlas or not self._is_texture(output):
             made = self._color_node(output, owner)
         if made is None:

@@ -133,6 +133,30 @@ class RenderTest(unittest.TestCase):
             print(f"hair {parametrization}: lanthorn / cycles {ratio:.4f}; of the middle {middle[1] / middle[0]}")
             self.assertAlmostEqual(ratio, 1, delta=tolerance)
 
+    def test_hair_has_the_colours_of_its_roots(self):
+        self.hairy_ball("COLOR")
+        mesh, image = bpy.data.objects["ball"].data, bpy.data.images.new("halves", 8, 8)
+        layer = mesh.uv_layers.new()
+        for loop, uv in zip(mesh.loops, layer.data):
+            uv.uv = (0.5 + 0.6 * mesh.vertices[loop.vertex_index].co.x, 0.5)
+        pixels = numpy.ones((8, 8, 4), dtype=numpy.float32)
+        pixels[:, :4, :3], pixels[:, 4:, :3] = (0.9, 0.2, 0.1), (0.1, 0.3, 0.9)
+        image.pixels.foreach_set(pixels.ravel())
+        for material in mesh.materials[0], mesh.materials[1]:
+            nodes, links = material.node_tree.nodes, material.node_tree.links
+            texture = nodes.new("ShaderNodeTexImage")
+            texture.image = image
+            shader = next(n for n in nodes if n.type in {"BSDF_DIFFUSE", "BSDF_HAIR_PRINCIPLED"})
+            links.new(texture.outputs["Color"], shader.inputs["Color"])
+        cycles = stage.render("CYCLES", samples=48)
+        ours = stage.render("LANTHORN", method="path", noise=0, seconds=0, passes=48)
+        if FOLDER:
+            stage.save_png(os.path.join(FOLDER, "hair-roots.png"), cycles, ours)
+        for name, columns in (("left", slice(12, 28)), ("right", slice(36, 52))):
+            means = [p[16:48, columns, :3].mean(axis=(0, 1)) for p in (cycles, ours)]
+            print(f"hair, {name}: lanthorn / cycles {means[1] / means[0]}", flush=True)
+            self.assertLess(abs(means[1] / means[0] - 1).max(), 0.1)
+
     def render_pass(self, engine, name):
         """Makes the compositor show a pass as the picture."""
         scene = bpy.context.scene
