@@ -166,8 +166,12 @@ class SceneExport:
     def _mesh_key(object):
         """Objects of one key have the same mesh and the same materials."""
         slots = ",".join(slot.material.name_full if slot.material else "" for slot in object.material_slots)
-        is_shared = object.type == "MESH" and not object.modifiers and object.data is not None
-        return f"{object.data.name_full if is_shared else object.name_full}|{object.type}|{slots}"
+        if object.type != "MESH":
+            return f"{object.name_full}|{object.type}|{slots}"
+        # Geometry nodes make instances of several meshes of one object, which may even have one name.
+        data = object.data
+        owner = f"{object.name_full}/{len(data.vertices)}/{len(data.polygons)}/" if object.modifiers else ""
+        return f"{owner}{data.name_full}|{object.type}|{slots}"
 
     def _shapes(self, key, object, materials, to_world):
         if key not in self._surfaces:

@@ -112,6 +112,13 @@ def mean_fresnel(eta):
     return head_on + (1 - head_on) / 21
 
 
+def _magenta(is_color, channel):
+    """What Cycles has in the place of an image that is not there."""
+    if is_color:
+        return [1, 0, 1]
+    return {"Alpha": 1.0, "Red": 1.0, "R": 1.0, "Green": 0.0, "G": 0.0, "Blue": 1.0, "B": 1.0}.get(channel, GREY_OF_MAGENTA)
+
+
 class Textures:
     """Adds textures to the parts of a scene. The values of sockets are numbers, lists, or references to textures. What
     no texture can do is baked to an image, by texture coordinates, or triangle by triangle where a node asks for other
@@ -404,11 +411,11 @@ class Textures:
         if mapping is None:
             return None
         if node.image is None:
-            return [1, 0, 1] if is_color else GREY_OF_MAGENTA
+            return _magenta(is_color, channel)
         filename = self.images.path_of(node.image)
         if filename is None:
             self.report.note(owner, f"the image {node.image.name} is not there: magenta stands in")
-            return [1, 0, 1] if is_color else GREY_OF_MAGENTA
+            return _magenta(is_color, channel)
         name = self._name(node, f":{channel}" if channel else "")
         wraps = {"REPEAT": "repeat", "EXTEND": "clamp", "CLIP": "black", "MIRROR": "mirror"}
         texture = {"type": "image", "filename": filename, "wrap": wraps.get(node.extension, "repeat"),

@@ -107,6 +107,28 @@ class RenderTest(unittest.TestCase):
         bevel.count, bevel.relative_offset_displace = 2, (0, 1.1, 0.3)
         self.compare_blocks("instances")
 
+    def test_instances_of_several_meshes_of_one_object(self):
+        """As geometry nodes make them: cubes and balls in turn."""
+        self.blocks_in_the_sky()
+        stage.add_camera((0.5, -4, 2), (math.radians(65), 0, 0), lens=30)
+        tree = bpy.data.node_groups.new("row", "GeometryNodeTree")
+        tree.outputs.new("NodeSocketGeometry", "Geometry")
+        line, place, to_instance, cube, ball, end = (tree.nodes.new(kind) for kind in (
+            "GeometryNodeMeshLine", "GeometryNodeInstanceOnPoints", "GeometryNodeGeometryToInstance", "GeometryNodeMeshCube",
+            "GeometryNodeMeshUVSphere", "NodeGroupOutput"))
+        line.inputs["Count"].default_value = 5
+        line.inputs["Start Location"].default_value, line.inputs["Offset"].default_value = (-1.4, -0.8, 0.3), (0.7, 0, 0)
+        cube.inputs["Size"].default_value, ball.inputs["Radius"].default_value = (0.4, 0.4, 0.4), 0.3
+        for shape in (ball, cube):
+            tree.links.new(shape.outputs["Mesh"], to_instance.inputs[0])
+        tree.links.new(line.outputs["Mesh"], place.inputs["Points"])
+        tree.links.new(to_instance.outputs[0], place.inputs["Instance"])
+        place.inputs["Pick Instance"].default_value = True
+        tree.links.new(place.outputs[0], end.inputs[0])
+        row = stage.link("row", bpy.data.meshes.new("row"))
+        row.modifiers.new("nodes", "NODES").node_group = tree
+        self.compare_blocks("geometry-nodes")
+
     def hairy_ball(self, parametrization):
         stage.empty_scene(64, 64).world.color = (0.7, 0.7, 0.7)
         stage.add_camera((0, -4, 0.3), (math.radians(88), 0, 0), lens=50)
