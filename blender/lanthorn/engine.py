@@ -57,7 +57,7 @@ class FinalRender:
                 return
             if export.is_unfinished:
                 parts = export.parts(self.depsgraph)
-                export.settle(parts)
+                export.bake(parts, self.engine.test_break)
             view = self.view_parts(export.report)
             motion.add_motion(self.engine, self.depsgraph, self.scene.camera, parts, view["camera"])
             changed, _ = export.changes(parts)

@@ -61,9 +61,10 @@ class Materials:
     def shape(self, material, surface, slot):
         """The triangles of a slot with their material, area_light, alpha."""
         name = material.name_full if material is not None else ""
-        if name not in self._kinds:
-            self._kinds[name] = self._kind(material, surface)
-        is_baked, is_atlas, is_grid = self._kinds[name]
+        kind = name, surface.fields is not None
+        if kind not in self._kinds:
+            self._kinds[kind] = self._kind(material, surface)
+        is_baked, is_atlas, is_grid = self._kinds[kind]
         is_of_surface = is_atlas or is_grid or (is_baked and not self._fills_unit_square(surface, slot))
         key = (name, surface.key, slot) if is_of_surface else (name,)
         if key not in self._done:
@@ -76,13 +77,19 @@ class Materials:
         return {"type": "triangles", **triangles, **members}
 
     def box_members(self, material, box):
-        """What the box around a volume object needs: its medium. Without a material, Blender has a Principled Volume."""
-        name = material.name_full if material is not None else ""
-        if material is None:
-            self.report.note(box.object_name, "a volume without a material is left out")
-            return {"material": self._interface()}
-        members = self._add(material, box, 0, False, f"{name} in {box.key}")[0]
-        return {"material": self._interface(), **{k: v for k, v in members.items() if k == "inside_medium"}}
+        """What the box around a volume object needs: its medium."""
+        key, members = f"{material.name_full if material is not None else ''} in {box.key}", {"material": self._interface()}
+        self.textures.begin(material, box, 0, False, key)
+        output = self._output(material)
+        volume = self.textures.source(output.inputs["Volume"]) if output is not None else None
+        if volume is None:
+            self.report.note(box.object_name, "a volume without a volume shader is left out")
+            return members
+        medium = self._medium(volume.node, material)
+        if medium is not None:
+            self.parts["media"][key] = medium
+            members["inside_medium"] = key
+        return members
 
     def _interface(self):
         self.parts["materials"].setdefault("interface", {"type": "interface"})

@@ -77,8 +77,8 @@ class SceneExport:
         """Makes the images that the parts refer to, and waits for them."""
         if self.bakes.are_missing:
             self.bakes.run(is_cancelled)
-            if self.bakes.problem:
-                self.report.note("bake", f"{self.bakes.problem}: grey stands in")
+        if self.bakes.problem:
+            self.report.note("bake", f"{self.bakes.problem}: grey stands in")
         self.settle(parts)
 
     def settle(self, parts):
