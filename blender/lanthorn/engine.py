@@ -6,7 +6,7 @@ import weakref
 import bpy
 import gpu
 
-from . import camera, motion, passes, settings, viewport
+from . import camera, lights, motion, passes, settings, viewport
 from .link import Link, LinkError
 from .scene_export import SceneExport
 
@@ -41,6 +41,8 @@ class FinalRender:
             raise LinkError("the scene has no camera")
         self.camera = camera.camera_part(object.evaluated_get(self.depsgraph), self.depsgraph, self.size,
                                          (render.pixel_aspect_x, render.pixel_aspect_y), report)
+        for name in lights.seen_lamps(self.scene, object, self.depsgraph):
+            report.note(name, "the camera sees the lamp's surface, if nothing is before it; Cycles hides it")
         return {"camera": self.camera, "film": camera.film_part(self.size),
                 "filter": camera.filter_part(render.filter_size)}
 

@@ -3,6 +3,8 @@
 """Blender's lamps. The factors make the same light as Cycles does: tests/blender/test_lights.py measures them."""
 import math
 
+from bpy_extras.object_utils import world_to_camera_view
+
 # What stands in for a lamp without a size, whose light Cycles takes from a point.
 SMALLEST_RADIUS = 1e-4
 POINTS_OF_SPOT = 32  # lights without a size that stand for a spot light with one
@@ -123,3 +125,17 @@ def add_light(parts, name, light, matrix, report):
     # A lamp does not stop the light of others: its surface lets all of it pass.
     parts["materials"].setdefault("lamp", {"type": "thindielectric", "eta": 1.0})
     parts["shapes"][name] = {**made["shape"], "material": "lamp", "area_light": name}
+
+
+def seen_lamps(scene, camera, depsgraph):
+    """Names of lamps whose surfaces are in the picture, about: their middle, or an end of their extent."""
+    for instance in depsgraph.object_instances:
+        object, light = instance.object, instance.object.data
+        if object.type != "LIGHT" or not instance.show_self or light.type not in {"POINT", "AREA"}:
+            continue
+        radius = light.shadow_soft_size if light.type == "POINT" else light.size / 2
+        middle = instance.matrix_world.translation
+        ends = [middle + sign * radius * camera.matrix_world.to_3x3().col[axis] for axis in (0, 1) for sign in (1, -1)]
+        views = [world_to_camera_view(scene, camera, point) for point in (middle, *ends)]
+        if radius >= SMALLEST_RADIUS and any(0 < v.x < 1 and 0 < v.y < 1 and v.z > 0 for v in views):
+            yield object.name

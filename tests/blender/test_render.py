@@ -238,6 +238,17 @@ class RenderTest(unittest.TestCase):
         scene.render.use_motion_blur, scene.render.motion_blur_shutter = True, 0.8
         self.compare_blocks("motion-blur")
 
+    def test_lamps_in_the_picture_are_named(self):
+        from lanthorn import lights
+        stage.empty_scene(16, 16)
+        camera = stage.add_camera((0, -4, 1.2), (math.radians(80), 0, 0), lens=50)
+        seen = [stage.add_light("POINT", 10, (0, 0, 1), shadow_soft_size=0.1),
+                stage.add_light("AREA", 10, (2.2, 2, 1), size=3)]  # an edge of it
+        stage.add_light("POINT", 10, (0, -8, 1), shadow_soft_size=0.1)  # behind the camera
+        stage.add_light("POINT", 10, (0, 0, 1), shadow_soft_size=0)
+        names = lights.seen_lamps(bpy.context.scene, camera, bpy.context.evaluated_depsgraph_get())
+        self.assertEqual(list(names), [light.name for light in seen])
+
     def test_errors_name_what_to_do(self):
         scene = self.blocks_in_the_sky()
         scene.render.engine = "LANTHORN"
