@@ -91,12 +91,13 @@ class Bakes:
         self.problem = ""
 
     def image(self, tree_owner, output, path_of_groups, textures, domain):
-        """The path of an image of this socket's values. `domain`: a member `key` and one `job`, see bake_worker.py."""
+        """The path of an image of this socket's values. `domain`: members `key` and `job`, see bake_worker.py, and perhaps
+        `size` and `extension`; npz: an array `texels`, rows from the bottom."""
         images = images_behind(output, textures.source)
         largest = max([0, *(side for image in images for side in image.size)])
         size = domain.get("size") or max(self.size, min(LARGEST_FROM_IMAGES, largest))
         text = f"{tree_owner.name_full} {signature_of(output, textures.source)} {domain['key']} {size}"
-        path = self._path(text, "exr")
+        path = self._path(text, domain.get("extension", "exr"))
         if not os.path.exists(path) and path not in self._failed:
             self._jobs[path] = {"kind": "surface", "material": tree_owner.original, "groups": path_of_groups, "size": size,
                                 "node": output.node.name, "output": output.identifier, "path": path,
@@ -188,13 +189,14 @@ class Bakes:
         return process, [job["path"] for job in jobs]
 
     def _finish(self, process, paths, is_cancelled=lambda: False):
-        end = time.monotonic() + TIMEOUT
+        end, is_late = time.monotonic() + TIMEOUT, False
         while True:
             try:
                 process.wait(PATIENCE)
                 break
             except subprocess.TimeoutExpired:
-                if time.monotonic() > end or is_cancelled():
+                is_late = time.monotonic() > end
+                if is_late or is_cancelled():
                     process.kill()
         process.stdin.close()
         self.problem = ""
@@ -206,7 +208,8 @@ class Bakes:
             with open(self._log, encoding="utf-8", errors="replace") as log:
                 text = log.read()
             print(text)
-            lines = [line for line in text.splitlines() if "Error" in line] or ["no reason was given"]
+            lines = [f"it took longer than {TIMEOUT} s"] if is_late else \
+                [line for line in text.splitlines() if "Error" in line] or ["no reason was given"]
             self.problem = f"{len(missing)} of {len(paths)} images could not be baked: {lines[-1]}"
 
     def replace_missing(self, parts):

@@ -12,6 +12,7 @@ import numpy
 
 ATLAS = "lanthorn atlas"
 SAMPLES_OF_A_TEXEL = 4
+MANY_TEXELS = 1024  # along a side; with more, texels are small enough for one sample
 MARGIN = 3  # texels around a triangle, for interpolation
 SAMPLES_OF_SKY = 4
 TEXELS_OF_SUN = 128
@@ -98,6 +99,19 @@ def load_images(files):
             image.colorspace_settings.name = space
 
 
+def write(image, path):
+    if path.endswith(".npz"):
+        part, (width, height) = path + ".part.npz", image.size
+        texels = numpy.empty(width * height * 4, dtype=numpy.float32)
+        image.pixels.foreach_get(texels)
+        numpy.savez(part, texels=texels.reshape(height, width, 4)[:, :, :3])
+    else:
+        part = path + ".part"
+        image.file_format, image.filepath_raw = "OPEN_EXR", part
+        image.save()
+    os.replace(part, path)
+
+
 def bake_surface(job):
     load_images(job["images"])
     made = object_of(job)
@@ -117,11 +131,9 @@ def bake_surface(job):
     for other in bpy.context.scene.objects:
         other.select_set(other == made)
     bpy.context.view_layer.objects.active = made
-    bpy.context.scene.cycles.samples = SAMPLES_OF_A_TEXEL
+    bpy.context.scene.cycles.samples = SAMPLES_OF_A_TEXEL if job["size"] <= MANY_TEXELS else 1
     bpy.ops.object.bake(type="EMIT", margin=MARGIN, use_clear=True)
-    image.file_format, image.filepath_raw = "OPEN_EXR", job["path"] + ".part"
-    image.save()
-    os.replace(job["path"] + ".part", job["path"])
+    write(image, job["path"])
     mesh = made.data
     bpy.data.objects.remove(made)
     bpy.data.meshes.remove(mesh)

@@ -1,10 +1,12 @@
 # SPDX-FileCopyrightText: 2026 The Lanthorn authors
 # SPDX-License-Identifier: Apache-2.0
 """The render engine: final renders and the viewport."""
+import weakref
+
 import bpy
 import gpu
 
-from . import camera, motion, passes, settings, viewport
+from . import camera, lights, motion, passes, settings, viewport
 from .link import Link, LinkError
 from .scene_export import SceneExport
 
@@ -39,6 +41,8 @@ class FinalRender:
             raise LinkError("the scene has no camera")
         self.camera = camera.camera_part(object.evaluated_get(self.depsgraph), self.depsgraph, self.size,
                                          (render.pixel_aspect_x, render.pixel_aspect_y), report)
+        for name in lights.seen_lamps(self.scene, object, self.depsgraph):
+            report.note(name, "the camera sees the lamp's surface, if nothing is before it; Cycles hides it")
         return {"camera": self.camera, "film": camera.film_part(self.size),
                 "filter": camera.filter_part(render.filter_size)}
 
@@ -53,6 +57,9 @@ class FinalRender:
             export.bake(parts, self.engine.test_break)
             if self.engine.test_break():
                 return
+            if export.is_unfinished:
+                parts = export.parts(self.depsgraph)
+                export.bake(parts, self.engine.test_break)
             view = self.view_parts(export.report)
             motion.add_motion(self.engine, self.depsgraph, self.scene.camera, parts, view["camera"])
             changed, _ = export.changes(parts)
@@ -121,6 +128,20 @@ class FinalRender:
         self.engine.update_stats("", text)
 
 
+def redraw_of(engine):
+    """A function that redraws the engine's viewport as long as it is there, and does not keep it alive."""
+    reference = weakref.ref(engine)
+
+    def redraw():
+        found = reference()
+        try:
+            if found is not None:
+                found.tag_redraw()
+        except ReferenceError:  # Blender has freed it meanwhile
+            pass
+    return redraw
+
+
 class LanthornEngine(bpy.types.RenderEngine):
     bl_idname = "LANTHORN"
     bl_label = "Lanthorn"
@@ -144,16 +165,14 @@ class LanthornEngine(bpy.types.RenderEngine):
     # Blender makes an engine for each viewport, and calls no __init__ that it may not leave out.
     _viewport = None
 
-    def __del__(self):
-        if self._viewport is not None:
-            self._viewport.close()
-
     def view_update(self, context, depsgraph):
         settings_of_scene = context.scene.lanthorn
         try:
             if self._viewport is None:
-                self._viewport = viewport.Viewport(start_program(), self._redraw, settings_of_scene.viewport_options(),
+                self._viewport = viewport.Viewport(start_program(), redraw_of(self), settings_of_scene.viewport_options(),
                                                    settings_of_scene.denoise)
+                # Not __del__: a freed engine has no members any more.
+                weakref.finalize(self, self._viewport.close)
             self._viewport.update_scene(context, depsgraph)
         except LinkError as error:
             self.update_stats("Lanthorn", str(error))
@@ -171,12 +190,6 @@ class LanthornEngine(bpy.types.RenderEngine):
         self.unbind_display_space_shader()
         gpu.state.blend_set("NONE")
         self.update_stats("Lanthorn", self._viewport.problem or self._viewport.status)
-
-    def _redraw(self):
-        try:
-            self.tag_redraw()
-        except ReferenceError:  # the viewport is gone
-            pass
 
 
 def register():

@@ -35,7 +35,7 @@ def _particle_lines(object, system, is_viewport):
         used = numpy.r_[True, (numpy.abs(numpy.diff(line, axis=0)).max(axis=1) > 0)]
         used[1:] &= numpy.abs(line[1:]).max(axis=1) > 0  # steps that a shorter hair lacks
         if used.sum() > 1:
-            yield line[used]
+            yield number, line[used]
 
 
 def _particle_radii(settings, count):
@@ -54,15 +54,55 @@ def _is_hair(system):
     return system.settings.type == "HAIR" and system.settings.render_type == "PATH"
 
 
-def particle_shapes(object, is_viewport):
-    """(name, number of the material's slot, curves in world space) of each particle system."""
-    for system in object.particle_systems:
-        if not _is_hair(system):
-            continue
-        lines = list(_particle_lines(object, system, is_viewport))
-        if lines:
-            radii = [_particle_radii(system.settings, len(line)) for line in lines]
-            yield system.name, system.settings.material - 1, bezier(lines, radii)
+class Strands:
+    """The hairs of a particle system in world space."""
+
+    def __init__(self, object, modifier, is_viewport):
+        self._object, self._modifier, self.system = object, modifier, modifier.particle_system
+        made = list(_particle_lines(object, self.system, is_viewport))
+        self.numbers, self.lines = [number for number, _ in made], [line for _, line in made]
+        self.slot = self.system.settings.material - 1
+
+    def shape(self, chosen=None):
+        """Curves of all hairs, or of the chosen ones."""
+        lines = self.lines if chosen is None else [self.lines[i] for i in chosen]
+        return bezier(lines, [_particle_radii(self.system.settings, len(line)) for line in lines])
+
+    def roots(self):
+        """Texture coordinates (n, 2) of the surface at the roots; None if it has none."""
+        particles = self.system.particles
+        if not len(self._object.data.uv_layers) or not len(particles):
+            return None
+        return numpy.array([self.system.uv_on_emitter(self._modifier, particle=particles[min(i, len(particles) - 1)],
+                                                      particle_no=i, uv_no=0) for i in self.numbers])
+
+
+def strands(object, is_viewport):
+    """The particle systems of an object that are hair."""
+    for modifier in object.modifiers:
+        if modifier.type == "PARTICLE_SYSTEM" and _is_hair(modifier.particle_system):
+            made = Strands(object, modifier, is_viewport)
+            if made.lines:
+                yield made
+
+
+LEVELS = 8  # of each colour, for hairs of one material
+
+
+def groups_of_color(image, roots):
+    """(color, numbers of hairs) for hairs whose roots have about the same colour in an image."""
+    width, height = image.size
+    pixels = numpy.empty(width * height * 4, dtype=numpy.float32)
+    image.pixels.foreach_get(pixels)
+    x, y = (numpy.floor((roots[:, i] % 1) * size).astype(int) % size for i, size in enumerate((width, height)))
+    colors = pixels.reshape(height, width, 4)[y, x, :3]
+    if image.colorspace_settings.name == "sRGB" and not image.is_float:
+        colors = numpy.where(colors <= 0.04045, colors / 12.92, ((colors + 0.055) / 1.055) ** 2.4)
+    steps = numpy.round(numpy.sqrt(colors.clip(0, 1)) * (LEVELS - 1)).astype(int)
+    _, group = numpy.unique(steps, axis=0, return_inverse=True)
+    for number in range(group.max() + 1):
+        chosen = numpy.flatnonzero(group.reshape(-1) == number)
+        yield colors[chosen].mean(axis=0).tolist(), chosen.tolist()
 
 
 def curves_shape(object):

@@ -10,7 +10,13 @@ import struct
 import subprocess
 import tempfile
 
+try:
+    import fcntl
+except ImportError:  # Windows
+    fcntl = None
+
 PROTOCOL = 1
+SIZE_OF_PIPES = 1 << 20
 HEADER = struct.Struct("<4sIQ")
 MAGIC = b"LNTH"
 TYPE_NAMES = {"b": "int8", "B": "uint8", "h": "int16", "H": "uint16", "i": "int32", "I": "uint32", "q": "int64",
@@ -42,7 +48,7 @@ class _Packer:
         if isinstance(value, array.array):
             return self._add(TYPE_NAMES[value.typecode], [len(value)], value.tobytes())
         if hasattr(value, "dtype") and getattr(value, "ndim", 0) > 0:
-            return self._add(value.dtype.name, value.shape, value.tobytes())
+            return self._add(value.dtype.name, value.shape, _bytes_of(value))
         if hasattr(value, "item"):  # a number of numpy
             return value.item()
         return value
@@ -52,6 +58,11 @@ class _Packer:
         self.parts.append(data)
         self.size += len(data)
         return {"$array": type_name, "shape": list(shape), "offset": offset}
+
+
+def _bytes_of(values):
+    """The numbers of an array, row by row; without a copy where they lie so."""
+    return memoryview(values).cast("B") if values.flags.c_contiguous and values.size else values.tobytes()
 
 
 def _unpack(value, data):
@@ -67,6 +78,14 @@ def _unpack(value, data):
     return Array(value["$array"], value["shape"], data[value["offset"]:value["offset"] + count])
 
 
+def _widen(pipe):
+    """Lets the pipe hold as much as an ordinary user may ask for, where the system can (Linux)."""
+    try:
+        fcntl.fcntl(pipe, fcntl.F_SETPIPE_SZ, SIZE_OF_PIPES)
+    except (AttributeError, OSError):
+        pass
+
+
 class Link:
     """The program, from the start to `close`. Not for several threads at a time."""
 
@@ -78,6 +97,8 @@ class Link:
         except OSError as error:
             self._messages.close()
             raise LinkError(f"the program {program!r} cannot be started: {error.strerror}") from None
+        _widen(self.process.stdin)
+        _widen(self.process.stdout)
         try:
             self.about = self.request("hello", protocol=PROTOCOL)
         except LinkError:

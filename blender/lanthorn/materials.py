@@ -4,6 +4,8 @@
 import math
 from dataclasses import dataclass
 
+import numpy
+
 from . import hair as fibres
 from . import media, presets
 from .textures import Textures, is_native
@@ -14,6 +16,13 @@ HALFWAY = 0.5
 OLD_CLEARCOAT = 0.25  # Blender 3's factor
 # Blender 3's sheen has the albedo of fibres of this roughness, times this factor, within 10 % of it over all angles.
 OLD_SHEEN, OLD_SHEEN_ROUGHNESS = 0.089, 0.4
+# Velvet of each sigma as fibres of a roughness, a factor of their colour, and a factor of the colour of the surface under
+# them: the mean albedo of Ashikhmin's velvet as Cycles has it, and 25 % of it at angles where there is much.
+VELVET_SIGMA = [0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0]
+VELVET_ROUGHNESS = [0.15, 0.15, 0.16, 0.25, 0.35, 0.38, 0.41, 0.42, 0.44, 0.44, 0.44]
+VELVET_FIBRES = [0.0, 0.16, 0.70, 0.86, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0]
+VELVET_BASE = [0.0, 0.0, 0.0, 0.0, 0.004, 0.061, 0.124, 0.19, 0.254, 0.316, 0.37]
+SUBSURFACE = "light under the surface is scattered where it enters: a diffuse surface stands in"
 NO_SUBDIVISION = 1e9  # metres: no edge is as long
 
 
@@ -46,43 +55,85 @@ class Materials:
     def __init__(self, parts, report, images, bakes):
         self.parts, self.report, self.bakes = parts, report, bakes
         self.textures = Textures(parts, report, images, bakes)
-        self._done, self._kinds, self._mixes = {}, {}, 0
+        self._done, self._kinds, self._mixes, self._tangent = {}, {}, 0, None
+        self.unfinished = []  # materials whose media need a second export, after bakes
 
     def shape(self, material, surface, slot):
         """The triangles of a slot with their material, area_light, alpha."""
         name = material.name_full if material is not None else ""
-        if name not in self._kinds:
-            self._kinds[name] = self._kind(material)
-        is_baked, is_atlas = self._kinds[name]
-        is_of_surface = is_atlas or (is_baked and not self._fills_unit_square(surface, slot))
+        kind = name, surface.fields is not None
+        if kind not in self._kinds:
+            self._kinds[kind] = self._kind(material, surface)
+        is_baked, is_atlas, is_grid = self._kinds[kind]
+        is_of_surface = is_atlas or is_grid or (is_baked and not self._fills_unit_square(surface, slot))
         key = (name, surface.key, slot) if is_of_surface else (name,)
         if key not in self._done:
             self._done[key] = self._add(material, surface, slot, is_atlas, " on ".join(map(str, key)))
-        members, colors = self._done[key]
+        members, colors, tangent = self._done[key]
         if is_atlas:
-            triangles = surface.atlas_shape(slot, self.bakes.size)
+            triangles = surface.atlas_shape(slot, self.bakes.size, tangent)
         else:
-            triangles = surface.shape(slot, colors, is_welded="displacement" in members)
+            triangles = surface.shape(slot, colors, "displacement" in members, tangent)
         return {"type": "triangles", **triangles, **members}
 
-    def fibre_members(self, material):
-        """What curves with this material need: material, area_light, alpha. Fibres have no texture coordinates."""
-        key = ("fibres", material.name_full if material is not None else "")
+    def box_members(self, material, box):
+        """What the box around a volume object needs: its medium."""
+        key, members = f"{material.name_full if material is not None else ''} in {box.key}", {"material": self._interface()}
+        self.textures.begin(material, box, 0, False, key)
+        output = self._output(material)
+        volume = self.textures.source(output.inputs["Volume"]) if output is not None else None
+        if volume is None:
+            self.report.note(box.object_name, "a volume without a volume shader is left out")
+            return members
+        medium = self._medium(volume.node, material)
+        if medium is not None:
+            self.parts["media"][key] = medium
+            members["inside_medium"] = key
+        return members
+
+    def _interface(self):
+        self.parts["materials"].setdefault("interface", {"type": "interface"})
+        return "interface"
+
+    def fibre_members(self, material, color=None):
+        """What curves with this material need: material, area_light, alpha. Fibres have no texture coordinates; images
+        have the `color` that they have at the root."""
+        name = "fibres " + (material.name_full if material is not None else "")
+        key = name if color is None else f"{name} of {' '.join(f'{c:.4f}' for c in color)}"
         if key not in self._done:
-            self._done[key] = self._add(material, None, 0, False, " ".join(key))
+            self.textures.color_at_root = color
+            self._done[key] = self._add(material, None, 0, False, key)
+            self.textures.color_at_root = None
             self._put_out(self._done[key][0], material)
         return {k: v for k, v in self._done[key][0].items() if k != "displacement"}
 
+    def image_of_fibres(self, material):
+        """The image that colours a material by texture coordinates; None if there is none, or no pixels."""
+        output = self._output(material)
+        if output is None:
+            return None
+        self.textures.groups = []
+        images = [node.image for node, outputs in self.textures.nodes_behind([output.inputs["Surface"]])
+                  if node.type == "TEX_IMAGE" and "Color" in outputs and node.image is not None and node.image.size[0]]
+        if len(set(images)) > 1:
+            self.report.note(material.name, "of several images of hair, the first one counts")
+        return images[0] if images else None
+
     def _put_out(self, members, material):
         """Fibres that emit would be lamps of many triangles each: they reflect the colour instead."""
-        lamp = members.pop("area_light", None)
-        if lamp is None:
-            return
-        self.report.note(material.name, "hair does not emit: it reflects the colour that it would emit")
-        if self.parts["materials"][members["material"]] == {"type": "diffuse", "reflectance": BLACK}:
-            color = self.parts["area_lights"][lamp]["radiance"]
-            self.parts["materials"][members["material"]] = {"type": "diffuse", "reflectance": clamped(color)}
-        del self.parts["area_lights"][lamp]
+        if "area_light" in members:
+            self.report.note(material.name, "hair does not emit: it reflects the colour that it would emit")
+            lamp = members["area_light"]
+            self.put_out(members)
+            del self.parts["area_lights"][lamp]
+
+    def put_out(self, members):
+        """Takes the lamp from a shape: a black surface reflects the colour that it would emit."""
+        lamp, materials = members.pop("area_light"), self.parts["materials"]
+        if materials[members["material"]] == {"type": "diffuse", "reflectance": BLACK}:
+            unlit = f"{members['material']} that reflects"
+            materials[unlit] = {"type": "diffuse", "reflectance": clamped(self.parts["area_lights"][lamp]["radiance"])}
+            members["material"] = unlit
 
     @staticmethod
     def _fills_unit_square(surface, slot):
@@ -94,11 +145,11 @@ class Materials:
             return None
         return material.node_tree.get_output_node("CYCLES") or material.node_tree.get_output_node("ALL")
 
-    def _kind(self, material):
-        """Whether a material needs images of its own, and whether triangle by triangle."""
+    def _kind(self, material, surface):
+        """Whether a material needs images of its own, whether triangle by triangle, and whether its volume varies."""
         output = self._output(material)
         if output is None:
-            return False, False
+            return False, False, False
         self.textures.groups = []
         nodes = [(node, outputs) for node, outputs in
                  self.textures.nodes_behind([output.inputs["Surface"], output.inputs["Displacement"]])
@@ -107,12 +158,14 @@ class Materials:
         solid = {node.type for node, outputs in nodes if self.textures.is_solid(node, outputs)}
         if not is_baked:
             solid -= {"VERTEX_COLOR"}
-        return is_baked or bool(solid), bool(solid)
+        volume = self.textures.source(output.inputs["Volume"])
+        is_grid = volume is not None and (surface.fields is not None or self.textures.varies_in_space(volume))
+        return is_baked or bool(solid), bool(solid), is_grid
 
     def _add(self, material, surface, slot, is_atlas, key):
         name = f"material {key}"
         self.textures.begin(material, surface, slot, is_atlas, key)
-        self._mixes = 0
+        self._mixes, self._tangent = 0, None
         look, medium, moved = self._look_of(material)
         is_seen = look.material is not None or not is_black(look.emission)
         node = look.material or ({"type": "diffuse", "reflectance": BLACK} if is_seen else {"type": "interface"})
@@ -126,7 +179,7 @@ class Materials:
             members["area_light"] = name
         if is_seen and look.alpha != OPAQUE:
             members["alpha"] = look.alpha
-        return {**members, **moved}, self.textures.uses_colors
+        return {**members, **moved}, self.textures.uses_colors, self._tangent
 
     def _look_of(self, material):
         """Look, medium, and what the shape needs of a displacement."""
@@ -139,11 +192,18 @@ class Materials:
             return Look({"type": "diffuse", "reflectance": BLACK}), None, {}
         surface = self.textures.source(output.inputs["Surface"])
         volume = self.textures.source(output.inputs["Volume"])
-        medium = media.medium(volume.node, material.name, self.textures, self.report) if volume is not None else None
+        medium = self._medium(volume.node, material) if volume is not None else None
         if surface is None:
             return (Look() if medium is not None else Look({"type": "diffuse", "reflectance": BLACK})), medium, {}
         look = self._with_measured(self._look_of_output(surface, material.name), material)
         return look, medium, self._displacement(output.inputs["Displacement"], material, look)
+
+    def _medium(self, node, material):
+        volume = media.Volume(material.name, self.textures, self.report)
+        made = media.medium(volume, node)
+        if volume.is_missing:  # until the bake has come, the sockets' own values stand in
+            self.unfinished.append(material.name)
+        return made
 
     @staticmethod
     def _with_measured(look, material):
@@ -293,7 +353,36 @@ class Materials:
         return {"texture": name}, 1.0
 
     def glossy(self, node, owner):
-        return Look(self._metal(node, owner, "Color"))
+        made = self._metal(node, owner, "Color")
+        anisotropy = node.inputs.get("Anisotropy")  # of Anisotropic, and of Glossy since Blender 4
+        if anisotropy is not None:
+            amount = min(0.99, max(-0.99, self.textures.constant(anisotropy, owner, "anisotropy")))
+            factors = (1 - amount, 1 / (1 - amount)) if amount >= 0 else (1 / (1 + amount), 1 + amount)
+            self._brush(made, node, owner, factors, "Rotation")
+        return Look(made)
+
+    def _brush(self, made, node, owner, factors, rotation):
+        """Gives a metal other roughness along the tangent than across it."""
+        if factors == (1, 1):
+            return
+        alpha = made["roughness"]["u"]
+        made["roughness"] = {"u": self._times(alpha, factors[0]), "v": self._times(alpha, factors[1]), "remap": False}
+        turn = self._constant(node, owner, rotation, "the rotation of anisotropy")
+        tangent = (*self._direction_of_tangent(node.inputs.get("Tangent"), owner), turn)
+        if self._tangent not in (None, tangent):
+            self.report.note(owner, "of several tangents in one material, the last one is used")
+        self._tangent = tangent
+
+    def _direction_of_tangent(self, socket, owner):
+        """("RADIAL", axis) or ("UV", name of the layer)."""
+        source = self.textures.source(socket) if socket is not None else None
+        if source is None:
+            return "RADIAL", "Z"
+        if source.node.type == "TANGENT":
+            node = source.node
+            return ("RADIAL", node.axis) if node.direction_type == "RADIAL" else ("UV", node.uv_map)
+        self.report.note(owner, f"the node {source.node.bl_label} at a tangent has no counterpart")
+        return "RADIAL", "Z"
 
     def _dielectric(self, node, owner, color):
         # Cycles multiplies by the colour at each interface, Lanthorn by the root of the tint.
@@ -311,13 +400,23 @@ class Materials:
         return self.glass(node, owner)
 
     def subsurface(self, node, owner):
-        self.report.note(owner, "light under the surface is scattered where it enters: a diffuse shader stands in")
+        self.report.note(owner, SUBSURFACE)
         return self.diffuse(node, owner)
 
     def velvet(self, node, owner):
-        self.report.note(owner, "Velvet becomes a black surface with sheen")
-        return Look(self._solid(node, owner, type="plastic", reflectance=BLACK, specular=0.0, sheen_roughness=0.5,
-                                sheen_color=self._albedo(node, owner)))
+        sigma = self._constant(node, owner, "Sigma", "the sigma of velvet")
+        roughness, fibres, base = (float(numpy.interp(sigma, VELVET_SIGMA, values))
+                                   for values in (VELVET_ROUGHNESS, VELVET_FIBRES, VELVET_BASE))
+        color = self._albedo(node, owner)
+        return Look(self._solid(node, owner, type="plastic", specular=0.0, sheen_roughness=roughness,
+                                sheen_color=self._times_color(color, fibres), reflectance=self._times_color(color, base)))
+
+    def _times_color(self, color, factor):
+        if isinstance(color, list):
+            return [factor * c for c in color]
+        name = f"{color['texture']}*{factor}"
+        self.parts["spectrum_textures"][name] = {"type": "scale", "tex": color, "scale": factor}
+        return {"texture": name}
 
     def hair(self, node, owner):
         number = lambda name: self._constant(node, owner, name, f"{name} of hair")
@@ -347,7 +446,13 @@ class Materials:
         self._note_principled(node, owner)
         base = self._blend(lambda: self._plastic(node, owner),
                            lambda: self._dielectric(node, owner, "Base Color"), transmission, owner, "transmission")
-        return Look(self._blend(lambda: base, lambda: self._metal(node, owner), metallic, owner, "metal"))
+        return Look(self._blend(lambda: base, lambda: self._brushed_metal(node, owner), metallic, owner, "metal"))
+
+    def _brushed_metal(self, node, owner):
+        made = self._metal(node, owner)
+        aspect = math.sqrt(1 - 0.9 * self._constant(node, owner, "Anisotropic", "anisotropy"))
+        self._brush(made, node, owner, (1 / aspect, aspect), "Anisotropic Rotation")
+        return made
 
     def _blend(self, first, second, amount, owner, what):
         """The material `first` makes where amount is 0, that of `second` where it is 1."""
@@ -372,9 +477,22 @@ class Materials:
         if not isinstance(factor, dict) and factor > 1:
             self.report.note(owner, "Specular above 0.5 is taken as 0.5")
             factor = 1.0
-        base = self._solid(node, owner, type="plastic", reflectance=self._albedo(node, owner, "Base Color"), eta=1.5,
+        base = self._solid(node, owner, type="plastic", reflectance=self._diffuse_color(node, owner), eta=1.5,
                            specular=factor, roughness=self._roughness(node, owner), **self._sheen(node, owner))
         return self._coated(base, node, owner)
+
+    def _diffuse_color(self, node, owner):
+        """The base colour; Blender 3 mixes in that of what is under the surface."""
+        base, under = self._albedo(node, owner, "Base Color"), node.inputs.get("Subsurface Color")
+        amount = 0 if under is None else self.textures.number(node.inputs["Subsurface"], owner)
+        if amount == 0:
+            return base
+        under = self._albedo(node, owner, under.identifier)
+        if isinstance(base, list) and isinstance(under, list) and not isinstance(amount, dict):
+            return [b + amount * (u - b) for b, u in zip(base, under)]
+        name = f"{self.textures.prefix}/subsurface"
+        self.parts["spectrum_textures"][name] = {"type": "mix", "tex1": base, "tex2": under, "amount": amount}
+        return {"texture": name}
 
     def _sheen(self, node, owner):
         socket = node.inputs.get("Sheen") or node.inputs.get("Sheen Weight")
@@ -411,11 +529,13 @@ class Materials:
         return {"texture": name}
 
     def _note_principled(self, node, owner):
-        for name, what in (("Subsurface", "subsurface scattering"), ("Subsurface Weight", "subsurface scattering"),
-                           ("Anisotropic", "anisotropy")):
+        metallic = self.textures.number(node.inputs["Metallic"], owner)
+        for name, text in (("Subsurface", SUBSURFACE), ("Subsurface Weight", SUBSURFACE),
+                           ("Anisotropic", "anisotropy of a Principled BSDF that is no metal is left out")):
             socket = node.inputs.get(name)
-            if socket is not None and (socket.is_linked or socket.default_value > 0):
-                self.report.note(owner, f"{what} of a Principled BSDF is left out")
+            is_used = socket is not None and (socket.is_linked or socket.default_value > 0)
+            if is_used and not (name == "Anisotropic" and metallic == 1):
+                self.report.note(owner, text)
 
     def _coat_of_fresnel(self, node, owner):
         """Diffuse under a reflection that a Fresnel or Layer Weight node mixes in: plastic. None if it is not that."""
@@ -487,10 +607,22 @@ class Materials:
             look = self._mixed(first, second, HALFWAY, owner)
             look.strength *= 2
             return look
-        look = Look(first.material or second.material)
+        solid = first if first.material is not None else second
+        look = Look(solid.material, alpha=solid.alpha)
         self._add_emission(look, first, 1, owner)
         self._add_emission(look, second, 1, owner)
+        if any(part.material is None and is_black(part.emission) for part in (first, second)):
+            self._add_hole(look, owner)
         return look
+
+    def _add_hole(self, look, owner):
+        if look.material is not None:
+            self.report.note(owner, "what a Transparent shader adds to a surface is left out")
+        elif not is_black(look.emission):  # half of it, twice as bright
+            self.report.note(owner, "an emission with Transparent added lets half of the light pass")
+            look.alpha, look.strength = HALFWAY, 2 * look.strength
+        else:
+            look.alpha = 0.0
 
 
 SHADERS = {"BSDF_DIFFUSE": Materials.diffuse, "BSDF_TRANSLUCENT": Materials.translucent,

@@ -1,42 +1,111 @@
 # SPDX-FileCopyrightText: 2026 The Lanthorn authors
 # SPDX-License-Identifier: Apache-2.0
-"""Volume shaders as homogeneous media."""
+"""Volume shaders as media: homogeneous ones, or grids where a socket varies over space. Cycles bakes such sockets at the
+middles of the grid's cells (bake.py)."""
+import numpy
 
-BLACK = [0.0, 0.0, 0.0]
+from . import voxels
+
 LEAST_ABSORPTION = 1e-4  # per metre, of a volume that emits
+RAMP = 256               # samples of a Color Ramp
+OPERATIONS = {"ADD": numpy.add, "SUBTRACT": numpy.subtract, "MULTIPLY": numpy.multiply, "MINIMUM": numpy.minimum,
+              "MAXIMUM": numpy.maximum, "DIVIDE": lambda a, b: a / numpy.where(b == 0, numpy.inf, b),
+              "POWER": lambda a, b: numpy.maximum(a, 0) ** b, "GREATER_THAN": lambda a, b: (a > b) * 1.0,
+              "LESS_THAN": lambda a, b: (a < b) * 1.0}
 KINDS = {"VOLUME_ABSORPTION", "VOLUME_SCATTER", "PRINCIPLED_VOLUME", "EMISSION", "ADD_SHADER", "MIX_SHADER"}
 
 
 def _zero():
-    return {"sigma_a": BLACK, "sigma_s": BLACK, "g": 0.0, "emission": BLACK}
+    return {"sigma_a": numpy.zeros(3), "sigma_s": numpy.zeros(3), "g": 0.0, "emission": numpy.zeros(3)}
 
 
 def _sum(first, second, shares=(1.0, 1.0)):
     """Two media in one place; of the phase functions, the mean by what they scatter."""
-    made = {name: [shares[0] * a + shares[1] * b for a, b in zip(first[name], second[name])]
-            for name in ("sigma_a", "sigma_s", "emission")}
-    weights = [share * sum(part["sigma_s"]) for share, part in zip(shares, (first, second))]
+    made = {name: shares[0] * first[name] + shares[1] * second[name] for name in ("sigma_a", "sigma_s", "emission")}
+    weights = [numpy.mean(share * part["sigma_s"]) for share, part in zip(shares, (first, second))]
     total = sum(weights)
     made["g"] = (weights[0] * first["g"] + weights[1] * second["g"]) / total if total > 0 else 0.0
     return made
 
 
-class _Volume:
+class Volume:
+    """A volume shader. Numbers are those of the sockets, or columns with a value for each cell; colours likewise."""
+
     def __init__(self, owner, textures, report):
         self.owner, self.textures, self.report = owner, textures, report
+        self.grid, self.is_missing = None, False  # the cells, if something varies; whether a bake has still to come
+
+    def _field(self, output):
+        """What a socket has in each cell (n, 3); None if it is the same everywhere, or cannot be had."""
+        surface = self.textures.surface
+        if output is None or surface is None:
+            return None
+        own = self._of_own_grids(output) if surface.fields is not None else None
+        if own is not None or not self.textures.varies_in_space(output):
+            return own
+        self.grid = self.grid or voxels.around(surface, self.textures.bakes.size)
+        path = self.textures.baked_field(output, self.grid, self.owner)
+        values = self.grid.read(path)
+        self.is_missing = self.is_missing or values is None
+        return values
+
+    def _of_own_grids(self, output):
+        """What Attribute and Volume Info nodes, and Math and Color Ramp behind them, make of the object's grids."""
+        node = output.node
+        if node.type in {"ATTRIBUTE", "VOLUME_INFO"}:
+            name = node.attribute_name if node.type == "ATTRIBUTE" else output.name.lower()
+            return self._attribute(name)
+        if node.type not in {"MATH", "VALTORGB"}:
+            return None
+        inputs = [self._field_or_number(socket) for socket in node.inputs if socket.enabled]
+        if not any(numpy.size(value) > 1 for value in inputs):
+            return None
+        if node.type == "MATH":
+            return self._computed(node, [numpy.mean(v, axis=1, keepdims=True) if numpy.size(v) > 1 else v for v in inputs])
+        positions = numpy.linspace(0, 1, RAMP)
+        colors = numpy.array([node.color_ramp.evaluate(x)[:3] for x in positions])
+        values = numpy.mean(inputs[0], axis=1)
+        return numpy.stack([numpy.interp(values, positions, colors[:, c]) for c in range(3)], axis=1)
+
+    def _attribute(self, name):
+        fields = self.textures.surface.fields
+        self.grid = fields.grid
+        if name not in fields.values:
+            self.report.note(self.owner, f"the volume has no grid {name}: it counts as 0")
+            return numpy.zeros((int(fields.grid.counts.prod()), 3))
+        return fields.values[name]
+
+    def _field_or_number(self, socket):
+        field = self._field(self.textures.source(socket))
+        return field if field is not None else self.textures.constant(socket, self.owner, "a node of a volume")
+
+    def _computed(self, node, inputs):
+        operation = OPERATIONS.get(node.operation)
+        if operation is None:
+            self.report.note(self.owner, f"Math by {node.operation} of a volume's grid has no counterpart: it is left out")
+            return numpy.repeat(inputs[0] if numpy.size(inputs[0]) > 1 else inputs[1], 3, axis=1)
+        made = operation(*inputs[:2])
+        return numpy.repeat(numpy.clip(made, 0, 1) if node.use_clamp else made, 3, axis=1)
 
     def number(self, node, name):
-        return self.textures.constant(node.inputs[name], self.owner, f"{name} of a volume")
+        socket = node.inputs[name]
+        field = self._field(self.textures.source(socket))
+        if field is not None:
+            return field.mean(axis=1, keepdims=True)
+        return self.textures.constant(socket, self.owner, f"{name} of a volume")
 
     def color(self, node, name):
         output = self.textures.source(node.inputs[name])
+        field = self._field(output)
+        if field is not None:
+            return field
+        if output is not None and output.node.type == "RGB":
+            return numpy.array(output.default_value[:3])
         if output is not None:
-            if output.node.type == "RGB":
-                return list(output.default_value[:3])
-            self.report.note(self.owner, f"{name} of a volume cannot vary: the socket's own value is used")
-        return list(node.inputs[name].default_value[:3])
+            self.report.note(self.owner, f"{name} of a volume cannot vary so: the socket's own value is used")
+        return numpy.array(node.inputs[name].default_value[:3])
 
-    def of_socket(self, socket):
+    def _of_socket(self, socket):
         output = self.textures.source(socket)
         return self.of(output.node) if output is not None else _zero()
 
@@ -45,41 +114,62 @@ class _Volume:
             self.report.note(self.owner, f"the volume shader {node.bl_label} has no counterpart: it is left out")
             return _zero()
         if node.type == "ADD_SHADER":
-            return _sum(*(self.of_socket(socket) for socket in node.inputs[:2]))
+            return _sum(*(self._of_socket(socket) for socket in node.inputs[:2]))
         if node.type == "MIX_SHADER":
             amount = self.number(node, node.inputs[0].identifier)
-            return _sum(*(self.of_socket(socket) for socket in node.inputs[1:3]), (1 - amount, amount))
+            return _sum(*(self._of_socket(socket) for socket in node.inputs[1:3]), (1 - amount, amount))
         if node.type == "EMISSION":
-            strength = self.number(node, "Strength")
-            return {**_zero(), "emission": [strength * c for c in self.color(node, "Color")]}
+            return {**_zero(), "emission": self.number(node, "Strength") * self.color(node, "Color")}
         if node.type == "PRINCIPLED_VOLUME":
             return self._principled(node)
-        color, density = self.color(node, "Color"), max(0.0, self.number(node, "Density"))
+        color, density = self.color(node, "Color"), numpy.maximum(0.0, self.number(node, "Density"))
         if node.type == "VOLUME_ABSORPTION":
-            return {**_zero(), "sigma_a": [density * max(0.0, 1 - c) for c in color]}
-        return {**_zero(), "sigma_s": [density * c for c in color], "g": self.number(node, "Anisotropy")}
+            return {**_zero(), "sigma_a": density * numpy.maximum(0.0, 1 - color)}
+        return {**_zero(), "sigma_s": density * color, "g": self._even(self.number(node, "Anisotropy"))}
+
+    def _even(self, value):
+        """The mean of a number that cannot vary."""
+        if numpy.size(value) > 1:
+            self.report.note(self.owner, "the anisotropy of a volume cannot vary: its mean is used")
+        return float(numpy.mean(value))
 
     def _principled(self, node):
         """Cycles scatters by the colour; the rest is absorbed, where the absorption colour is white not at all."""
-        density = max(0.0, self.number(node, "Density"))
+        density = numpy.maximum(0.0, self.number(node, "Density"))
+        fields, attribute = self.textures.surface.fields, node.inputs["Density Attribute"].default_value
+        if fields is not None and attribute in fields.values:
+            density = density * self._attribute(attribute).mean(axis=1, keepdims=True)
         color, absorbed = self.color(node, "Color"), self.color(node, "Absorption Color")
         emitted = self.number(node, "Emission Strength")
-        if self.number(node, "Blackbody Intensity") > 0:
-            self.report.note(self.owner, "the black body of a homogeneous volume is left out")
-        return {"sigma_s": [density * c for c in color],
-                "sigma_a": [density * max(0.0, 1 - c) * max(0.0, 1 - max(0.0, a) ** 0.5) for c, a in zip(color, absorbed)],
-                "g": self.number(node, "Anisotropy"),
-                "emission": [emitted * c for c in self.color(node, "Emission Color")]}
+        if numpy.max(self.number(node, "Blackbody Intensity")) > 0:
+            self.report.note(self.owner, "the black body of a volume is left out")
+        return {"sigma_s": density * color,
+                "sigma_a": density * numpy.maximum(0.0, 1 - color) * numpy.maximum(0.0, 1 - numpy.maximum(0.0, absorbed) ** 0.5),
+                "g": self._even(self.number(node, "Anisotropy")),
+                "emission": emitted * self.color(node, "Emission Color")}
 
 
-def medium(node, owner, textures, report):
-    """The medium of a volume shader; None if it is none."""
-    made = _Volume(owner, textures, report).of(node)
-    emission = made.pop("emission")
-    if max(emission) > 0:
-        # Cycles has what a metre emits, Lanthorn the radiance of an infinitely deep medium: sigma_a times as much a metre.
-        made["sigma_a"] = [max(a, LEAST_ABSORPTION if e > 0 else 0) for a, e in zip(made["sigma_a"], emission)]
-        made["emission"] = [e / a if e > 0 else 0.0 for e, a in zip(emission, made["sigma_a"])]
-    elif max(made["sigma_a"] + made["sigma_s"]) <= 0:
-        return None
+def _with_emission(made):
+    """Cycles has what a metre emits, Lanthorn the radiance of an infinitely deep medium: sigma_a times as much a metre."""
+    emission = made["emission"]
+    if numpy.max(emission) <= 0:
+        made.pop("emission")
+        return made
+    is_dark = emission <= 0
+    absorption = numpy.maximum(made["sigma_a"], numpy.where(is_dark, 0, LEAST_ABSORPTION))
+    made["sigma_a"] = absorption
+    made["emission"] = numpy.where(is_dark, 0, emission / numpy.maximum(absorption, LEAST_ABSORPTION))
     return made
+
+
+def medium(volume, node):
+    """The medium of a Volume that begins at a node; None if it is none."""
+    made = volume.of(node)
+    if numpy.max(made["emission"]) <= 0 and max(numpy.max(made["sigma_a"]), numpy.max(made["sigma_s"])) <= 0:
+        return None
+    made = _with_emission(made)
+    fields = {name: made.pop(name) for name in ("sigma_a", "sigma_s", "emission") if name in made}
+    if all(numpy.size(values) == 3 for values in fields.values()):
+        return {**made, **{name: numpy.reshape(values, 3).tolist() for name, values in fields.items()}}
+    return {**made, "density": {"type": "rgbgrid", **{name: volume.grid.part(v) for name, v in fields.items()}},
+            "medium_to_world": volume.textures.surface.to_world}

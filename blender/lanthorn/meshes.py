@@ -12,6 +12,17 @@ def _get(collection, name, count, dtype):
     return values
 
 
+def _has_normals_of_vertices(mesh, smooth):
+    """Whether all corners at a vertex have its normal. `smooth`: of each polygon."""
+    if hasattr(mesh, "normals_domain"):  # from Blender 4.1 on
+        return mesh.normals_domain == "POINT"
+    return bool(smooth.all()) and not mesh.use_auto_smooth
+
+
+def _vertex_normals(mesh):
+    return _get(mesh.vertex_normals, "vector", 3 * len(mesh.vertices), numpy.float32).reshape(-1, 3)
+
+
 def _corner_normals(mesh, count):
     if hasattr(mesh, "corner_normals"):  # from Blender 4.1 on
         return _get(mesh.corner_normals, "vector", 3 * count, numpy.float32).reshape(-1, 3)
@@ -19,8 +30,15 @@ def _corner_normals(mesh, count):
     return _get(mesh.loops, "normal", 3 * count, numpy.float32).reshape(-1, 3)
 
 
-def _is_smooth(mesh):
-    return bool(_get(mesh.polygons, "use_smooth", len(mesh.polygons), bool).any())
+def _smooth_polygons(mesh):
+    return _get(mesh.polygons, "use_smooth", len(mesh.polygons), bool)
+
+
+def _slots(mesh, count):
+    """The number of the material of each triangle."""
+    if len(mesh.materials) < 2:  # numbers beyond the last slot count as the last one
+        return numpy.zeros(count, dtype=numpy.int32)
+    return _get(mesh.loop_triangles, "material_index", count, numpy.int32)
 
 
 def _corner_colors(mesh, attribute, vertices):
@@ -31,12 +49,33 @@ def _corner_colors(mesh, attribute, vertices):
     return colors[vertices] if attribute.domain == "POINT" else colors
 
 
+VALUES_OF = {"FLOAT": ("value", 1), "FLOAT_VECTOR": ("vector", 3)}
+
+
+def _corner_values(mesh, attribute, vertices):
+    """The numbers or vectors of an attribute at the corners, as colours; None for other attributes."""
+    if attribute.data_type not in VALUES_OF or attribute.name.startswith(".") or attribute.name == "position":
+        return None
+    member, count = VALUES_OF[attribute.data_type]
+    values = _get(attribute.data, member, count * len(attribute.data), numpy.float32).reshape(-1, count)
+    if attribute.domain == "POINT":
+        values = values[vertices]
+    elif attribute.domain == "FACE":
+        values = numpy.repeat(values, _get(mesh.polygons, "loop_total", len(mesh.polygons), numpy.int32), axis=0)
+    if len(values) != len(vertices):
+        return None
+    colors = numpy.ones((len(values), 4), dtype=numpy.float32)
+    colors[:, :3] = values
+    return colors
+
+
 class Surface:
     """A mesh: a copy of what shapes and bakes need, so that Blender's may go."""
 
     def __init__(self, mesh, key, texspace=None):
         self.key, self.texspace = key, texspace
         self.object_name, self.to_world = key, None
+        self.fields = None  # of fluids: volumes.Fields
         self._stored, self._atlases, self._shapes, self._bounds = {}, {}, {}, {}
         mesh.calc_loop_triangles()
         count, loops = len(mesh.loop_triangles), len(mesh.loops)
@@ -45,10 +84,16 @@ class Surface:
             return
         self.vertices = _get(mesh.loops, "vertex_index", loops, numpy.int32)
         self.positions = _get(mesh.vertices, "co", 3 * len(mesh.vertices), numpy.float32).reshape(-1, 3)
-        self.is_smooth = _is_smooth(mesh)
         self.triangles = _get(mesh.loop_triangles, "loops", 3 * count, numpy.int32).reshape(-1, 3)
-        self.slots = _get(mesh.loop_triangles, "material_index", count, numpy.int32)
-        self.normals = _corner_normals(mesh, loops) if self.is_smooth else None
+        self.slots = _slots(mesh, count)
+        smooth = _smooth_polygons(mesh)
+        self.is_smooth = bool(smooth.any())
+        self.vertex_normals = self.normals = None
+        if self.is_smooth and _has_normals_of_vertices(mesh, smooth):
+            self.vertex_normals = _vertex_normals(mesh)
+            self.normals = self.vertex_normals[self.vertices]
+        elif self.is_smooth:
+            self.normals = _corner_normals(mesh, loops)
         # Not before: the normals add a layer, which moves the others.
         self.uv_layers = {layer.name: _get(layer.data, "uv", 2 * loops, numpy.float32).reshape(-1, 2)
                           for layer in mesh.uv_layers}
@@ -56,6 +101,8 @@ class Surface:
         self.uv_name = shown if shown is not None else next(iter(self.uv_layers), None)
         colors = {a.name: _corner_colors(mesh, a, self.vertices) for a in mesh.color_attributes}
         self.colors = {name: values for name, values in colors.items() if values is not None}
+        values = {a.name: _corner_values(mesh, a, self.vertices) for a in mesh.attributes if a.name not in colors}
+        self.values = {name: array for name, array in values.items() if array is not None}  # for bakes alone
         active = mesh.color_attributes.active_color
         self.color_name = active.name if active is not None and active.name in self.colors else None
 
@@ -67,21 +114,27 @@ class Surface:
         return self._stored[key]
 
     def used_slots(self):
-        return [] if self.is_empty else [int(slot) for slot in numpy.unique(self.slots)]
+        return [] if self.is_empty else numpy.flatnonzero(numpy.bincount(self.slots)).tolist()
 
-    def shape(self, slot, color_name=None, is_welded=False):
+    def shape(self, slot, color_name=None, is_welded=False, tangent=None):
         """The triangles of a slot as a mesh of Lanthorn, whose vertices are the corners of Blender's. Welded: one vertex
-        for all that are alike. The same arrays at each call, so that nobody need compare them."""
-        key = slot, color_name, is_welded
+        for all that are alike. `tangent`: see `_tangents`. The same arrays at each call, so that nobody need compare
+        them."""
+        key = slot, color_name, is_welded, tangent
         if key not in self._shapes:
             self._shapes[key] = self._shape(*key)
         return self._shapes[key]
 
-    def _shape(self, slot, color_name, is_welded):
-        triangles = self.triangles[self.slots == slot]
+    def _triangles_of(self, slot):
+        chosen = self.slots == slot
+        return self.triangles if chosen.all() else self.triangles[chosen]
+
+    def _shape(self, slot, color_name, is_welded, tangent):
+        triangles = self._triangles_of(slot)
         colors = self.colors.get(color_name)
-        if not self.is_smooth and self.uv_name is None and colors is None:
-            return _subset(self.vertices[triangles], {"positions": self.positions})
+        if self.uv_name is None and colors is None and tangent is None and (not self.is_smooth or self.vertex_normals is not None):
+            normals = {"normals": self.vertex_normals} if self.is_smooth else {}
+            return _subset(self.vertices[triangles], {"positions": self.positions, **normals})
         corners = {"positions": self.positions[self.vertices]}
         if self.is_smooth:
             corners["normals"] = self.normals
@@ -89,28 +142,81 @@ class Surface:
             corners["uvs"] = self.uv_layers[self.uv_name]
         if colors is not None:
             corners["colors"] = colors
+        if tangent is not None:
+            corners["tangents"] = self._tangents(*tangent)
         return _subset(_welded(triangles, self.vertices, corners) if is_welded else triangles, corners)
 
-    def atlas_shape(self, slot, size):
+    def atlas_shape(self, slot, size, tangent=None):
         """As `shape`, with a place of its own in an image for each triangle."""
-        key = slot, size
+        key = "atlas", slot, size, tangent
         if key not in self._shapes:
-            self._shapes[key] = self._atlas_shape(*key)
+            self._shapes[key] = self._atlas_shape(slot, size, tangent)
         return self._shapes[key]
 
-    def _atlas_shape(self, slot, size):
-        corners = self.triangles[self.slots == slot].reshape(-1)
+    def _atlas_shape(self, slot, size, tangent):
+        corners = self._triangles_of(slot).reshape(-1)
         shape = {"positions": self.positions[self.vertices[corners]], "uvs": self._atlas(slot, size)[0].reshape(-1, 2),
                  "triangles": numpy.arange(len(corners), dtype=numpy.uint32).reshape(-1, 3)}
         if self.is_smooth:
             shape["normals"] = self.normals[corners]
+        if tangent is not None:
+            shape["tangents"] = self._tangents(*tangent)[corners]
         return shape
+
+    def _tangents(self, kind, name, turn):
+        """The direction at each corner along which brushes went. RADIAL: around the axis `name` of the texture space; UV:
+        along u of the layer `name`. `turn`: around the normal, in full turns."""
+        around = self._around(name) if kind == "RADIAL" else self._along_u(name)
+        if turn == 0:
+            return around  # the program makes it perpendicular to the normal
+        normals = self.normals if self.is_smooth else self._facets()
+        along = around - normals * (around * normals).sum(axis=1, keepdims=True)
+        angle = 2 * numpy.pi * turn
+        return (numpy.cos(angle) * along + numpy.sin(angle) * numpy.cross(normals, along)).astype(numpy.float32)
+
+    def _around(self, axis):
+        middle, size = self.texture_space()
+        x, y, z = ((self.positions[self.vertices] - middle) / numpy.maximum(size, 1e-6)).T
+        zero = numpy.zeros_like(x)
+        columns = {"X": (zero, -z, y), "Y": (-z, zero, x), "Z": (-y, x, zero)}[axis]
+        return numpy.stack(columns, axis=1).astype(numpy.float32)
+
+    def _along_u(self, name):
+        uvs = self.uv_layers.get(name, self.uv_layers.get(self.uv_name))
+        if uvs is None:
+            return self._around("Z")
+        points, places = self.positions[self.vertices[self.triangles]], uvs[self.triangles]
+        (e1, e2), (d1, d2) = ([values[:, i] - values[:, 0] for i in (1, 2)] for values in (points, places))
+        along = e1 * d2[:, 1:] - e2 * d1[:, 1:]
+        along *= numpy.sign(d1[:, 0] * d2[:, 1] - d1[:, 1] * d2[:, 0])[:, None]
+        return self._of_corners(along)
+
+    def _facets(self):
+        points = self.positions[self.vertices[self.triangles]]
+        return self._of_corners(numpy.cross(points[:, 1] - points[:, 0], points[:, 2] - points[:, 0]))
+
+    def _of_corners(self, vectors):
+        """Vectors of triangles, as units, for their corners."""
+        vectors = vectors / numpy.maximum(numpy.linalg.norm(vectors, axis=1, keepdims=True), 1e-20)
+        of_corners = numpy.zeros((len(self.vertices), 3), dtype=numpy.float32)
+        of_corners[self.triangles] = vectors[:, None, :]
+        return of_corners
+
+    def texture_space(self):
+        """Middle and half the extent of the box that Generated coordinates fill."""
+        if self.texspace is not None:
+            return numpy.array(self.texspace)
+        low, high = self.positions.min(axis=0), self.positions.max(axis=0)
+        return numpy.array([(low + high) / 2, numpy.maximum((high - low) / 2, 1e-6)])
 
     def _atlas(self, slot, size):
         if (slot, size) not in self._atlases:
-            points = self.positions[self.vertices[self.triangles[self.slots == slot]]]
+            points = self.positions[self.vertices[self._triangles_of(slot)]]
             self._atlases[slot, size] = atlas.places(points, size)
         return self._atlases[slot, size]
+
+    def has_attribute(self, name):
+        return name in self.colors or name in self.values or name in self.uv_layers
 
     def uv_bounds(self, slot):
         """The lowest and the highest texture coordinates of a slot; the unit square if it contains them."""
@@ -121,26 +227,22 @@ class Surface:
     def _uv_bounds(self, slot):
         if self.uv_name is None:
             return numpy.zeros(2), numpy.ones(2)
-        uvs = self.uv_layers[self.uv_name][self.triangles[self.slots == slot].reshape(-1)]
+        uvs = self.uv_layers[self.uv_name][self._triangles_of(slot).reshape(-1)]
         low, high = uvs.min(axis=0).astype(numpy.float64), uvs.max(axis=0).astype(numpy.float64)
         low, high = numpy.floor(numpy.minimum(low, 0) + 1e-4), numpy.ceil(numpy.maximum(high, 1) - 1e-4)
         return low, high
 
     def atlas_arrays(self, slot, size):
         """What bake_worker.py needs to bake the slot."""
-        chosen = self.triangles[self.slots == slot]
+        chosen = self._triangles_of(slot)
         corners = chosen.reshape(-1)
         used, inverse = numpy.unique(self.vertices[corners], return_inverse=True)
         arrays = {"vertices": self.positions[used], "triangles": inverse.reshape(-1, 3), "is_smooth": self.is_smooth,
                   "atlas": self._atlas(slot, size)[0].reshape(-1, 2)}
         names = sorted(self.uv_layers, key=lambda name: name != self.uv_name)
         arrays.update({f"uv:{name}": self.uv_layers[name][corners] for name in names})
-        arrays.update({f"color:{name}": values[corners] for name, values in self.colors.items()})
-        if self.texspace is not None:
-            arrays["texspace"] = numpy.array(self.texspace)
-        else:
-            low, high = self.positions.min(axis=0), self.positions.max(axis=0)
-            arrays["texspace"] = numpy.array([(low + high) / 2, numpy.maximum((high - low) / 2, 1e-6)])
+        arrays.update({f"color:{name}": values[corners] for name, values in {**self.values, **self.colors}.items()})
+        arrays["texspace"] = self.texture_space()
         return arrays
 
     def square_arrays(self, low, high):
@@ -164,7 +266,9 @@ def _welded(triangles, vertices, corners):
 
 def _subset(triangles, corners):
     """The triangles with the corners that they have alone."""
-    used, inverse = numpy.unique(triangles, return_inverse=True)
-    part = {name: values[used] for name, values in corners.items()}
-    part["triangles"] = inverse.reshape(-1, 3).astype(numpy.uint32)
-    return part
+    used = numpy.zeros(len(corners["positions"]), dtype=bool)
+    used[triangles] = True
+    if used.all():
+        return {**corners, "triangles": triangles.astype(numpy.uint32)}
+    numbers = numpy.cumsum(used, dtype=numpy.uint32) - 1
+    return {**{name: values[used] for name, values in corners.items()}, "triangles": numbers[triangles]}

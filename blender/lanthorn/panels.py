@@ -94,6 +94,8 @@ class LANTHORN_LIGHT_PT_lamp(LanthornPanel, bpy.types.Panel):
         layout.prop(light, "energy")
         if light.type in {"POINT", "SPOT"}:
             layout.prop(light, "shadow_soft_size", text="Radius")
+        if light.type == "SUN":
+            layout.prop(light, "angle")
         if light.type == "SPOT":
             layout.prop(light, "spot_size")
             layout.prop(light, "spot_blend")

@@ -1,9 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The Lanthorn authors
 # SPDX-License-Identifier: Apache-2.0
 """A depsgraph as the parts of a scene that `lanthorn link` takes."""
+import collections
 import tempfile
 
-from . import camera, hair, lights, meshes, world
+from . import camera, hair, lights, meshes, volumes, world
 from .bake import Bakes
 from .materials import Materials
 from .report import Report
@@ -12,6 +13,7 @@ from .textures import ImageFiles
 MESH_TYPES = {"MESH", "CURVE", "SURFACE", "META", "FONT"}
 IGNORED_TYPES = {"CAMERA", "EMPTY", "ARMATURE", "LATTICE", "SPEAKER", "LIGHT_PROBE", "GPENCIL"}
 VISIBILITIES = ("visible_camera", "visible_diffuse", "visible_glossy", "visible_transmission", "visible_shadow")
+MOST_LAMPS = 1000000  # triangles that emit, at all places
 TABLES = ("float_textures", "spectrum_textures", "materials", "media", "area_lights", "shapes", "objects", "instances",
           "lights")
 
@@ -28,6 +30,7 @@ class SceneExport:
         self.folder = tempfile.TemporaryDirectory(prefix="lanthorn-")
         self.report = Report()
         self._images = ImageFiles(self.folder.name)
+        self.is_unfinished = False  # parts that must be exported again after the bake
         self.bakes = Bakes(self.folder.name)
         self._sent, self._is_viewport = empty_parts(), False
         self._surfaces = {}  # names and surface, by key; kept until `forget`
@@ -53,14 +56,29 @@ class SceneExport:
         scene_world = depsgraph.scene_eval.world
         if scene_world is not None:
             parts["lights"].update(world.lights_of_world(scene_world, self.report, self.bakes))
+        self._put_out_crowds(parts, materials)
+        self.is_unfinished = bool(materials.unfinished)
         return parts
+
+    def _put_out_crowds(self, parts, materials):
+        """Each triangle that emits is a lamp, at each place: meadows of them neither fit nor are worth it."""
+        places = collections.Counter(instance["object"] for instance in parts["instances"].values())
+        crowds = [(places[key] * len(shape["triangles"]), key, shape) for key, made in parts["objects"].items()
+                  for shape in made["shapes"] if "area_light" in shape]
+        total = sum(count for count, *_ in crowds)
+        for count, key, shape in sorted(crowds, key=lambda crowd: -crowd[0]):
+            if total <= MOST_LAMPS:
+                break
+            total -= count
+            self.report.note(key.split("|")[0], f"more than {MOST_LAMPS} triangles would emit: they reflect that colour instead")
+            materials.put_out(shape)
 
     def bake(self, parts, is_cancelled):
         """Makes the images that the parts refer to, and waits for them."""
         if self.bakes.are_missing:
             self.bakes.run(is_cancelled)
-            if self.bakes.problem:
-                self.report.note("bake", f"{self.bakes.problem}: grey stands in")
+        if self.bakes.problem:
+            self.report.note("bake", f"{self.bakes.problem}: grey stands in")
         self.settle(parts)
 
     def settle(self, parts):
@@ -90,29 +108,51 @@ class SceneExport:
                 parts["instances"][name] = {"object": key, "object_to_world": camera.rows(matrix)}
         elif object.type == "CURVES":
             self._add_curves(parts, materials, object, name, matrix)
+        elif object.type == "VOLUME":
+            self._add_volume(parts, materials, object, name, camera.rows(matrix))
         elif object.type not in IGNORED_TYPES:
             self.report.note(object.name, f"objects of the type {object.type} are left out")
+
+    def _add_volume(self, parts, materials, object, name, to_world):
+        key = f"{object.name_full}|VOLUME"
+        if key not in self._surfaces:
+            fields = volumes.of_volume(object, self.report)
+            self._surfaces[key] = {object.name_full, object.data.name_full}, fields and volumes.Box(key, fields)
+        box = self._surfaces[key][1]
+        if box is None:
+            return
+        box.object_name, box.to_world = object.name, to_world
+        material = object.material_slots[0].material if len(object.material_slots) else None
+        parts["objects"][key] = {"shapes": [{**box.shape(), **materials.box_members(material, box)}]}
+        parts["instances"][name] = {"object": key, "object_to_world": to_world}
 
     def _add_hair(self, parts, materials, instance, name):
         if instance.is_instance:
             if len(instance.object.particle_systems):
                 self.report.note(instance.object.name, "hair of instances is left out")
             return
-        object = instance.object
-        for system, slot, curves in hair.particle_shapes(object, self._is_viewport):
-            parts["shapes"][f"{name}/{system}"] = {**curves, **self._fibre_members(materials, object, slot)}
+        for strands in hair.strands(instance.object, self._is_viewport):
+            key = f"{name}/{strands.system.name}"
+            material = self._material_of(instance.object, strands.slot)
+            image = materials.image_of_fibres(material)
+            roots = strands.roots() if image is not None else None
+            if roots is None:
+                parts["shapes"][key] = {**strands.shape(), **materials.fibre_members(material)}
+                continue
+            for number, (color, chosen) in enumerate(hair.groups_of_color(image, roots)):
+                parts["shapes"][f"{key}/{number}"] = {**strands.shape(chosen), **materials.fibre_members(material, color)}
 
     def _add_curves(self, parts, materials, object, name, matrix):
         curves = hair.curves_shape(object)
         if curves is not None:
             key = f"{name}|CURVES"
-            parts["objects"][key] = {"shapes": [{**curves, **self._fibre_members(materials, object, 0)}]}
+            parts["objects"][key] = {"shapes": [{**curves, **materials.fibre_members(self._material_of(object, 0))}]}
             parts["instances"][name] = {"object": key, "object_to_world": camera.rows(matrix)}
 
     @staticmethod
-    def _fibre_members(materials, object, slot):
+    def _material_of(object, slot):
         slots = object.material_slots
-        return materials.fibre_members(slots[min(slot, len(slots) - 1)].material if len(slots) else None)
+        return slots[min(slot, len(slots) - 1)].material if len(slots) else None
 
     @staticmethod
     def name_of(instance):
@@ -126,12 +166,18 @@ class SceneExport:
     def _mesh_key(object):
         """Objects of one key have the same mesh and the same materials."""
         slots = ",".join(slot.material.name_full if slot.material else "" for slot in object.material_slots)
-        is_shared = object.type == "MESH" and not object.modifiers and object.data is not None
-        return f"{object.data.name_full if is_shared else object.name_full}|{object.type}|{slots}"
+        if object.type != "MESH":
+            return f"{object.name_full}|{object.type}|{slots}"
+        # Geometry nodes make instances of several meshes of one object, which may even have one name.
+        data = object.data
+        owner = f"{object.name_full}/{len(data.vertices)}/{len(data.polygons)}/" if object.modifiers else ""
+        return f"{owner}{data.name_full}|{object.type}|{slots}"
 
     def _shapes(self, key, object, materials, to_world):
         if key not in self._surfaces:
             self._surfaces[key] = {object.name_full, object.data.name_full}, self._surface(key, object)
+            if self._surfaces[key][1] is not None:
+                self._surfaces[key][1].fields = volumes.of_fluid(object)
         slots, shapes = object.material_slots, []
         surface = self._surfaces[key][1]
         if surface is None:

@@ -93,6 +93,7 @@ NATIVE = {"RGB", "VALUE", "BLACKBODY", "TEX_IMAGE", "MAPPING", "TEX_COORD", "UVM
 OF_THE_WORLD = {"NEW_GEOMETRY", "OBJECT_INFO", "CAMERA", "AMBIENT_OCCLUSION"}
 WORLD_OUTPUTS = {"Camera", "Window", "Reflection"}  # of Texture Coordinate
 SIDE_OF_A_CONSTANT = 4  # texels of the image of a tree that is the same everywhere
+GREY_OF_MAGENTA = 0.2848
 
 
 def is_native(node):
@@ -111,6 +112,13 @@ def mean_fresnel(eta):
     return head_on + (1 - head_on) / 21
 
 
+def _magenta(is_color, channel):
+    """What Cycles has in the place of an image that is not there."""
+    if is_color:
+        return [1, 0, 1]
+    return {"Alpha": 1.0, "Red": 1.0, "R": 1.0, "Green": 0.0, "G": 0.0, "Blue": 1.0, "B": 1.0}.get(channel, GREY_OF_MAGENTA)
+
+
 class Textures:
     """Adds textures to the parts of a scene. The values of sockets are numbers, lists, or references to textures. What
     no texture can do is baked to an image, by texture coordinates, or triangle by triangle where a node asks for other
@@ -120,6 +128,7 @@ class Textures:
         self.parts, self.report, self.images, self.bakes = parts, report, images, bakes
         self.groups = []  # group nodes that were entered
         self.uses_colors = None  # of vertices, by their name
+        self.color_at_root = None  # of images, for hair
 
     def begin(self, material, surface, slot, is_atlas, prefix):
         """What follows is about this material on a slot of this surface. Names of parts begin with the prefix."""
@@ -154,20 +163,43 @@ class Textures:
         """An image of what the tree at this socket makes; None if it cannot be baked."""
         nodes = self._nodes_behind_output(output)
         of_ray = [node for node, _ in nodes if node.type in OF_THE_RAY]
-        absent = [n for n, _ in nodes if n.type in {"VERTEX_COLOR", "ATTRIBUTE"} and self._color_name(n) is None]
-        if self.surface is None or of_ray or absent:
+        if self.surface is None or of_ray:
             return None
+        for node, _ in nodes:
+            if node.type == "ATTRIBUTE" and not self.surface.has_attribute(node.attribute_name):
+                self.report.note(owner, f"the mesh has no attribute {node.attribute_name}: it counts as 0")
         is_varying = any(node.type in OF_A_PLACE or node.type in SOLID or node.type in {"TEX_COORD", "TEX_IMAGE", "UVMAP"}
                          for node, _ in nodes)
-        is_of_world = any(node.type in OF_THE_WORLD or (node.type == "TEX_COORD" and (node.object or outputs & WORLD_OUTPUTS))
-                          for node, outputs in nodes)
-        domain, place = self._domain(is_number, is_varying, is_of_world)
+        domain, place = self._domain(is_number, is_varying, self._is_of_world(nodes))
         path = self.bakes.image(self.material, output, self._path_of_groups(output.node), self, domain)
         self.report.note(owner, f"{output.node.bl_label} has no counterpart: baked to an image")
         name = f"{self.prefix}/{os.path.basename(path)}"
         texture = {"type": "image", "filename": path, "encoding": "linear", "wrap": "clamp", **place}
         self.parts["float_textures" if is_number else "spectrum_textures"][name] = texture
         return {"texture": name}
+
+    def varies_in_space(self, output):
+        """Whether a socket of a volume has other values elsewhere."""
+        return any(node.type in OF_A_PLACE or node.type in SOLID or node.type in {"TEX_COORD", "TEX_IMAGE"}
+                   for node, _ in self._nodes_behind_output(output))
+
+    def baked_field(self, output, grid, owner):
+        """The path of a file with the socket's values in the cells of a grid."""
+        nodes = self._nodes_behind_output(output)
+        arrays = {**grid.arrays(), "texspace": self.surface.texture_space()}
+        mesh, job = self.bakes.store(arrays), {"is_number": False, "object": self.surface.object_name}
+        if self._is_of_world(nodes):
+            job["to_world"] = self.surface.to_world
+        self.report.note(owner, f"{output.node.bl_label} of a volume is baked to a grid of "
+                                f"{' × '.join(map(str, grid.counts))} cells")
+        domain = {"key": f"{mesh} {job} field", "size": grid.size, "extension": "npz",
+                  "job": lambda: {**job, "mesh": mesh}}
+        return self.bakes.image(self.material, output, self._path_of_groups(output.node), self, domain)
+
+    @staticmethod
+    def _is_of_world(nodes):
+        return any(node.type in OF_THE_WORLD or (node.type == "TEX_COORD" and (node.object or outputs & WORLD_OUTPUTS))
+                   for node, outputs in nodes)
 
     def _nodes_behind_output(self, output):
         own = (output.node, {output.name})
@@ -238,6 +270,8 @@ class Textures:
         if of_ray is not None:
             return [of_ray] * 3
         made = None
+        if self.color_at_root is not None and output.node.type == "TEX_IMAGE" and output.name == "Color":
+            return list(self.color_at_root)
         if not self.is_atlas or not self._is_texture(output):
             made = self._color_node(output, owner)
         if made is None:
@@ -377,11 +411,11 @@ class Textures:
         if mapping is None:
             return None
         if node.image is None:
-            return [1, 0, 1] if is_color else 0.0
+            return _magenta(is_color, channel)
         filename = self.images.path_of(node.image)
         if filename is None:
             self.report.note(owner, f"the image {node.image.name} is not there: magenta stands in")
-            return [1, 0, 1] if is_color else 0.0
+            return _magenta(is_color, channel)
         name = self._name(node, f":{channel}" if channel else "")
         wraps = {"REPEAT": "repeat", "EXTEND": "clamp", "CLIP": "black", "MIRROR": "mirror"}
         texture = {"type": "image", "filename": filename, "wrap": wraps.get(node.extension, "repeat"),

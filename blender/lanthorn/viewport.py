@@ -14,6 +14,8 @@ from .scene_export import SceneExport
 
 PATIENCE = 0.1  # seconds that the thread waits for a picture before it looks for edits
 
+orphans = []  # textures that only Blender's own thread may free
+
 
 class Viewport:
     """`edit` and `draw` are called by Blender, the rest belongs to the thread."""
@@ -79,6 +81,7 @@ class Viewport:
             answer, self._answer = self._answer, None
         if answer is not None:
             self._texture = texture_of(answer)
+        orphans.clear()
         if self._texture is not None:
             draw_texture_2d(self._texture, (0, 0), width, height)
 
@@ -88,9 +91,14 @@ class Viewport:
             self._lock.notify_all()
 
     def close(self):
+        """Ends the program; the thread does, and nobody waits for it."""
+        orphans.append(self._texture)
+        self._texture = None
         self._put(None)
-        if self._is_started:
-            self._thread.join(timeout=5)
+        if not self._is_started:
+            self._clean_up()
+
+    def _clean_up(self):
         self._link.close()
         self._export.close()
 
@@ -101,7 +109,13 @@ class Viewport:
             self._serve()
         except LinkError as error:
             self.problem = str(error)
-        self._redraw()
+            self._redraw()
+            self._wait_for_end()
+        self._clean_up()
+
+    def _wait_for_end(self):
+        with self._lock:
+            self._lock.wait_for(lambda: None in self._edits)
 
     def _serve(self):
         number, is_running = 0, False

@@ -73,9 +73,11 @@ InteractiveDenoised denoised_picture(const InteractivePicture& picture, bool is_
       is_preview, picture.state.pass_count};
 }
 
-// Avoids the pilot of `auto`, which would take longer than a coarse pass. Drops parameters meant for another method.
+// Avoids the pilots of `auto` and of photons' starts, which would take several times as long as a coarse pass. Drops
+// parameters meant for another method.
 void leave_out_pilot(RenderOptions& options) {
   options.integrator = method_without_pilot;
+  options.set.insert_or_assign("emission", "power");
   for (const ParameterInfo& p : find_integrator(method_without_pilot).parameters)
     options.set.emplace(p.name, p.default_value);
 }

@@ -77,6 +77,25 @@ def volume(kind, surface=None, **inputs):
     return make
 
 
+def clouds(kind="ShaderNodeVolumePrincipled", coordinates="Object", with_color=False):
+    """A medium whose density, and perhaps colour, comes from a noise."""
+    def make():
+        material = volume(kind, Anisotropy=0.0)()
+        nodes, links = material.node_tree.nodes, material.node_tree.links
+        medium = next(n for n in nodes if n.bl_idname == kind)
+        place, noise, ramp = (nodes.new(f"ShaderNode{n}") for n in ("TexCoord", "TexNoise", "ValToRGB"))
+        noise.inputs["Scale"].default_value = 1.5
+        ramp.color_ramp.elements[0].position, ramp.color_ramp.elements[1].position = 0.4, 0.6
+        ramp.color_ramp.elements[1].color = (4, 4, 4, 1)
+        links.new(place.outputs[coordinates], noise.inputs["Vector"])
+        links.new(noise.outputs["Fac"], ramp.inputs["Fac"])
+        links.new(ramp.outputs["Color"], medium.inputs["Density"])
+        if with_color:
+            links.new(noise.outputs["Color"], medium.inputs["Color"])
+        return material
+    return make
+
+
 def coat_of_fresnel():
     """The idiom of a diffuse shader under a glossy one."""
     material = mixed((DIFFUSE, {"Color": RED}), (GLOSSY, {"Roughness": 0.2}))()
@@ -108,6 +127,7 @@ MATERIALS = {
     "principled-glass": (shader(PRINCIPLED, **BASE, Roughness=0.0, Transmission=1.0, IOR=1.45), 0.05),
     "clearcoat": (shader(PRINCIPLED, **BASE, Roughness=0.5, Clearcoat=1.0, **{"Clearcoat Roughness": 0.1}), 0.05),
     "sheen": (shader(PRINCIPLED, **BASE, Roughness=0.6, Sheen=0.5, **{"Sheen Tint": 0.0}), 0.05),
+    "velvet": (shader("ShaderNodeBsdfVelvet", Color=RED, Sigma=0.8), TOLERANCE),
     "coat-of-fresnel": (coat_of_fresnel, 0.05),
     "absorption": (volume("ShaderNodeVolumeAbsorption", GLASS, Color=(0.2, 0.6, 0.9, 1), Density=1.0), TOLERANCE),
     "scatter": (volume("ShaderNodeVolumeScatter", Color=(0.9, 0.6, 0.3, 1), Density=1.5, Anisotropy=0.3), TOLERANCE),
@@ -115,6 +135,13 @@ MATERIALS = {
                      Absorption_Color=(0.2, 0.2, 0.2, 1)), TOLERANCE),
     "glow": (volume("ShaderNodeVolumePrincipled", Color=(0.5, 0.5, 0.5, 1), Density=0.5, Emission_Strength=0.4,
                     Emission_Color=(1, 0.5, 0.2, 1)), TOLERANCE),
+    "clouds": (clouds(), TOLERANCE),
+    "clouds-generated": (clouds("ShaderNodeVolumeScatter", "Generated", with_color=True), TOLERANCE),
+    "anisotropic": (shader("ShaderNodeBsdfAnisotropic", Color=RED, Roughness=0.4, Anisotropy=0.7), TOLERANCE),
+    "brushed": (shader(PRINCIPLED, **BASE, Roughness=0.4, Metallic=1.0, Anisotropic=0.9,
+                       **{"Anisotropic Rotation": 0.25}), TOLERANCE),
+    "under-surface": (shader(PRINCIPLED, **BASE, Roughness=0.4, Subsurface=0.5,
+                             **{"Subsurface Color": (0.1, 0.7, 0.3, 1), "Subsurface Radius": (0.02, 0.02, 0.02)}), 0.05),
     "texture": (textured(), TOLERANCE),
     "texture-linear": (textured(colorspace="Non-Color"), TOLERANCE),
 }

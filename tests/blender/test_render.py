@@ -107,6 +107,28 @@ class RenderTest(unittest.TestCase):
         bevel.count, bevel.relative_offset_displace = 2, (0, 1.1, 0.3)
         self.compare_blocks("instances")
 
+    def test_instances_of_several_meshes_of_one_object(self):
+        """As geometry nodes make them: cubes and balls in turn."""
+        self.blocks_in_the_sky()
+        stage.add_camera((0.5, -4, 2), (math.radians(65), 0, 0), lens=30)
+        tree = bpy.data.node_groups.new("row", "GeometryNodeTree")
+        tree.outputs.new("NodeSocketGeometry", "Geometry")
+        line, place, to_instance, cube, ball, end = (tree.nodes.new(kind) for kind in (
+            "GeometryNodeMeshLine", "GeometryNodeInstanceOnPoints", "GeometryNodeGeometryToInstance", "GeometryNodeMeshCube",
+            "GeometryNodeMeshUVSphere", "NodeGroupOutput"))
+        line.inputs["Count"].default_value = 5
+        line.inputs["Start Location"].default_value, line.inputs["Offset"].default_value = (-1.4, -0.8, 0.3), (0.7, 0, 0)
+        cube.inputs["Size"].default_value, ball.inputs["Radius"].default_value = (0.4, 0.4, 0.4), 0.3
+        for shape in (ball, cube):
+            tree.links.new(shape.outputs["Mesh"], to_instance.inputs[0])
+        tree.links.new(line.outputs["Mesh"], place.inputs["Points"])
+        tree.links.new(to_instance.outputs[0], place.inputs["Instance"])
+        place.inputs["Pick Instance"].default_value = True
+        tree.links.new(place.outputs[0], end.inputs[0])
+        row = stage.link("row", bpy.data.meshes.new("row"))
+        row.modifiers.new("nodes", "NODES").node_group = tree
+        self.compare_blocks("geometry-nodes")
+
     def hairy_ball(self, parametrization):
         stage.empty_scene(64, 64).world.color = (0.7, 0.7, 0.7)
         stage.add_camera((0, -4, 0.3), (math.radians(88), 0, 0), lens=50)
@@ -132,6 +154,30 @@ class RenderTest(unittest.TestCase):
             middle = [p[16:48, 16:48, :3].mean(axis=(0, 1)) for p in (cycles, ours)]
             print(f"hair {parametrization}: lanthorn / cycles {ratio:.4f}; of the middle {middle[1] / middle[0]}")
             self.assertAlmostEqual(ratio, 1, delta=tolerance)
+
+    def test_hair_has_the_colours_of_its_roots(self):
+        self.hairy_ball("COLOR")
+        mesh, image = bpy.data.objects["ball"].data, bpy.data.images.new("halves", 8, 8)
+        layer = mesh.uv_layers.new()
+        for loop, uv in zip(mesh.loops, layer.data):
+            uv.uv = (0.5 + 0.6 * mesh.vertices[loop.vertex_index].co.x, 0.5)
+        pixels = numpy.ones((8, 8, 4), dtype=numpy.float32)
+        pixels[:, :4, :3], pixels[:, 4:, :3] = (0.9, 0.2, 0.1), (0.1, 0.3, 0.9)
+        image.pixels.foreach_set(pixels.ravel())
+        for material in mesh.materials[0], mesh.materials[1]:
+            nodes, links = material.node_tree.nodes, material.node_tree.links
+            texture = nodes.new("ShaderNodeTexImage")
+            texture.image = image
+            shader = next(n for n in nodes if n.type in {"BSDF_DIFFUSE", "BSDF_HAIR_PRINCIPLED"})
+            links.new(texture.outputs["Color"], shader.inputs["Color"])
+        cycles = stage.render("CYCLES", samples=48)
+        ours = stage.render("LANTHORN", method="path", noise=0, seconds=0, passes=48)
+        if FOLDER:
+            stage.save_png(os.path.join(FOLDER, "hair-roots.png"), cycles, ours)
+        for name, columns in (("left", slice(12, 28)), ("right", slice(36, 52))):
+            means = [p[16:48, columns, :3].mean(axis=(0, 1)) for p in (cycles, ours)]
+            print(f"hair, {name}: lanthorn / cycles {means[1] / means[0]}", flush=True)
+            self.assertLess(abs(means[1] / means[0] - 1).max(), 0.1)
 
     def render_pass(self, engine, name):
         """Makes the compositor show a pass as the picture."""
@@ -191,6 +237,17 @@ class RenderTest(unittest.TestCase):
         scene.frame_set(2)
         scene.render.use_motion_blur, scene.render.motion_blur_shutter = True, 0.8
         self.compare_blocks("motion-blur")
+
+    def test_lamps_in_the_picture_are_named(self):
+        from lanthorn import lights
+        stage.empty_scene(16, 16)
+        camera = stage.add_camera((0, -4, 1.2), (math.radians(80), 0, 0), lens=50)
+        seen = [stage.add_light("POINT", 10, (0, 0, 1), shadow_soft_size=0.1),
+                stage.add_light("AREA", 10, (2.2, 2, 1), size=3)]  # an edge of it
+        stage.add_light("POINT", 10, (0, -8, 1), shadow_soft_size=0.1)  # behind the camera
+        stage.add_light("POINT", 10, (0, 0, 1), shadow_soft_size=0)
+        names = lights.seen_lamps(bpy.context.scene, camera, bpy.context.evaluated_depsgraph_get())
+        self.assertEqual(list(names), [light.name for light in seen])
 
     def test_errors_name_what_to_do(self):
         scene = self.blocks_in_the_sky()

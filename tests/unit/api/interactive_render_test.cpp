@@ -135,7 +135,8 @@ TEST(InteractiveRender, EachPartCanBeEdited) {
   EXPECT_EQ(end.picture->image.pixels, pixels_of(darker(0.5f), view_of_angle(30), other));
 }
 
-// Its pilot takes longer than a coarse pass. vcm has a parameter of this name, but rejects the file's value.
+// Its pilot, and that of the photons of vcm, take longer than a coarse pass. vcm has a parameter named as the file's,
+// but rejects its value.
 TEST(InteractiveRender, CoarsePicturesOfAutoHaveNoPilot) {
   const SharedScene scene = build_scene(read_pbrt_string(
       "Integrator \"sppm\" \"string volume\" \"short-photon-beam\"\n" + test::camera + test::box, ".", "test scene"));
@@ -149,6 +150,7 @@ TEST(InteractiveRender, CoarsePicturesOfAutoHaveNoPilot) {
   ASSERT_EQ(coarse.status.problem, "");
   EXPECT_TRUE(coarse.picture->is_coarse);
   EXPECT_NE(coarse.picture->state.settings.find("\"integrator\":\"vcm\""), std::string::npos);
+  EXPECT_NE(coarse.picture->state.settings.find("\"emission\":\"power\""), std::string::npos);
   EXPECT_EQ(coarse.picture->state.integrator, "auto");
   EXPECT_EQ(coarse.picture->remark, "");
   EXPECT_FALSE(coarse.picture->seconds_left);
