@@ -48,7 +48,8 @@ OptionTable render_command_options(RenderCommand& a) {
        .details =
            "The program estimates noise and bias while rendering. When it stops, the error is below the bound with a "
            "probability of 90 %. The error is the root mean square of the relative errors of all values; the "
-           "denominator is at least a tenth of the picture's mean. With --denoise, it is that of the denoised picture. -p "
+           "denominator is at least a tenth of the picture's mean. With --denoise, it is that of the denoised picture. "
+           "-p "
            "and -t remain limits."},
       {.names = "--pass-range",
        .value = into(a.options.pass_range, pass_range_type()),

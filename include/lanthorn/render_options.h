@@ -24,8 +24,8 @@ struct ViewOptions {
   std::optional<std::array<int, 2>> resolution{};  ///< width, height of the full film, pixels
   std::optional<std::array<int, 4>> crop{};        ///< x0, y0, x1, y1, pixels; end exclusive
   /// Pixels to render around the crop, where the film has them, so that it can be denoised as well at its border as
-  /// inside. They are kept in states, and are in no picture. The crop's pixels do not depend on it. Methods whose pixels
-  /// depend on the rendered part (`sppm`, `mlt` and so on) render no margin.
+  /// inside. They are kept in states, and are in no picture. The crop's pixels do not depend on it. Methods whose
+  /// pixels depend on the rendered part (`sppm`, `mlt` and so on) render no margin.
   int margin = 0;
   /// Clamps each path's contribution to a pixel, except for directly visible lights; biased. Default: no clamping.
   std::optional<float> clamp{};

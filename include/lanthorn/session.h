@@ -38,7 +38,8 @@ struct StopRule {
   /// Bound of the picture's error (`ErrorEstimate::is_below`). Checked only at predetermined numbers of passes, so that
   /// the picture does not depend on the machine's speed.
   std::optional<double> noise{};
-  /// The error that `noise` bounds; empty: that of the noisy picture. `denoised_error` makes it that of the denoised one.
+  /// The error that `noise` bounds; empty: that of the noisy picture. `denoised_error` makes it that of the denoised
+  /// one.
   std::function<ErrorEstimate(const RenderState&)> error_of{};
   /// Stops after the running passes; at least one pass is rendered.
   const std::atomic<bool>* interrupted = nullptr;

@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <functional>
 #include <optional>
 
@@ -35,8 +36,10 @@ class DenoisedLooks {
     MeasuredPicture measured = measured_picture_of(state);
     if (!measured.error.is_below(most_gain * limit_)) return std::move(measured.error);
     last_ = error_without_noise(state, measured);
-    constexpr double early = 0.8;  // predictions may be too high
-    next_ = last_->is_known() ? early * passes * growth_to_reach(*last_, limit_) : 0;
+    // Predictions from few passes are poor.
+    constexpr double early = 0.8, latest = 1.5;
+    const double growth = last_->is_known() ? growth_to_reach(*last_, limit_) : 1;
+    next_ = passes * std::clamp(early * growth, 1.0, latest);
     return *last_;
   }
 

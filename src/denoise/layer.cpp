@@ -140,8 +140,7 @@ DenoisedLayer choose(const Halves& light, const std::vector<Halves>& candidates,
           if (errors[k][h][i] < errors[best_of[h]][h][i]) best_of[h] = k;
       }
       parts[best][i] = 1;
-      result.optimism[i] =
-          shares[0] * errors[best_of[1]][0][i] + shares[1] * errors[best_of[0]][1][i] - all(best);
+      result.optimism[i] = shares[0] * errors[best_of[1]][0][i] + shares[1] * errors[best_of[0]][1][i] - all(best);
     }
   });
   for (Plane& part : parts) part = box_filtered(part, border_radius);

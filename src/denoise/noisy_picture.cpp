@@ -57,8 +57,9 @@ std::vector<Tile> tiles_of(const Part& part, int width, int height) {
   std::vector<Tile> tiles;
   for (int y = part.y; y < bottom; y += size)
     for (int x = part.x; x < right; x += size) {
-      Tile t{x, y, std::min(size, right - x), std::min(size, bottom - y), std::max(0, x - margin),
-             std::max(0, y - margin), 0, 0};
+      Tile t{
+          x, y, std::min(size, right - x), std::min(size, bottom - y), std::max(0, x - margin), std::max(0, y - margin),
+          0, 0};
       t.outer_width = std::min(width, x + size + margin) - t.outer_x;
       t.outer_height = std::min(height, y + size + margin) - t.outer_y;
       tiles.push_back(t);

@@ -157,8 +157,8 @@ class Weights {
         for (int i = 0; i < extent; ++i) sums[size(i)] += in[i];
       }
       const std::array<float, most_points> of_row = weights_of_row(sums.data());
-      float* const out = &weights[index_of(0, row) + size(dy + settings_.window) * size(span) +
-                                  size(dx + settings_.window)];
+      float* const out =
+          &weights[index_of(0, row) + size(dy + settings_.window) * size(span) + size(dx + settings_.window)];
       for (int column = 0; column < points_; ++column) {
         const int x = x0 + settings_.stride * column + dx;
         if (x >= 0 && x < width_) out[index_of(column, 0)] = of_row[size(column)];

@@ -50,7 +50,8 @@ Image shown(const ShownPart& part, Image image) {
   const std::size_t row = static_cast<std::size_t>(part.width) * out.channel_count();
   const std::size_t all = static_cast<std::size_t>(image.width) * out.channel_count();
   for (int y = 0; y < part.height; ++y) {
-    const std::size_t from = static_cast<std::size_t>(part.y + y) * all + static_cast<std::size_t>(part.x) * out.channel_count();
+    const std::size_t from =
+        static_cast<std::size_t>(part.y + y) * all + static_cast<std::size_t>(part.x) * out.channel_count();
     std::copy_n(image.pixels.begin() + static_cast<std::ptrdiff_t>(from), row,
                 out.pixels.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(y) * row));
   }

@@ -68,8 +68,7 @@ bool must_stop(const StopRule& stop, const RenderStatistics& statistics) {
 // Looks at the picture's error now and then.
 class ErrorLooks {
  public:
-  ErrorLooks(const StopRule& stop, const Film& film)
-      : stop_(stop), cost_(guessed_per_pixel * film.pixel_count()) {}
+  ErrorLooks(const StopRule& stop, const Film& film) : stop_(stop), cost_(guessed_per_pixel * film.pixel_count()) {}
 
   /// After a pass, `seconds` into the render.
   void look_if_due(const RenderState& state, RenderStatistics& statistics, double seconds) {

@@ -78,10 +78,7 @@ double spread_of(const View& view, const Vec2& raster) {
 class Pilot {
  public:
   Pilot(const RenderJob& job, const VcmSettings& settings)
-      : job_(job),
-        settings_(settings),
-        measured_(job.view.crop),
-        blocks_(places_of(job.view.crop, measured_.grid)) {
+      : job_(job), settings_(settings), measured_(job.view.crop), blocks_(places_of(job.view.crop, measured_.grid)) {
     measured_.scale = static_cast<float>(job.settings.photons) / static_cast<float>(pilot_light_paths(job));
     measured_.candidates =
         all_candidates(measured_.scale, draw_for_pass(job, 0).is_of_one_time(),

@@ -137,8 +137,7 @@ TEST(DenoisedRender, DenoisesTheBorderOfACropFromItsMargin) {
   const Image crop = with_noise(part.state(), part.picture());
   const DenoisedPicture with = denoise(crop, *with_margin(part.state()));
   EXPECT_EQ(with.picture.width, 32);
-  EXPECT_LT(difference_at_border(with.picture, of_whole),
-            0.2 * difference_at_border(denoise(crop).picture, of_whole));
+  EXPECT_LT(difference_at_border(with.picture, of_whole), 0.2 * difference_at_border(denoise(crop).picture, of_whole));
 }
 
 TEST(DenoisedRender, StopsWhenTheDenoisedPictureIsGood) {
