@@ -132,7 +132,7 @@ class Denoiser {
       optimism.fill([&](std::size_t i) { return optimism[i] + denoised.optimism[i]; });
     }
     write_sum(tile);
-    write_error(tile, light, result, optimism, levels[0].scale.light2);
+    write_error(tile, light, result, optimism, levels[0].scale);
   }
 
   // Sums up the layers as the film does.
@@ -148,24 +148,12 @@ class Denoiser {
         }
   }
 
-  Plane grey(const Halves& light) const {
-    Plane sum = mean_of(light, 0, noisy_.shares());
-    for (std::size_t c = 1; c < color_channels; ++c) {
-      const Plane channel = mean_of(light, c, noisy_.shares());
-      sum.fill([&](std::size_t i) { return sum[i] + channel[i]; });
-    }
-    sum.fill([&](std::size_t i) { return sum[i] / color_channels; });
-    return sum;
-  }
-
-  // `optimism`: relative to `light2`, the square of the light by which results were selected.
   void write_error(const Tile& tile, const Halves& light, const Halves& result, const Plane& optimism,
-                   const Plane& light2) {
+                   const ErrorScale& of_errors) {
     constexpr int radius = 4;
-    const ErrorScale of_errors = noisy_.scale_of(grey(result));
     const Plane& scale = of_errors.light2;
     Plane error = squared_error(light, result, noisy_.shares(), of_errors);
-    error.fill([&](std::size_t i) { return error[i] + optimism[i] * light2[i] / scale[i]; });
+    error.fill([&](std::size_t i) { return error[i] + optimism[i]; });
     Plane bias(scale.width(), scale.height());
     if (has_layer(noisy_.image(), "bias", components))
       for (const char* const c : components) {

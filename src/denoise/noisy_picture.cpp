@@ -142,19 +142,16 @@ Halves NoisyPicture::read_halves(const Tile& tile, const std::string& layer,
 
 ErrorScale NoisyPicture::scale_of(const Tile& tile) const {
   constexpr int radius = 2;
-  const float white = this->white();
+  constexpr float dark = 0.01f, tiny = 1e-30f, bright = 10;
+  const float white = bright * mean_;
   Plane light(tile.outer_width, tile.outer_height);
   for (const char* const c : components) {
     const Plane color = read(tile, c);
     light.fill([&](std::size_t i) { return light[i] + std::min(color[i], white) / 3; });
   }
-  return scale_of(box_filtered(light, radius));
-}
-
-ErrorScale NoisyPicture::scale_of(Plane light) const {
-  constexpr float dark = 0.01f, tiny = 1e-30f;
-  light.fill([&](std::size_t i) { return sqr(std::min(light[i], white())) + dark * sqr(mean_) + tiny; });
-  return {std::move(light), white()};
+  light = box_filtered(light, radius);
+  light.fill([&](std::size_t i) { return sqr(light[i]) + dark * sqr(mean_) + tiny; });
+  return {std::move(light), white};
 }
 
 ColorPlanes NoisyPicture::demodulation_of(const std::array<FeaturePlanes, 2>& features) const {

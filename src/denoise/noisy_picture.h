@@ -62,14 +62,11 @@ class NoisyPicture {
   Halves read_halves(const Tile& tile, const std::string& layer, const std::array<const char*, 3>& names) const;
   /// As in `ErrorEstimate`; values above ten times the picture's mean are clamped to it.
   ErrorScale scale_of(const Tile& tile) const;
-  /// The same by the mean of the colour channels of a better picture.
-  ErrorScale scale_of(Plane light) const;
   /// Factors that divide light by the albedo of these features.
   ColorPlanes demodulation_of(const std::array<FeaturePlanes, 2>& features) const;
 
  private:
   std::size_t channel_of(const std::string& name) const { return *picture_.find_channel(name); }
-  float white() const { return 10 * mean_; }
   // Checks that the layers add up, because other programs may have omitted some. `light`: sum of color over all pixels.
   void check_sum(double light) const;
 
