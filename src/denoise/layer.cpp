@@ -121,7 +121,9 @@ std::vector<std::array<Plane, 2>> errors_of(const Halves& light, const std::vect
   return errors;
 }
 
-// For each pixel, the candidate with the least error around it.
+// For each pixel, the candidate with the least error around it. The first candidate is the unfiltered light. It is left
+// out where the optimism of the selection is measured: where one half alone has a firefly, the other half would select
+// it, though both halves together do not.
 DenoisedLayer choose(const Halves& light, const std::vector<Halves>& candidates, const Shares& shares,
                      const ErrorScale& scale) {
   constexpr int border_radius = 2;  // pixels
@@ -133,14 +135,15 @@ DenoisedLayer choose(const Halves& light, const std::vector<Halves>& candidates,
     for (std::size_t i = static_cast<std::size_t>(y) * w, end = i + w; i < end; ++i) {
       const auto all = [&](std::size_t k) { return shares[0] * errors[k][0][i] + shares[1] * errors[k][1][i]; };
       std::size_t best = 0;
-      std::array<std::size_t, 2> best_of{};
+      std::array<std::size_t, 2> best_of{1, 1};
       for (std::size_t k = 1; k < candidates.size(); ++k) {
         if (all(k) < all(best)) best = k;
         for (std::size_t h = 0; h < 2; ++h)
           if (errors[k][h][i] < errors[best_of[h]][h][i]) best_of[h] = k;
       }
       parts[best][i] = 1;
-      result.optimism[i] = shares[0] * errors[best_of[1]][0][i] + shares[1] * errors[best_of[0]][1][i] - all(best);
+      if (best != 0)
+        result.optimism[i] = shares[0] * errors[best_of[1]][0][i] + shares[1] * errors[best_of[0]][1][i] - all(best);
     }
   });
   for (Plane& part : parts) part = box_filtered(part, border_radius);

@@ -75,7 +75,7 @@ TEST(Api, ALayerIsAPictureOfItsOwn) {
   image.pixels = {0, 0, 0, 1, 0.2f, 0, 0.5f, 0, 0, 0, 0, 0.2f, 1, 0.25f};
   const lanthorn::Image caustic = *lanthorn::select_layer(image, "caustic");
   EXPECT_EQ(lanthorn::displayed(caustic).pixels, lanthorn::displayed(lanthorn::as_color(caustic)).pixels);
-  EXPECT_EQ(lanthorn::displayed(caustic).pixels[0], 1);
+  EXPECT_FLOAT_EQ(lanthorn::displayed(caustic).pixels[0], 1);
   const std::vector<float> depth = lanthorn::displayed(*lanthorn::select_layer(image, "depth")).pixels;
   ASSERT_EQ(depth.size(), 6U);
   EXPECT_GT(depth[2], depth[5]);
