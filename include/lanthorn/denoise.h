@@ -40,9 +40,8 @@ DenoisedPicture denoise(const Image& picture, const Image& around);
 /// The margin (ViewOptions::margin) beyond which pixels around a crop hardly matter.
 inline constexpr int denoising_margin = 24;
 
-/// For StopRule::error_of: estimates the error of the denoised picture, at the cost of denoising. To spare time, it is
-/// the noisy picture's error while that is more than 8 times `limit`, which denoising cannot make up for, and it stays
-/// the same after an estimate until the passes have grown as far as that lets expect, but at most by a half.
+/// For StopRule::error_of: estimates the error of the denoised picture. While the noisy picture's error is more than 8
+/// times `limit`, which denoising cannot make up for, returns that instead.
 std::function<ErrorEstimate(const RenderState&)> denoised_error(double limit);
 
 /// Denoised R, G, B, for display while a render is in progress: ten times as fast as `denoise`, but leaves more noise.

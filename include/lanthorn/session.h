@@ -39,7 +39,7 @@ struct StopRule {
   /// the picture does not depend on the machine's speed.
   std::optional<double> noise{};
   /// The error that `noise` bounds; empty: that of the noisy picture. `denoised_error` makes it that of the denoised
-  /// one.
+  /// one. Called after every third of the predetermined numbers of passes.
   std::function<ErrorEstimate(const RenderState&)> error_of{};
   /// Stops after the running passes; at least one pass is rendered.
   const std::atomic<bool>* interrupted = nullptr;

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
 #include <functional>
 #include <optional>
+#include <utility>
 
 #include "lanthorn/denoise.h"
 #include "lanthorn/error.h"
@@ -24,33 +24,15 @@ ErrorEstimate error_without_noise(const RenderState& state, const MeasuredPictur
   }
 }
 
-// A look costs as much as denoising, so few are taken.
-class DenoisedLooks {
- public:
-  explicit DenoisedLooks(double limit) : limit_(limit) {}
-
-  ErrorEstimate operator()(const RenderState& state) {
-    constexpr double most_gain = 8;  // the error of `path` at few passes falls by a factor of 6
-    const auto passes = static_cast<double>(summarize(state).pass_count);
-    if (last_ && passes < next_) return *last_;
-    MeasuredPicture measured = measured_picture_of(state);
-    if (!measured.error.is_below(most_gain * limit_)) return std::move(measured.error);
-    last_ = error_without_noise(state, measured);
-    // Predictions from few passes are poor.
-    constexpr double early = 0.8, latest = 1.5;
-    const double growth = last_->is_known() ? growth_to_reach(*last_, limit_) : 1;
-    next_ = passes * std::clamp(early * growth, 1.0, latest);
-    return *last_;
-  }
-
- private:
-  double limit_;
-  std::optional<ErrorEstimate> last_;
-  double next_ = 0;  // passes
-};
-
 }  // namespace
 
-std::function<ErrorEstimate(const RenderState&)> denoised_error(double limit) { return DenoisedLooks(limit); }
+std::function<ErrorEstimate(const RenderState&)> denoised_error(double limit) {
+  return [limit](const RenderState& state) {
+    constexpr double most_gain = 8;  // the error of `path` at few passes falls by a factor of 6
+    MeasuredPicture measured = measured_picture_of(state);
+    return measured.error.is_below(most_gain * limit) ? error_without_noise(state, measured)
+                                                      : std::move(measured.error);
+  };
+}
 
 }  // namespace lanthorn

@@ -72,10 +72,11 @@ class ErrorLooks {
 
   /// After a pass, `seconds` into the render.
   void look_if_due(const RenderState& state, RenderStatistics& statistics, double seconds) {
-    if (!is_look(state.pass_count())) return;
+    const bool is_own = stop_.noise && stop_.error_of;
+    if (!is_look(state.pass_count(), is_own)) return;
     if (!stop_.noise && seconds - last_ < cost_ / most_of_time) return;
     const Clock::time_point start = Clock::now();
-    statistics.error = stop_.noise && stop_.error_of ? stop_.error_of(state) : estimate_error(state);
+    statistics.error = is_own ? stop_.error_of(state) : estimate_error(state);
     statistics.error_passes = state.pass_count();
     cost_ = seconds_between(start, Clock::now());
     last_ = seconds + cost_;
@@ -243,7 +244,7 @@ PassLoop::Batch PassLoop::next_of_own() {
   if (is_over_ || must_stop(stop_, statistics_)) return {};
   // The error must be looked at after exactly the number of passes that is fixed for the look.
   const std::uint64_t done = plan_.state.pass_count(),
-                      most = stop_.noise ? next_look(done) - done : std::numeric_limits<std::uint64_t>::max();
+                      most = stop_.noise ? next_look(done).passes - done : std::numeric_limits<std::uint64_t>::max();
   std::optional<double> left;
   if (stop_.seconds) left = *stop_.seconds - statistics_.seconds;
   return next_passes(plan_.state, stop_.passes, batch_size_.next(most, left));

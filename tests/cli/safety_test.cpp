@@ -203,7 +203,8 @@ TEST_F(Safety, MessagesToAClosedPipeSaveTheRender) {
 }
 
 TEST_F(Safety, ConvergeShowsProgressAndKeepsWhatItHas) {
-  const Words converge{"converge", "tiny.pbrt", "-i", "path", "-r", "32x32", "-p", "16", "--runs", "200"};
+  const Words converge{"converge", "tiny.pbrt", "-i",         "path", "-r",     "32x32",
+                       "-p",       "16",        "--fit-from", "1",    "--runs", "200"};
   ChildProcess child = start(converge + Words{"--json", "c.json", "--plot", "c.svg"});
   await(child, "render 1/200  pass 1/16");
   // Two more progress lines: a fifth of the renders, or twenty seconds.
@@ -222,8 +223,8 @@ TEST_F(Safety, ConvergeShowsProgressAndKeepsWhatItHas) {
   EXPECT_LT(runs, 200u);
   EXPECT_TRUE(fs::exists(path("c.svg")));
   // The results equal those of the same number of complete renders.
-  succeed({"converge", "tiny.pbrt", "-i", "path", "-r", "32x32", "-p", "16", "--runs", std::to_string(runs), "--json",
-           "d.json", "-q"});
+  succeed({"converge", "tiny.pbrt", "-i", "path", "-r", "32x32", "-p", "16", "--fit-from", "1", "--runs",
+           std::to_string(runs), "--json", "d.json", "-q"});
   expect_equal_files("c.json", "d.json");
 
   ChildProcess early = start({"converge", "tiny.pbrt", "-i", "path", "-p", "4000000000"});

@@ -372,7 +372,7 @@ const std::string film =
 RenderOptions options(const std::string& integrator, std::uint64_t passes, std::uint64_t photons) {
   RenderOptions o = test::options_for(integrator, passes);
   o.color = ColorMode::rgb;
-  o.photons = photons;
+  if (photons > 0) o.photons = photons;
   for (const char* radius : {"radius", "volume-radius"})
     if (test::has_parameter(integrator, radius)) o.set[radius] = "0.05";
   if (test::has_parameter(integrator, "emission")) o.set["emission"] = "power";

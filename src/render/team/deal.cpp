@@ -29,7 +29,7 @@ Deal::Deal(const StopRule& stop, const Team& team, std::vector<PassRange> done)
       round_(team.rounds),
       settled_(team.rounds),
       preview_due_(preview_seconds_.value_or(0)) {
-  if (stop.noise) look_ = next_look(count_);
+  if (stop.noise) look_ = next_look(count_).passes;
 }
 
 bool Deal::is_done(std::uint64_t pass) const {
@@ -51,7 +51,7 @@ bool Deal::is_gathering_due(double seconds) const {
 void Deal::end_round(double seconds) {
   ++round_;
   dealt_in_round_ = 0;
-  if (look_ == count_) look_ = next_look(count_);
+  if (look_ == count_) look_ = next_look(count_).passes;
   gathered_ = seconds;
   if (preview_seconds_ && seconds >= preview_due_) preview_due_ = 2 * seconds;
 }

@@ -147,12 +147,17 @@ TEST(DenoisedRender, StopsWhenTheDenoisedPictureIsGood) {
   noisy.render({.passes = {0, 256}, .noise = limit});
   const RenderStatistics statistics =
       denoised.render({.passes = {0, 256}, .noise = limit, .error_of = denoised_error(limit)});
-  EXPECT_LT(denoised.pass_count(), noisy.pass_count() / 2);
+  EXPECT_LT(denoised.pass_count(), 2 * noisy.pass_count() / 3);
   const DenoisedPicture picture = denoise(with_noise(denoised.state(), picture_of(denoised.state())));
   EXPECT_LE(picture.error.bound, limit);
   ASSERT_TRUE(statistics.error);
   EXPECT_EQ(statistics.error->bound, picture.error.bound);
   EXPECT_FALSE(estimate_error(denoised.state()).is_below(limit));
+
+  Session resumed(scene, options("path", 32));
+  resumed.render({.passes = {0, denoised.pass_count() / 2 + 1}});
+  resumed.render({.passes = {0, 256}, .noise = limit, .error_of = denoised_error(limit)});
+  EXPECT_EQ(resumed.pass_count(), denoised.pass_count());
 }
 
 TEST(DenoisedRender, HasLessErrorByAnyMethod) {

@@ -333,12 +333,19 @@ TEST(Deal, GathersAtItsInterval) {
 }
 
 TEST(Looks, ComeAfterAnEighthMore) {
-  EXPECT_EQ(next_look(0), 4u);
-  EXPECT_EQ(next_look(4), 5u);
-  EXPECT_EQ(next_look(16), 18u);
-  EXPECT_TRUE(is_look(4));
-  EXPECT_FALSE(is_look(0));
-  EXPECT_FALSE(is_look(17));
+  EXPECT_EQ(next_look(0).passes, 4u);
+  EXPECT_EQ(next_look(4).passes, 5u);
+  EXPECT_EQ(next_look(16).passes, 18u);
+  EXPECT_TRUE(is_look(4, false));
+  EXPECT_FALSE(is_look(0, false));
+  EXPECT_FALSE(is_look(17, false));
+}
+
+TEST(Looks, AreTakenOneInThreeIfTheyAreCostly) {
+  std::vector<std::uint64_t> taken;
+  for (std::uint64_t passes = 0; passes <= 60; ++passes)
+    if (is_look(passes, true)) taken.push_back(passes);
+  EXPECT_EQ(taken, (std::vector<std::uint64_t>{4, 7, 10, 13, 16, 22, 30, 41, 57}));
 }
 
 TEST(Gathering, TreeReachesEveryProcessOnce) {
