@@ -121,30 +121,38 @@ std::vector<std::array<Plane, 2>> errors_of(const Halves& light, const std::vect
   return errors;
 }
 
-// For each pixel, the candidate with the least error around it. The first candidate is the unfiltered light. It is left
-// out where the optimism of the selection is measured: where one half alone has a firefly, the other half would select
-// it, though both halves together do not.
+struct Selection {
+  std::size_t best = 0;  ///< the candidate with the least error around a pixel
+  float optimism = 0;    ///< see DenoisedLayer
+};
+
+// The first candidate is the unfiltered light. It is left out where optimism is measured: where one half alone has a
+// firefly, the other half alone would select it, though both halves together do not.
+Selection select(const std::vector<std::array<Plane, 2>>& errors, const Shares& shares, std::size_t pixel) {
+  const auto all = [&](std::size_t k) { return shares[0] * errors[k][0][pixel] + shares[1] * errors[k][1][pixel]; };
+  Selection selected;
+  std::array<std::size_t, 2> best_of{1, 1};  // by each half alone
+  for (std::size_t k = 1; k < errors.size(); ++k) {
+    if (all(k) < all(selected.best)) selected.best = k;
+    for (std::size_t h = 0; h < 2; ++h)
+      if (errors[k][h][pixel] < errors[best_of[h]][h][pixel]) best_of[h] = k;
+  }
+  if (selected.best != 0)
+    selected.optimism =
+        shares[0] * errors[best_of[1]][0][pixel] + shares[1] * errors[best_of[0]][1][pixel] - all(selected.best);
+  return selected;
+}
+
 DenoisedLayer choose(const Halves& light, const std::vector<Halves>& candidates, const Shares& shares,
                      const ErrorScale& scale) {
   constexpr int border_radius = 2;  // pixels
   const std::vector<std::array<Plane, 2>> errors = errors_of(light, candidates, shares, scale);
   std::vector<Plane> parts(candidates.size(), Plane(scale.light2.width(), scale.light2.height()));
   DenoisedLayer result{light, parts[0]};
-  result.optimism.for_each_row([&](int y) {
-    const auto w = static_cast<std::size_t>(scale.light2.width());
-    for (std::size_t i = static_cast<std::size_t>(y) * w, end = i + w; i < end; ++i) {
-      const auto all = [&](std::size_t k) { return shares[0] * errors[k][0][i] + shares[1] * errors[k][1][i]; };
-      std::size_t best = 0;
-      std::array<std::size_t, 2> best_of{1, 1};
-      for (std::size_t k = 1; k < candidates.size(); ++k) {
-        if (all(k) < all(best)) best = k;
-        for (std::size_t h = 0; h < 2; ++h)
-          if (errors[k][h][i] < errors[best_of[h]][h][i]) best_of[h] = k;
-      }
-      parts[best][i] = 1;
-      if (best != 0)
-        result.optimism[i] = shares[0] * errors[best_of[1]][0][i] + shares[1] * errors[best_of[0]][1][i] - all(best);
-    }
+  result.optimism.fill([&](std::size_t i) {
+    const Selection selected = select(errors, shares, i);
+    parts[selected.best][i] = 1;
+    return selected.optimism;
   });
   for (Plane& part : parts) part = box_filtered(part, border_radius);
   for (std::size_t h = 0; h < 2; ++h)
