@@ -114,11 +114,11 @@ class FinalRender:
         return camera.axial_depth(depth[:, :, 0], window)[:, :, None].clip(max=passes.FAR)
 
     def _tell_metadata(self, result, answer):
-        result.stamp_data_add_field("Lanthorn", f"{answer['integrator']}, {answer['passes']} passes")
+        result.stamp_data_add_field("Lanthorn", f"{answer['integrator']}, {passes.count_text(answer['passes'])}")
 
     def _tell_progress(self, answer):
         seconds, left = answer["seconds"], answer.get("seconds_left")
-        text = "1 pass" if answer["passes"] == 1 else f"{answer['passes']} passes"
+        text = passes.count_text(answer["passes"])
         error = answer.get("error")
         if error and not error.get("doubt"):
             text += f", error below {100 * error['bound']:.1f} %"

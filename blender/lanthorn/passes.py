@@ -17,6 +17,10 @@ class Pass:
     first: str     # channel of the layer
 
 
+def count_text(count):
+    return "1 pass" if count == 1 else f"{count} passes"
+
+
 def color_pass(name, layer):
     return Pass(name, "RGB", "COLOR", layer, f"{layer}.R")
 

@@ -150,7 +150,7 @@ class Viewport:
 def describe(answer):
     if answer["phase"] == "failed":
         return answer["problem"]
-    return f"{answer['passes']} passes" if "passes" in answer else answer["phase"].capitalize()
+    return passes.count_text(answer["passes"]) if "passes" in answer else answer["phase"].capitalize()
 
 
 def texture_of(answer):
