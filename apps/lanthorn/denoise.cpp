@@ -55,7 +55,7 @@ Input read_input(const DenoiseCommand& a) {
 
 DenoisedPicture denoise_file(const std::string& name, const Input& input) {
   try {
-    return input.around ? denoise(input.picture, *input.around) : denoise(input.picture);
+    return denoise(input.picture, input.around);
   } catch (const Error& e) {
     throw Error({name}, e.message);
   }

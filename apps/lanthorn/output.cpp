@@ -218,8 +218,7 @@ const Image& StatePicture::with_all_layers() {
   error_ = std::move(measured.error);
   all_layers_ = with_noise(state_, measured.picture);
   if (!is_denoised_) return *all_layers_;
-  const std::optional<Image> around = with_margin(state_);
-  DenoisedPicture denoised = around ? denoise(*all_layers_, *around) : denoise(*all_layers_);
+  DenoisedPicture denoised = denoise(*all_layers_, with_margin(state_));
   denoised_error_ = std::move(denoised.error);
   return all_layers_.emplace(std::move(denoised.picture));
 }

@@ -207,7 +207,7 @@ void save_view(const RenderCommand& a, const std::vector<fs::path>& outputs, con
                     session.pass_count()));
 }
 
-// A state that is resumed has a margin or not, whatever is asked for now.
+// A resumed render keeps the margin of its state, because passes with different margins cannot be added.
 RenderOptions with_margin_for_denoising(const RenderCommand& a, const RenderState* resumed) {
   RenderOptions options = a.options;
   options.margin = resumed ? summarize(*resumed).margin : a.output.denoise ? denoising_margin : 0;

@@ -153,8 +153,8 @@ OptionTable render_options(RenderArguments& a) {
        .brief = "Render only these pixels (x1, y1 excluded)",
        .details =
            "With the same --photons they equal those of the whole picture, exactly or up to rounding "
-           "(docs/using.md); not with auto and mlt. --denoise renders 24 pixels more on each side, which only states "
-           "keep."},
+           "(docs/using.md); not with auto and mlt. --denoise also renders 24 pixels around them, which are kept "
+           "in states only."},
       {.names = "-n,--photons",
        .value = into(o.photons, count_type({.low = 1})),
        .brief = "Light paths per pass, such as 500000, 200k or 1M",

@@ -42,7 +42,7 @@ class FinalRender:
         self.camera = camera.camera_part(object.evaluated_get(self.depsgraph), self.depsgraph, self.size,
                                          (render.pixel_aspect_x, render.pixel_aspect_y), report)
         for name in lights.seen_lamps(self.scene, object, self.depsgraph):
-            report.note(name, "the camera sees the lamp's surface, if nothing is before it; Cycles hides it")
+            report.note(name, "the camera sees the lamp's surface unless something hides it; in Cycles it does not")
         return {"camera": self.camera, "film": camera.film_part(self.size),
                 "filter": camera.filter_part(render.filter_size)}
 
@@ -129,7 +129,7 @@ class FinalRender:
 
 
 def redraw_of(engine):
-    """A function that redraws the engine's viewport as long as it is there, and does not keep it alive."""
+    """A function that redraws the engine's viewport. It holds only a weak reference to the engine."""
     reference = weakref.ref(engine)
 
     def redraw():
@@ -171,7 +171,7 @@ class LanthornEngine(bpy.types.RenderEngine):
             if self._viewport is None:
                 self._viewport = viewport.Viewport(start_program(), redraw_of(self), settings_of_scene.viewport_options(),
                                                    settings_of_scene.denoise)
-                # Not __del__: a freed engine has no members any more.
+                # Not in __del__: by then Blender has freed the engine's members.
                 weakref.finalize(self, self._viewport.close)
             self._viewport.update_scene(context, depsgraph)
         except LinkError as error:

@@ -74,7 +74,7 @@ def _spot(light, matrix, report):
 
 
 def _sun(light, matrix, report):
-    # Cycles: a disk at the distance 1, of even strength over its area, which subtends cos^3 as much off its middle.
+    # Cycles samples a disk at distance 1 uniformly by area; away from its centre, the solid angle falls by cos^3.
     axes, irradiance = matrix.to_3x3().normalized(), _strength(light, light.energy, report)
     directions = [(0, 0)] if light.angle < SMALLEST_SUN else _disk(SUNS if light.angle < WIDE_SUN else WIDE_SUNS)
     radius, made = math.tan(min(light.angle, math.radians(179)) / 2), []
@@ -128,7 +128,7 @@ def add_light(parts, name, light, matrix, report):
 
 
 def seen_lamps(scene, camera, depsgraph):
-    """Names of lamps whose surfaces are in the picture, about: their middle, or an end of their extent."""
+    """Names of lamps that the camera probably sees: those whose centre or an extreme point is in the picture."""
     for instance in depsgraph.object_instances:
         object, light = instance.object, instance.object.data
         if object.type != "LIGHT" or not instance.show_self or light.type not in {"POINT", "AREA"}:

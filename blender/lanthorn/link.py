@@ -61,7 +61,7 @@ class _Packer:
 
 
 def _bytes_of(values):
-    """The numbers of an array, row by row; without a copy where they lie so."""
+    """The array's values in C order; copied only if they are stored in another order."""
     return memoryview(values).cast("B") if values.flags.c_contiguous and values.size else values.tobytes()
 
 
@@ -79,7 +79,7 @@ def _unpack(value, data):
 
 
 def _widen(pipe):
-    """Lets the pipe hold as much as an ordinary user may ask for, where the system can (Linux)."""
+    """Enlarges the pipe's buffer to the limit for ordinary users (Linux only)."""
     try:
         fcntl.fcntl(pipe, fcntl.F_SETPIPE_SZ, SIZE_OF_PIPES)
     except (AttributeError, OSError):

@@ -16,13 +16,13 @@ HALFWAY = 0.5
 OLD_CLEARCOAT = 0.25  # Blender 3's factor
 # Blender 3's sheen has the albedo of fibres of this roughness, times this factor, within 10 % of it over all angles.
 OLD_SHEEN, OLD_SHEEN_ROUGHNESS = 0.089, 0.4
-# Velvet of each sigma as fibres of a roughness, a factor of their colour, and a factor of the colour of the surface under
-# them: the mean albedo of Ashikhmin's velvet as Cycles has it, and 25 % of it at angles where there is much.
+# For each sigma of Velvet: the fibres' roughness, and factors for their colour and for that of the surface under them.
+# They have the mean albedo of Cycles' velvet (Ashikhmin), and its albedo within 25 % at angles where it is large.
 VELVET_SIGMA = [0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0]
 VELVET_ROUGHNESS = [0.15, 0.15, 0.16, 0.25, 0.35, 0.38, 0.41, 0.42, 0.44, 0.44, 0.44]
 VELVET_FIBRES = [0.0, 0.16, 0.70, 0.86, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0]
 VELVET_BASE = [0.0, 0.0, 0.0, 0.0, 0.004, 0.061, 0.124, 0.19, 0.254, 0.316, 0.37]
-SUBSURFACE = "light under the surface is scattered where it enters: a diffuse surface stands in"
+SUBSURFACE = "subsurface scattering is replaced by diffuse reflection"
 NO_SUBDIVISION = 1e9  # metres: no edge is as long
 
 
@@ -116,19 +116,19 @@ class Materials:
         images = [node.image for node, outputs in self.textures.nodes_behind([output.inputs["Surface"]])
                   if node.type == "TEX_IMAGE" and "Color" in outputs and node.image is not None and node.image.size[0]]
         if len(set(images)) > 1:
-            self.report.note(material.name, "of several images of hair, the first one counts")
+            self.report.note(material.name, "hair takes its colour from its first image; the others are ignored")
         return images[0] if images else None
 
     def _put_out(self, members, material):
         """Fibres that emit would be lamps of many triangles each: they reflect the colour instead."""
         if "area_light" in members:
-            self.report.note(material.name, "hair does not emit: it reflects the colour that it would emit")
+            self.report.note(material.name, "hair cannot emit: it reflects the colour instead")
             lamp = members["area_light"]
             self.put_out(members)
             del self.parts["area_lights"][lamp]
 
     def put_out(self, members):
-        """Takes the lamp from a shape: a black surface reflects the colour that it would emit."""
+        """Removes a shape's emission. If its surface is black, it reflects the emitted colour instead."""
         lamp, materials = members.pop("area_light"), self.parts["materials"]
         if materials[members["material"]] == {"type": "diffuse", "reflectance": BLACK}:
             unlit = f"{members['material']} that reflects"
@@ -146,7 +146,7 @@ class Materials:
         return material.node_tree.get_output_node("CYCLES") or material.node_tree.get_output_node("ALL")
 
     def _kind(self, material, surface):
-        """Whether a material needs images of its own, whether triangle by triangle, and whether its volume varies."""
+        """Three flags: the material needs baked images of its own; they need a place for each triangle; its volume varies."""
         output = self._output(material)
         if output is None:
             return False, False, False
@@ -242,7 +242,7 @@ class Materials:
             self._bend(look.material, moved)
             return {}
         if self.textures.is_atlas:
-            self.report.note(material.name, "a displacement by other coordinates than UV's bends normals and moves nothing")
+            self.report.note(material.name, "displacement by other coordinates than UV changes normals and moves no vertices")
             self._bend(look.material, self._scaled(height, scale, 0))
             return {}
         # Vertices move, as in Cycles without adaptive subdivision.
@@ -362,7 +362,7 @@ class Materials:
         return Look(made)
 
     def _brush(self, made, node, owner, factors, rotation):
-        """Gives a metal other roughness along the tangent than across it."""
+        """Sets the roughness of an anisotropic metal along its tangent and across it."""
         if factors == (1, 1):
             return
         alpha = made["roughness"]["u"]
@@ -370,7 +370,7 @@ class Materials:
         turn = self._constant(node, owner, rotation, "the rotation of anisotropy")
         tangent = (*self._direction_of_tangent(node.inputs.get("Tangent"), owner), turn)
         if self._tangent not in (None, tangent):
-            self.report.note(owner, "of several tangents in one material, the last one is used")
+            self.report.note(owner, "one material can have one tangent: the last one is used")
         self._tangent = tangent
 
     def _direction_of_tangent(self, socket, owner):
@@ -381,7 +381,7 @@ class Materials:
         if source.node.type == "TANGENT":
             node = source.node
             return ("RADIAL", node.axis) if node.direction_type == "RADIAL" else ("UV", node.uv_map)
-        self.report.note(owner, f"the node {source.node.bl_label} at a tangent has no counterpart")
+        self.report.note(owner, f"the node {source.node.bl_label} cannot set a tangent: it is ignored")
         return "RADIAL", "Z"
 
     def _dielectric(self, node, owner, color):
@@ -482,7 +482,7 @@ class Materials:
         return self._coated(base, node, owner)
 
     def _diffuse_color(self, node, owner):
-        """The base colour; Blender 3 mixes in that of what is under the surface."""
+        """The base colour, which Blender 3 mixes with the subsurface colour."""
         base, under = self._albedo(node, owner, "Base Color"), node.inputs.get("Subsurface Color")
         amount = 0 if under is None else self.textures.number(node.inputs["Subsurface"], owner)
         if amount == 0:
@@ -502,7 +502,7 @@ class Materials:
         rough = node.inputs.get("Sheen Roughness")
         if rough is None:
             return {"sheen_color": [min(1.0, OLD_SHEEN * amount)] * 3, "sheen_roughness": OLD_SHEEN_ROUGHNESS}
-        self.report.note(owner, "sheen is that of fibres, whose edge is softer")
+        self.report.note(owner, "sheen becomes a layer of fibres, whose edge is softer")
         return {"sheen_color": [min(1.0, amount)] * 3, "sheen_roughness": rough.default_value}
 
     def _coated(self, base, node, owner):
@@ -531,7 +531,7 @@ class Materials:
     def _note_principled(self, node, owner):
         metallic = self.textures.number(node.inputs["Metallic"], owner)
         for name, text in (("Subsurface", SUBSURFACE), ("Subsurface Weight", SUBSURFACE),
-                           ("Anisotropic", "anisotropy of a Principled BSDF that is no metal is left out")):
+                           ("Anisotropic", "anisotropy is left out: only metals can have it")):
             socket = node.inputs.get(name)
             is_used = socket is not None and (socket.is_linked or socket.default_value > 0)
             if is_used and not (name == "Anisotropic" and metallic == 1):
@@ -617,7 +617,7 @@ class Materials:
 
     def _add_hole(self, look, owner):
         if look.material is not None:
-            self.report.note(owner, "what a Transparent shader adds to a surface is left out")
+            self.report.note(owner, "a Transparent shader that is added to a surface is left out")
         elif not is_black(look.emission):  # half of it, twice as bright
             self.report.note(owner, "an emission with Transparent added lets half of the light pass")
             look.alpha, look.strength = HALFWAY, 2 * look.strength

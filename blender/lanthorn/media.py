@@ -29,14 +29,14 @@ def _sum(first, second, shares=(1.0, 1.0)):
 
 
 class Volume:
-    """A volume shader. Numbers are those of the sockets, or columns with a value for each cell; colours likewise."""
+    """A volume shader. Numbers and colours are constants, or arrays with one row per cell."""
 
     def __init__(self, owner, textures, report):
         self.owner, self.textures, self.report = owner, textures, report
         self.grid, self.is_missing = None, False  # the cells, if something varies; whether a bake has still to come
 
     def _field(self, output):
-        """What a socket has in each cell (n, 3); None if it is the same everywhere, or cannot be had."""
+        """The socket's values, one per cell, of shape (n, 3); None if it is constant or cannot be evaluated."""
         surface = self.textures.surface
         if output is None or surface is None:
             return None
@@ -50,7 +50,7 @@ class Volume:
         return values
 
     def _of_own_grids(self, output):
-        """What Attribute and Volume Info nodes, and Math and Color Ramp behind them, make of the object's grids."""
+        """Evaluates Attribute, Volume Info, Math and Color Ramp nodes on the object's grids."""
         node = output.node
         if node.type in {"ATTRIBUTE", "VOLUME_INFO"}:
             name = node.attribute_name if node.type == "ATTRIBUTE" else output.name.lower()
@@ -82,7 +82,7 @@ class Volume:
     def _computed(self, node, inputs):
         operation = OPERATIONS.get(node.operation)
         if operation is None:
-            self.report.note(self.owner, f"Math by {node.operation} of a volume's grid has no counterpart: it is left out")
+            self.report.note(self.owner, f"Math {node.operation} cannot be applied to a volume's grid: it is left out")
             return numpy.repeat(inputs[0] if numpy.size(inputs[0]) > 1 else inputs[1], 3, axis=1)
         made = operation(*inputs[:2])
         return numpy.repeat(numpy.clip(made, 0, 1) if node.use_clamp else made, 3, axis=1)
@@ -102,7 +102,7 @@ class Volume:
         if output is not None and output.node.type == "RGB":
             return numpy.array(output.default_value[:3])
         if output is not None:
-            self.report.note(self.owner, f"{name} of a volume cannot vary so: the socket's own value is used")
+            self.report.note(self.owner, f"the nodes at {name} of a volume cannot be evaluated: the socket's own value is used")
         return numpy.array(node.inputs[name].default_value[:3])
 
     def _of_socket(self, socket):
@@ -128,7 +128,7 @@ class Volume:
         return {**_zero(), "sigma_s": density * color, "g": self._even(self.number(node, "Anisotropy"))}
 
     def _even(self, value):
-        """The mean of a number that cannot vary."""
+        """The mean of a number that Lanthorn takes as a constant."""
         if numpy.size(value) > 1:
             self.report.note(self.owner, "the anisotropy of a volume cannot vary: its mean is used")
         return float(numpy.mean(value))
@@ -150,7 +150,7 @@ class Volume:
 
 
 def _with_emission(made):
-    """Cycles has what a metre emits, Lanthorn the radiance of an infinitely deep medium: sigma_a times as much a metre."""
+    """Converts Cycles' emission per metre to Lanthorn's radiance of an infinitely deep medium: divides it by sigma_a."""
     emission = made["emission"]
     if numpy.max(emission) <= 0:
         made.pop("emission")
@@ -163,7 +163,7 @@ def _with_emission(made):
 
 
 def medium(volume, node):
-    """The medium of a Volume that begins at a node; None if it is none."""
+    """The medium of the volume shader at a node; None if the node is no volume shader."""
     made = volume.of(node)
     if numpy.max(made["emission"]) <= 0 and max(numpy.max(made["sigma_a"]), numpy.max(made["sigma_s"])) <= 0:
         return None

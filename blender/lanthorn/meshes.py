@@ -13,7 +13,7 @@ def _get(collection, name, count, dtype):
 
 
 def _has_normals_of_vertices(mesh, smooth):
-    """Whether all corners at a vertex have its normal. `smooth`: of each polygon."""
+    """Whether all corners at a vertex share its normal. `smooth`: a flag for each polygon."""
     if hasattr(mesh, "normals_domain"):  # from Blender 4.1 on
         return mesh.normals_domain == "POINT"
     return bool(smooth.all()) and not mesh.use_auto_smooth
@@ -53,7 +53,7 @@ VALUES_OF = {"FLOAT": ("value", 1), "FLOAT_VECTOR": ("vector", 3)}
 
 
 def _corner_values(mesh, attribute, vertices):
-    """The numbers or vectors of an attribute at the corners, as colours; None for other attributes."""
+    """A numeric or vector attribute at the corners, as colours; None for other types."""
     if attribute.data_type not in VALUES_OF or attribute.name.startswith(".") or attribute.name == "position":
         return None
     member, count = VALUES_OF[attribute.data_type]
@@ -196,14 +196,14 @@ class Surface:
         return self._of_corners(numpy.cross(points[:, 1] - points[:, 0], points[:, 2] - points[:, 0]))
 
     def _of_corners(self, vectors):
-        """Vectors of triangles, as units, for their corners."""
+        """Normalizes a vector for each triangle and repeats it at the triangle's corners."""
         vectors = vectors / numpy.maximum(numpy.linalg.norm(vectors, axis=1, keepdims=True), 1e-20)
         of_corners = numpy.zeros((len(self.vertices), 3), dtype=numpy.float32)
         of_corners[self.triangles] = vectors[:, None, :]
         return of_corners
 
     def texture_space(self):
-        """Middle and half the extent of the box that Generated coordinates fill."""
+        """Centre and half extent of the box of Generated coordinates."""
         if self.texspace is not None:
             return numpy.array(self.texspace)
         low, high = self.positions.min(axis=0), self.positions.max(axis=0)

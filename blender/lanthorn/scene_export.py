@@ -61,7 +61,7 @@ class SceneExport:
         return parts
 
     def _put_out_crowds(self, parts, materials):
-        """Each triangle that emits is a lamp, at each place: meadows of them neither fit nor are worth it."""
+        """Limits the number of lights. Every instance of an emitting triangle is one, which crowds of instances make too many."""
         places = collections.Counter(instance["object"] for instance in parts["instances"].values())
         crowds = [(places[key] * len(shape["triangles"]), key, shape) for key, made in parts["objects"].items()
                   for shape in made["shapes"] if "area_light" in shape]
@@ -70,7 +70,7 @@ class SceneExport:
             if total <= MOST_LAMPS:
                 break
             total -= count
-            self.report.note(key.split("|")[0], f"more than {MOST_LAMPS} triangles would emit: they reflect that colour instead")
+            self.report.note(key.split("|")[0], f"more than {MOST_LAMPS} triangles would emit: this mesh reflects the colour instead")
             materials.put_out(shape)
 
     def bake(self, parts, is_cancelled):
@@ -78,7 +78,7 @@ class SceneExport:
         if self.bakes.are_missing:
             self.bakes.run(is_cancelled)
         if self.bakes.problem:
-            self.report.note("bake", f"{self.bakes.problem}: grey stands in")
+            self.report.note("bake", f"{self.bakes.problem}: grey is used instead")
         self.settle(parts)
 
     def settle(self, parts):
@@ -168,7 +168,7 @@ class SceneExport:
         slots = ",".join(slot.material.name_full if slot.material else "" for slot in object.material_slots)
         if object.type != "MESH":
             return f"{object.name_full}|{object.type}|{slots}"
-        # Geometry nodes make instances of several meshes of one object, which may even have one name.
+        # Geometry nodes may instance several meshes of one object, even meshes with the same name.
         data = object.data
         owner = f"{object.name_full}/{len(data.vertices)}/{len(data.polygons)}/" if object.modifiers else ""
         return f"{owner}{data.name_full}|{object.type}|{slots}"

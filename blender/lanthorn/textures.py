@@ -113,7 +113,7 @@ def mean_fresnel(eta):
 
 
 def _magenta(is_color, channel):
-    """What Cycles has in the place of an image that is not there."""
+    """The colour that Cycles shows for a missing image."""
     if is_color:
         return [1, 0, 1]
     return {"Alpha": 1.0, "Red": 1.0, "R": 1.0, "Green": 0.0, "G": 0.0, "Blue": 1.0, "B": 1.0}.get(channel, GREY_OF_MAGENTA)
@@ -179,12 +179,12 @@ class Textures:
         return {"texture": name}
 
     def varies_in_space(self, output):
-        """Whether a socket of a volume has other values elsewhere."""
+        """Whether a volume's socket varies over space."""
         return any(node.type in OF_A_PLACE or node.type in SOLID or node.type in {"TEX_COORD", "TEX_IMAGE"}
                    for node, _ in self._nodes_behind_output(output))
 
     def baked_field(self, output, grid, owner):
-        """The path of a file with the socket's values in the cells of a grid."""
+        """The path of a file that holds the socket's value in each cell of a grid."""
         nodes = self._nodes_behind_output(output)
         arrays = {**grid.arrays(), "texspace": self.surface.texture_space()}
         mesh, job = self.bakes.store(arrays), {"is_number": False, "object": self.surface.object_name}

@@ -91,7 +91,7 @@ class Viewport:
             self._lock.notify_all()
 
     def close(self):
-        """Ends the program; the thread does, and nobody waits for it."""
+        """Lets the thread end the program, without waiting for it."""
         orphans.append(self._texture)
         self._texture = None
         self._put(None)

@@ -15,7 +15,7 @@ SIDES = numpy.array([[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0,
 
 @dataclass
 class Fields:
-    """Values (n, 3) by name, x running fastest, in the cells of one grid."""
+    """Arrays of shape (n, 3) by name, with a row for each cell of one grid; x varies fastest."""
     grid: Grid
     values: dict
 
@@ -44,7 +44,7 @@ class Box:
 
 
 def _averaged(values, factor):
-    """Means of blocks of factor³ cells of an array (z, y, x, channels), which the last ones fill up with zeros."""
+    """Means over blocks of factor³ cells of an array (z, y, x, channels). Incomplete blocks are padded with zeros."""
     if factor == 1:
         return values
     padded = numpy.pad(values, [(0, -n % factor) for n in values.shape[:3]] + [(0, 0)])
@@ -53,7 +53,7 @@ def _averaged(values, factor):
 
 
 def _fields(arrays, low, cell):
-    """Fields of arrays (z, y, x, channels) of one shape; `low`: the corner; `cell`: the extent of a cell."""
+    """Fields from arrays (z, y, x, channels) of one shape. `low`: the lowest corner; `cell`: the size of a cell."""
     shape = next(iter(arrays.values())).shape[:3]
     factor = -(-max(shape) // LARGEST)
     arrays = {name: _averaged(values, factor) for name, values in arrays.items()}
@@ -63,7 +63,8 @@ def _fields(arrays, low, cell):
                          for name, values in arrays.items()})
 
 
-def _module():
+def openvdb_module():
+    """The Python module of OpenVDB under either of its names; None if it is not installed."""
     for name in ("openvdb", "pyopenvdb"):
         try:
             return __import__(name)
@@ -74,9 +75,9 @@ def _module():
 
 def of_volume(object, report):
     """Fields of a volume object; None, with a note, if they cannot be read."""
-    data, vdb = object.data, _module()
+    data, vdb = object.data, openvdb_module()
     if vdb is None:
-        report.note(object.name, "OpenVDB volumes need the Python module of OpenVDB (Debian: python3-openvdb): it is left out")
+        report.note(object.name, "the volume is left out: it needs OpenVDB's Python module (Debian: python3-openvdb)")
         return None
     data.grids.load()
     path = data.grids.frame_filepath or bpy.path.abspath(data.filepath, library=data.library)
@@ -102,7 +103,7 @@ def of_volume(object, report):
 
 
 def of_fluid(object):
-    """Fields of the fluid domain of an object; None if it is none, or has no smoke."""
+    """Fields of an object's fluid domain; None if it has no domain, or no smoke."""
     for modifier in object.modifiers:
         domain = modifier.domain_settings if modifier.type == "FLUID" and modifier.fluid_type == "DOMAIN" else None
         if domain is None or domain.domain_type != "GAS":
@@ -120,7 +121,8 @@ def of_fluid(object):
 
 
 def _of_domain(values, counts):
-    """An array (z, y, x, channels); None if there is none. Grids may be finer by a whole factor, colours have four numbers."""
+    """A flat grid of the domain as an array (z, y, x, channels); None if its length does not fit. Its resolution may be a
+    multiple of the domain's, and colours have four channels, of which three are kept."""
     values = numpy.array(values, dtype=numpy.float32)
     for channels in (1, 4):
         factor = round((len(values) / channels / max(1, counts.prod())) ** (1 / 3))

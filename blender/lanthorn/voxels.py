@@ -1,13 +1,13 @@
 # SPDX-FileCopyrightText: 2026 The Lanthorn authors
 # SPDX-License-Identifier: Apache-2.0
-"""Values in a box: cells, whose layers lie side by side in an image for a bake. Each texel is a cell."""
+"""Values in a box of cells. For a bake, the box's layers lie side by side in one image, with a texel for each cell."""
 import numpy
 
 LARGEST_SIDE = 256  # cells
 
 
 def around(surface, size):
-    """The box around a surface, in about as many cells as an image of `size` has texels."""
+    """The box around a surface, divided into about as many cells as an image of this size has texels."""
     low, high = (f(surface.positions, axis=0).astype(numpy.float64) for f in (numpy.min, numpy.max))
     extent = numpy.maximum(high - low, 1e-6)
     cell = max((extent.prod() / size**2) ** (1 / 3), extent.max() / LARGEST_SIDE)

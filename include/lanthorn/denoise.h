@@ -4,6 +4,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 
 #include "lanthorn/error_estimate.h"
 #include "lanthorn/image.h"
@@ -31,11 +32,10 @@ bool can_denoise(const Image& picture);
 ///
 /// The result does not depend on the number of threads. Memory: about 1.6 GB for 1024 x 1024 pixels; larger pictures
 /// are processed in tiles of that size. Throws Error if `can_denoise` is false.
-DenoisedPicture denoise(const Image& picture);
-
-/// As above, for a crop. `around`: the same render with pixels around it (`with_margin`), from which its border is
-/// denoised as well as its inside. Throws Error also if `around` does not contain it.
-DenoisedPicture denoise(const Image& picture, const Image& around);
+///
+/// `around`: the same render with pixels around a crop (`with_margin`), so that the crop's border is denoised as well
+/// as its inside. Throws Error if `around` does not contain the picture.
+DenoisedPicture denoise(const Image& picture, const std::optional<Image>& around = {});
 
 /// The margin (ViewOptions::margin) beyond which pixels around a crop hardly matter.
 inline constexpr int denoising_margin = 24;

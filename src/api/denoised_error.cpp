@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 #include <functional>
-#include <optional>
 #include <utility>
 
 #include "lanthorn/denoise.h"
@@ -14,9 +13,7 @@ namespace {
 
 ErrorEstimate error_without_noise(const RenderState& state, const MeasuredPicture& measured) {
   try {
-    const Image picture = with_noise(state, measured.picture);
-    const std::optional<Image> around = with_margin(state);
-    return around ? denoise(picture, *around).error : denoise(picture).error;
+    return denoise(with_noise(state, measured.picture), with_margin(state)).error;
   } catch (const Error& problem) {
     ErrorEstimate unknown;
     unknown.doubt = problem.message;

@@ -236,11 +236,10 @@ void require_halves(const Image& picture) {
 
 bool can_denoise(const Image& picture) { return has_halves(picture); }
 
-DenoisedPicture denoise(const Image& picture) { return denoise(picture, picture); }
-
-DenoisedPicture denoise(const Image& picture, const Image& around) {
-  require_halves(around);
-  return Denoiser(picture, around).run();
+DenoisedPicture denoise(const Image& picture, const std::optional<Image>& around) {
+  const Image& all = around ? *around : picture;
+  require_halves(all);
+  return Denoiser(picture, all).run();
 }
 
 Image preview_without_noise(const Image& picture) {

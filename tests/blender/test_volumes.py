@@ -17,15 +17,6 @@ OF_BLOCKS = 0.03     # the largest difference of blocks of 16 × 16 pixels, of t
 FOLDER = sys.argv[sys.argv.index("--") + 1] if sys.argv[-1] != "--" and "--" in sys.argv else None
 
 
-def module():
-    for name in ("openvdb", "pyopenvdb"):
-        try:
-            return __import__(name)
-        except ImportError:
-            pass
-    return None
-
-
 def principled_volume(**inputs):
     material = stage.node_material("smoke", "ShaderNodeVolumePrincipled",
                                    **{key.replace("_", " "): value for key, value in inputs.items()})
@@ -57,9 +48,11 @@ class VolumeTest(unittest.TestCase):
         self.assertLess(worst, OF_BLOCKS)
         return ours
 
-    @unittest.skipIf(module() is None, "Blender's Python has no module of OpenVDB (python3-openvdb)")
     def test_openvdb(self):
-        vdb = module()
+        from lanthorn import volumes
+        vdb = volumes.openvdb_module()
+        if vdb is None:
+            self.skipTest("Blender's Python has no module of OpenVDB (python3-openvdb)")
         z, y, x = numpy.mgrid[0:24, 0:16, 0:20].astype(numpy.float32)
         # Denser towards one corner, so that a mirrored or turned grid is noticed.
         density = numpy.maximum(0, 1 - ((x - 10)**2 / 100 + (y - 8)**2 / 64 + (z - 12)**2 / 144)) * (1 + x / 5 + z / 8)

@@ -113,7 +113,8 @@ TEST_F(Cli, DevelopMakesThePngThatRenderWrites) {
   refuse({"convert", "a.exr", "x.png"}, "develop makes a .png of it");
 }
 
-// The pixels around a crop that --denoise renders are in the state alone, and a state goes on as it began.
+// --denoise renders a margin around the crop, which only states hold; a resumed state keeps its margin or its lack of
+// one.
 TEST_F(Cli, DenoiseRendersAMarginAroundACrop) {
   const Words crop{"--crop", "4,5,12,9", "--reproducible"};
   succeed(render(crop + Words{"-p", "4", "-o", "plain.exr", "-o", "plain.state"}));
