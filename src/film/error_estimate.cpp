@@ -343,7 +343,8 @@ class ErrorMeasurement {
     if (std::min(pictures_.passes[0], pictures_.passes[1]) < fewest_passes) return "there are too few passes";
     if (independent < fewest_squares) return "a few spots make all the noise";
     const double spikes = sums_.light > 0 ? sums_.spikes / sums_.light : 0;
-    if (spikes > e.bound) return fmt::format("{:.1f} % of the light is in single bright pixels", 100 * spikes);
+    if (spikes > e.bound)
+      return fmt::format("{:.1f} % of the light is in single bright pixels (clamping limits them)", 100 * spikes);
     return {};
   }
 
