@@ -12,7 +12,7 @@ bool has_specular_surfaces(const Scene& scene);
 /// Share of the light on visible surfaces and in visible media that path tracing finds rarely or never. Only light that
 /// arrives through clear glass or by mirrors is considered, because next-event estimation does not find it there. It is
 /// rare if its source has no extent, or if fewer than one in 1000 diffuse directions meets the source there; all of it
-/// is rare if the relative variance of a pass would exceed 50. Light that such light illuminates in turn counts, too.
+/// is rare if the relative variance of a pass would exceed 50. Indirect light from such light counts, too.
 /// Measured by a pilot pass of photons. 0 in scenes without mirrors and clear glass.
 double rare_light_share(const RenderJob& job);
 
