@@ -13,7 +13,6 @@
 
 #include "console.h"
 #include "estimate_json.h"
-#include "lanthorn/denoise.h"
 #include "lanthorn/file.h"
 #include "lanthorn/version.h"
 
@@ -203,13 +202,23 @@ DisplaySettings write(const fs::path& path, const Image& image, const OutputSett
 }  // namespace
 
 StatePicture::StatePicture(const RenderState& state, const std::vector<fs::path>& files,
-                           const RenderStatistics& statistics, bool is_denoised)
+                           const RenderStatistics& statistics, bool is_denoised,
+                           std::optional<DenoisedLooks::Found> found)
     : state_(state), summary_(summarize(state)), is_denoised_(is_denoised && summary_.pass_count > 1) {
   if (is_denoised && !is_denoised_)
     warn("a picture of a single pass is not denoised: the noise is measured from differences between passes");
   needs_all_layers_ = is_denoised_ || std::any_of(files.begin(), files.end(), has_layers);
   // While a picture is denoised, the statistics may have the error of the denoised one.
   if (!is_denoised_ && statistics.error_passes == summary_.pass_count) error_ = statistics.error;
+  if (is_denoised_ && found && found->passes == summary_.pass_count) {
+    error_ = std::move(found->error);
+    take(std::move(found->denoised));
+  }
+}
+
+void StatePicture::take(DenoisedPicture denoised) {
+  denoised_error_ = std::move(denoised.error);
+  all_layers_ = std::move(denoised.picture);
 }
 
 const Image& StatePicture::with_all_layers() {
@@ -217,10 +226,8 @@ const Image& StatePicture::with_all_layers() {
   MeasuredPicture measured = measured_picture_of(state_);
   error_ = std::move(measured.error);
   all_layers_ = with_noise(state_, measured.picture);
-  if (!is_denoised_) return *all_layers_;
-  DenoisedPicture denoised = denoise(*all_layers_, with_margin(state_));
-  denoised_error_ = std::move(denoised.error);
-  return all_layers_.emplace(std::move(denoised.picture));
+  if (is_denoised_) take(denoise(*all_layers_, with_margin(state_)));
+  return *all_layers_;
 }
 
 const Image& StatePicture::image_for(const fs::path& file) {

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "lanthorn/denoise.h"
 #include "lanthorn/image_file.h"
 #include "lanthorn/state.h"
 #include "lanthorn/statistics.h"
@@ -61,9 +62,10 @@ class StatePicture {
  public:
   /// `statistics`: of the render, if it has measured the error already. If there is an .exr among `files`, the picture
   /// has all layers, including those that a denoiser needs. `is_denoised`: .exr files also get the denoised layers, all
-  /// others show them.
+  /// others show them. `found`: if the render has denoised its picture already; left out if it has gone on since.
   StatePicture(const RenderState& state, const std::vector<std::filesystem::path>& files,
-               const RenderStatistics& statistics = {}, bool is_denoised = false);
+               const RenderStatistics& statistics = {}, bool is_denoised = false,
+               std::optional<DenoisedLooks::Found> found = {});
 
   const RenderState& state() const { return state_; }
   const StateSummary& summary() const { return summary_; }
@@ -75,6 +77,7 @@ class StatePicture {
 
  private:
   const Image& with_all_layers();
+  void take(DenoisedPicture denoised);
 
   const RenderState& state_;
   StateSummary summary_;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -196,8 +197,9 @@ void help_to_render(Session& session, Team& team) {
 }
 
 void save_view(const RenderCommand& a, const std::vector<fs::path>& outputs, const Scene& scene,
-               const ViewDescription& view, const Session& session, const RenderStatistics& statistics, Film& film) {
-  save_render(a, a.options, outputs, scene, session.state(), statistics);
+               const ViewDescription& view, const Session& session, const RenderStatistics& statistics,
+               std::optional<DenoisedLooks::Found> found, Film& film) {
+  save_render(a, a.options, outputs, scene, session.state(), statistics, std::move(found));
   if (!film.exposure) film.exposure = exposure_measured(a, session);
   explain_black(a, scene, view, outputs.front(), session);
   if (statistics.out_of_memory)
@@ -239,7 +241,8 @@ void render_view(const RenderCommand& a, Team* team, const Prepared& prepared, c
   stop.interrupted = &stop_requested();
   stop.drop = &drop_requested();
   stop.team = team;
-  if (stop.noise && a.output.denoise) stop.error_of = denoised_error(*stop.noise);
+  DenoisedLooks looks(stop.noise.value_or(0));
+  if (stop.noise && a.output.denoise) stop.error_of = std::ref(looks);
   if (team) plan_gathering(onlookers, a, *team);
   const RenderStatistics statistics = session.render(stop, make_observer(a, onlookers));
   onlookers.progress.finish();
@@ -249,7 +252,7 @@ void render_view(const RenderCommand& a, Team* team, const Prepared& prepared, c
     end_by_signal();
   }
   if (onlookers.tev) onlookers.tev->show(session.picture());
-  save_view(a, outputs, *scene, view, session, statistics, film);
+  save_view(a, outputs, *scene, view, session, statistics, looks.take(), film);
   if (onlookers.checkpoints) onlookers.checkpoints->finish(session.state(), stop_requested());
 }
 

@@ -171,9 +171,10 @@ void report_warnings(const std::vector<description::Warning>& warnings, SaidLine
 }
 
 void save_render(const RenderFiles& a, const RenderOptions& options, const std::vector<fs::path>& paths,
-                 const Scene& scene, const RenderState& state, const RenderStatistics& statistics) {
+                 const Scene& scene, const RenderState& state, const RenderStatistics& statistics,
+                 std::optional<DenoisedLooks::Found> found) {
   const nlohmann::json described = describe(statistics);
-  StatePicture picture(state, paths, statistics, a.output.denoise);
+  StatePicture picture(state, paths, statistics, a.output.denoise, std::move(found));
   const StateSummary& summary = picture.summary();
   OutputSettings settings = a.output;
   settings.hints = !a.quiet;

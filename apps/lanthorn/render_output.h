@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "lanthorn/denoise.h"
 #include "lanthorn/scene.h"
 #include "lanthorn/session.h"
 #include "output.h"
@@ -49,9 +50,10 @@ void announce_method(const Scene& scene, const RenderOptions& options, SaidLines
 /// Writes warnings of the scene and of the method to standard error.
 void report_warnings(const std::vector<description::Warning>& warnings, SaidLines& said);
 
-/// Writes pictures, states and the report, and lists them. Throws Error if something could not be written.
+/// Writes pictures, states and the report, and lists them. `found`: as for StatePicture. Throws Error if something
+/// could not be written.
 void save_render(const RenderFiles& files, const RenderOptions& options,
                  const std::vector<std::filesystem::path>& outputs, const Scene& scene, const RenderState& state,
-                 const RenderStatistics& statistics);
+                 const RenderStatistics& statistics, std::optional<DenoisedLooks::Found> found = {});
 
 }  // namespace lanthorn::program

@@ -3,8 +3,9 @@
 // Denoises rendered pictures layer by layer, guided by the sample statistics that the renderer saved with them.
 #pragma once
 
-#include <functional>
+#include <cstdint>
 #include <optional>
+#include <utility>
 
 #include "lanthorn/error_estimate.h"
 #include "lanthorn/image.h"
@@ -40,9 +41,28 @@ DenoisedPicture denoise(const Image& picture, const std::optional<Image>& around
 /// The margin (ViewOptions::margin) beyond which pixels around a crop hardly matter.
 inline constexpr int denoising_margin = 24;
 
-/// For StopRule::error_of: estimates the error of the denoised picture. While the noisy picture's error is more than 8
-/// times `limit`, which denoising cannot make up for, returns that instead.
-std::function<ErrorEstimate(const RenderState&)> denoised_error(double limit);
+/// Estimates the error of the denoised picture while it is rendered, for StopRule::error_of (by std::ref).
+class DenoisedLooks {
+ public:
+  /// A picture that reached the limit, so that it need not be denoised again once the render has ended.
+  struct Found {
+    std::uint64_t passes = 0;  ///< of the state
+    ErrorEstimate error;       ///< of the noisy picture
+    DenoisedPicture denoised;
+  };
+
+  explicit DenoisedLooks(double limit) : limit_(limit) {}
+
+  /// While the noisy picture's error is more than 8 times the limit, which denoising cannot make up for, returns that
+  /// instead.
+  ErrorEstimate operator()(const RenderState& state);
+  /// The last look's picture, if its error is below the limit. Can be taken once.
+  std::optional<Found> take() { return std::exchange(found_, std::nullopt); }
+
+ private:
+  double limit_;
+  std::optional<Found> found_;
+};
 
 /// Denoised R, G, B, for display while a render is in progress: ten times as fast as `denoise`, but leaves more noise.
 /// Treats `color` as a single layer, so there are no denoised layers that add up to it, and caustics are less sharp.

@@ -38,7 +38,7 @@ struct StopRule {
   /// Bound of the picture's error (`ErrorEstimate::is_below`). Checked only at predetermined numbers of passes, so that
   /// the picture does not depend on the machine's speed.
   std::optional<double> noise{};
-  /// The error that `noise` bounds; empty: that of the noisy picture. `denoised_error` makes it that of the denoised
+  /// The error that `noise` bounds; empty: that of the noisy picture. `DenoisedLooks` makes it that of the denoised
   /// one. Called after every third of the predetermined numbers of passes.
   std::function<ErrorEstimate(const RenderState&)> error_of{};
   /// Stops after the running passes; at least one pass is rendered.

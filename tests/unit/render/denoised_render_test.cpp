@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -145,8 +146,9 @@ TEST(DenoisedRender, StopsWhenTheDenoisedPictureIsGood) {
   constexpr double limit = 0.2;
   Session noisy(scene, options("path", 32)), denoised(scene, options("path", 32));
   noisy.render({.passes = {0, 256}, .noise = limit});
+  DenoisedLooks looks(limit);
   const RenderStatistics statistics =
-      denoised.render({.passes = {0, 256}, .noise = limit, .error_of = denoised_error(limit)});
+      denoised.render({.passes = {0, 256}, .noise = limit, .error_of = std::ref(looks)});
   EXPECT_LT(denoised.pass_count(), 2 * noisy.pass_count() / 3);
   const DenoisedPicture picture = denoise(with_noise(denoised.state(), picture_of(denoised.state())));
   EXPECT_LE(picture.error.bound, limit);
@@ -154,9 +156,15 @@ TEST(DenoisedRender, StopsWhenTheDenoisedPictureIsGood) {
   EXPECT_EQ(statistics.error->bound, picture.error.bound);
   EXPECT_FALSE(estimate_error(denoised.state()).is_below(limit));
 
+  const std::optional<DenoisedLooks::Found> found = looks.take();
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->passes, denoised.pass_count());
+  EXPECT_EQ(found->error.error, estimate_error(denoised.state()).error);
+  EXPECT_EQ(found->denoised.picture.pixels, picture.picture.pixels);
+
   Session resumed(scene, options("path", 32));
   resumed.render({.passes = {0, denoised.pass_count() / 2 + 1}});
-  resumed.render({.passes = {0, 256}, .noise = limit, .error_of = denoised_error(limit)});
+  resumed.render({.passes = {0, 256}, .noise = limit, .error_of = std::ref(looks)});
   EXPECT_EQ(resumed.pass_count(), denoised.pass_count());
 }
 
