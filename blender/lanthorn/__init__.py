@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The Lanthorn authors
 # SPDX-License-Identifier: Apache-2.0
-"""Lanthorn as a render engine of Blender. It drives the program `lanthorn` as a process of its own (docs/blender.md)."""
+"""Makes Lanthorn a render engine of Blender. The add-on runs the program `lanthorn` as a separate process
+(docs/blender.md)."""
 from . import engine, panels, settings
 
 bl_info = {
@@ -10,7 +11,7 @@ bl_info = {
     "blender": (3, 4, 0),
     "category": "Render",
     "location": "Render Properties > Render Engine > Lanthorn",
-    "description": "Renders caustics: light that glass, water and metal gather",
+    "description": "Renders caustics of glass, water and metal",
     "support": "COMMUNITY",
 }
 

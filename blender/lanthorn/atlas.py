@@ -1,16 +1,16 @@
 # SPDX-FileCopyrightText: 2026 The Lanthorn authors
 # SPDX-License-Identifier: Apache-2.0
-"""A place in an image for each triangle of a mesh, about as large as the triangle is."""
+"""Gives each triangle of a mesh a place of its own in an image, in proportion to its size."""
 import numpy
 
-LARGEST_RATIO = 6     # of the largest to the smallest square, as a power of two
+LARGEST_RATIO = 6     # log2 of the largest square over the smallest one
 SMALLEST_SQUARE = 8   # texels along each side
-LARGEST_IMAGE = 4096  # texels along each side; squares become smaller than that in larger ones
-MARGIN = 1.0          # texels between a triangle and the edge of its square, for interpolation
+LARGEST_IMAGE = 4096  # texels along each side; beyond it, the smallest squares shrink
+MARGIN = 1.0          # texels between a triangle and the edge of its square, for bilinear interpolation
 
 
 def _even_bits(codes):
-    """The bits 0, 2, 4 … of each number, side by side (one coordinate of a place along a Z-curve)."""
+    """Packs the bits 0, 2, 4 … of each number: one coordinate of a position along a Z-order curve."""
     values = numpy.zeros_like(codes)
     for bit in range(31):
         values |= ((codes >> (2 * bit)) & 1) << bit
@@ -18,7 +18,7 @@ def _even_bits(codes):
 
 
 def _levels(points):
-    """The side of each triangle's square, as a power of two, from its longest edge."""
+    """Returns log2 of the side of each triangle's square, from the triangle's longest edge."""
     edges = numpy.linalg.norm(points - numpy.roll(points, 1, axis=1), axis=2).max(axis=1)
     largest = max(float(edges.max()), 1e-30)
     below = numpy.round(numpy.log2(largest / numpy.maximum(edges, largest * 2.0**-LARGEST_RATIO))).astype(numpy.int64)
@@ -26,9 +26,9 @@ def _levels(points):
 
 
 def places(points, size):
-    """Texture coordinates (n, 3, 2) in the unit square for triangles (n, 3, 3), and the size of the image, at least
-    `size`. Two triangles of one size share a square; squares in order of size follow a Z-curve, along which squares of
-    powers of two fit without gaps."""
+    """Returns texture coordinates (n, 3, 2) for triangles (n, 3, 3), and the size of the image, which is at least
+    `size`. Two triangles of equal size share a square. The squares, sorted by size, follow a Z-order curve, along which
+    squares with sides of powers of two leave no gaps."""
     levels = _levels(numpy.asarray(points, dtype=numpy.float64))
     order = numpy.argsort(-levels, kind="stable")
     sorted_levels = levels[order]

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The Lanthorn authors
 # SPDX-License-Identifier: Apache-2.0
-"""Images of node trees that have no counterpart. Cycles evaluates them in a Blender of its own (bake_worker.py): the
-running one renders, and can neither bake nor be changed meanwhile."""
+"""Bakes node trees that Lanthorn does not support to images. Cycles evaluates them in a second, headless Blender
+(bake_worker.py), because the running one is rendering: it can neither bake nor change its data."""
 import hashlib
 import json
 import os
@@ -13,9 +13,9 @@ import bpy
 import numpy
 
 TIMEOUT = 600   # seconds
-PATIENCE = 0.1  # seconds between looks at whether the user cancels
+PATIENCE = 0.1  # seconds between checks whether the user cancels
 WORKER = os.path.join(os.path.dirname(os.path.abspath(__file__)), "bake_worker.py")
-LARGEST_FROM_IMAGES = 4096  # texels; a tree of larger images is baked with less detail
+LARGEST_FROM_IMAGES = 4096  # texels; larger images lose detail
 UNTOLD = {"name", "label", "location", "width", "width_hidden", "height", "select", "show_options", "show_preview",
           "hide", "show_texture", "use_custom_color", "color", "dimensions", "bl_idname", "bl_label", "bl_description",
           "bl_icon", "bl_width_default", "bl_width_min", "bl_width_max", "bl_height_default", "bl_height_min",
@@ -23,7 +23,7 @@ UNTOLD = {"name", "label", "location", "width", "width_hidden", "height", "selec
 
 
 def _plain(value):
-    """A property's value as text that says whether it has changed."""
+    """Returns a property's value as text, which differs if the value does."""
     if isinstance(value, (bool, int, float, str)) or value is None:
         return str(value)
     if isinstance(value, bpy.types.Image):
@@ -42,7 +42,7 @@ def _plain(value):
 
 
 def signature_of(output, source, done=None):
-    """Text that is the same as long as the values of this socket are. `source`: Textures.source."""
+    """Returns a text that changes if the values of this socket do. `source` is Textures.source."""
     done = {} if done is None else done
     node = output.node
     key = (node.id_data.name, node.name)
@@ -62,7 +62,7 @@ def signature_of(output, source, done=None):
 
 
 def images_behind(output, source, done=None):
-    """The images from which a socket gets values."""
+    """Returns the images that the nodes behind a socket read."""
     done = set() if done is None else done
     node, images = output.node, []
     if (node.id_data.name, node.name) in done:
@@ -78,21 +78,22 @@ def images_behind(output, source, done=None):
 
 
 class Bakes:
-    """The images that parts of a scene refer to. They lie in a folder under names that say what is in them, so that
-    none is baked twice."""
+    """Manages the baked images of a scene. Their file names are hashes of their content, so that none is baked
+    twice."""
 
     def __init__(self, folder):
         self.folder = folder
         self.size, self.frame = 1024, 1  # texels along each side
-        self._jobs = {}   # by path, those without an image
+        self._jobs = {}   # images that are still to be baked, by path
         self._failed = set()
         self._thread, self._is_closed = None, False
         self._log = os.path.join(folder, "bake.log")
         self.problem = ""
 
     def image(self, tree_owner, output, path_of_groups, textures, domain):
-        """The path of an image of this socket's values. `domain`: members `key` and `job`, see bake_worker.py, and perhaps
-        `size` and `extension`; npz: an array `texels`, rows from the bottom."""
+        """Returns the path of an image of this socket's values, and adds a job if the image does not exist. `domain` has
+        the members `key` and `job` (see bake_worker.py), and optionally `size` and `extension`. An npz file contains an
+        array `texels`, rows from the bottom."""
         images = images_behind(output, textures.source)
         largest = max([0, *(side for image in images for side in image.size)])
         size = domain.get("size") or max(self.size, min(LARGEST_FROM_IMAGES, largest))
@@ -106,12 +107,13 @@ class Bakes:
 
     @staticmethod
     def _unsaved(images, textures):
-        """Files for images that the .blend would not contain."""
+        """Writes images that the .blend file would not contain to files, and returns their paths by name."""
         return {image.name: textures.images.path_of(image) for image in images
                 if image.packed_file is None and (image.is_dirty or image.source == "GENERATED")}
 
     def world(self, world, signature):
-        """The path of an .npz file with the world's `texels`, and `sun`: direction to it and irradiance, or empty."""
+        """Returns the path of an .npz file with the world's `texels` and `sun` (the direction to it and its irradiance, or
+        nothing)."""
         path = self._path(f"{world.name_full} {signature} {self.size}", "npz")
         if not os.path.exists(path) and path not in self._failed:
             self._jobs[path] = {"kind": "world", "world": world.original, "size": self.size, "path": path}
@@ -121,7 +123,7 @@ class Bakes:
         return os.path.join(self.folder, f"bake-{hashlib.md5(text.encode()).hexdigest()}.{extension}")
 
     def store(self, arrays):
-        """Writes the arrays of a mesh, once. Returns the path."""
+        """Writes the arrays of a mesh to a file, unless the same arrays were written before. Returns the path."""
         digest = hashlib.md5()
         for name, values in sorted(arrays.items()):
             digest.update(name.encode())
@@ -143,12 +145,12 @@ class Bakes:
         return self._thread is not None
 
     def run(self, is_cancelled=lambda: False):
-        """Bakes what is missing, and waits. `problem` says why something is still missing."""
+        """Bakes the missing images and waits for them. `problem` says why an image is still missing."""
         process, paths = self._start()
         self._finish(process, paths, is_cancelled)
 
     def run_beside(self, tell):
-        """Bakes the missing images in a second process. A thread calls `tell` when it ends."""
+        """Bakes the missing images in a second process without waiting. A thread calls `tell` when it ends."""
         if self._thread is not None:
             return
         process, paths = self._start()
@@ -164,7 +166,7 @@ class Bakes:
         self._thread.start()
 
     def close(self):
-        """Ends what runs."""
+        """Stops a running bake."""
         self._is_closed = True
         thread = self._thread
         if thread is not None:
@@ -184,7 +186,7 @@ class Bakes:
         command = [bpy.app.binary_path, "-b", "--factory-startup", "--python-exit-code", "1", "-noaudio", "--python",
                    WORKER, "--", list_file]
         with open(self._log, "w", encoding="utf-8") as log:
-            # The worker ends when the other end of its standard input is gone.
+            # The worker ends when its standard input is closed.
             process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=log, stderr=subprocess.STDOUT)
         return process, [job["path"] for job in jobs]
 
@@ -200,7 +202,7 @@ class Bakes:
                     process.kill()
         process.stdin.close()
         self.problem = ""
-        for path in paths:  # also those that cannot be had: they are not tried again
+        for path in paths:  # including images that failed, which are not tried again
             self._jobs.pop(path, None)
         missing = [path for path in paths if not os.path.exists(path)]
         if missing and not is_cancelled():
@@ -213,7 +215,7 @@ class Bakes:
             self.problem = f"{len(missing)} of {len(paths)} images could not be baked: {lines[-1]}"
 
     def replace_missing(self, parts):
-        """Grey in the place of images that are not there."""
+        """Replaces missing images by a constant grey."""
         for table, grey in (("float_textures", 0.5), ("spectrum_textures", [0.5] * 3)):
             for name, texture in parts[table].items():
                 if self._is_absent(texture.get("filename")):

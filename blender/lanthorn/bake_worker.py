@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The Lanthorn authors
 # SPDX-License-Identifier: Apache-2.0
-"""Bakes what bake.py asks for. Runs in a headless Blender of its own: blender -b --python bake_worker.py -- JOBS"""
+"""Runs the jobs of bake.py in a headless Blender: blender -b --python bake_worker.py -- JOBS"""
 import json
 import math
 import os
@@ -12,11 +12,11 @@ import numpy
 
 ATLAS = "lanthorn atlas"
 SAMPLES_OF_A_TEXEL = 4
-MANY_TEXELS = 1024  # along a side; with more, texels are small enough for one sample
-MARGIN = 3  # texels around a triangle, for interpolation
+MANY_TEXELS = 1024  # along a side; larger images get one sample per texel
+MARGIN = 3  # texels around a triangle, for bilinear interpolation
 SAMPLES_OF_SKY = 4
 TEXELS_OF_SUN = 128
-FACTOR_OF_SUN_VIEW = 1.2  # angle of the picture of the sun's disk, in diameters
+FACTOR_OF_SUN_VIEW = 1.2  # field of view of the picture of the sun, in diameters of its disk
 
 
 # Surfaces.
@@ -49,7 +49,7 @@ def object_of(job):
 
 
 def new_output(group):
-    """A socket for a colour at the end of a group."""
+    """Adds a colour output to a node group. Returns the input of the group's output node, and its name."""
     if hasattr(group, "interface"):
         name = group.interface.new_socket("lanthorn", in_out="OUTPUT", socket_type="NodeSocketColor").name
     else:
@@ -59,7 +59,7 @@ def new_output(group):
 
 
 def as_number(tree, output):
-    """A node that converts colours as a socket for numbers does."""
+    """Adds a node that converts a colour to a number as Blender's sockets do. Returns its output."""
     node = tree.nodes.new("ShaderNodeMath")
     node.operation = "ADD"
     node.inputs[1].default_value = 0
@@ -68,7 +68,7 @@ def as_number(tree, output):
 
 
 def emit(material, job):
-    """Makes the material emit the values of the job's socket."""
+    """Rewires the material so that it emits the values of the job's socket."""
     trees = [material.node_tree]
     for name in job["groups"]:
         node = trees[-1].nodes[name]
@@ -116,7 +116,7 @@ def bake_surface(job):
     load_images(job["images"])
     made = object_of(job)
     original = bpy.data.materials[job["owner"]]
-    # Materials that animation or drivers have changed are evaluated here at the same frame.
+    # Animation and drivers of the copy are evaluated at the frame of the render.
     material = original.copy()
     emit(material, job)
     made.data.materials.append(material)
@@ -167,7 +167,7 @@ def new_camera():
 
 
 def panorama_settings(camera):
-    """Of Cycles up to Blender 4, of the camera itself since."""
+    """Returns the owner of panorama properties: Cycles' settings in Blender 3, the camera itself in Blender 4."""
     return camera if hasattr(camera, "panorama_type") else camera.cycles
 
 
@@ -180,7 +180,7 @@ def sun_nodes(tree):
 
 
 def sun_of(world, camera, folder):
-    """Direction to the sun of a sky and its irradiance; the disk is then taken out of the sky."""
+    """Returns the direction to the sun of a sky texture and its irradiance, and removes the sun's disk from the sky."""
     nodes = list(sun_nodes(world.node_tree)) if world.use_nodes else []
     if len(nodes) != 1:
         return []
@@ -191,7 +191,7 @@ def sun_of(world, camera, folder):
     angle = FACTOR_OF_SUN_VIEW * node.sun_size
     panorama = panorama_settings(camera.data)
     panorama.panorama_type, panorama.fisheye_fov = "FISHEYE_EQUIDISTANT", angle
-    angle = panorama.fisheye_fov  # Blender has a smallest one
+    angle = panorama.fisheye_fov  # Blender limits it
     camera.rotation_euler = (math.pi / 2 + elevation, 0, -turn)
     texel = (angle / TEXELS_OF_SUN) ** 2
     with_sun = rendered(folder, TEXELS_OF_SUN, TEXELS_OF_SUN, 16)
@@ -228,7 +228,7 @@ def main(list_file):
         work = json.load(file)
     scene = bpy.context.scene
     for collection in (bpy.data.objects, bpy.data.materials, bpy.data.worlds):
-        for made in list(collection):  # so that the names of what is loaded stay
+        for made in list(collection):  # so that loaded data-blocks keep their names
             collection.remove(made)
     with bpy.data.libraries.load(work["library"]) as (there, wanted):
         wanted.materials, wanted.worlds = there.materials, there.worlds

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The Lanthorn authors
 # SPDX-License-Identifier: Apache-2.0
-"""Blender's cameras and views as Lanthorn's."""
+"""Translates Blender's cameras and viewports to cameras of Lanthorn."""
 import numpy
 
 
@@ -9,12 +9,12 @@ def rows(matrix):
 
 
 def times_flip_z(matrix):
-    """Camera to world: Blender's cameras look along -z, Lanthorn's along +z."""
+    """Returns the camera-to-world matrix with z negated: Blender's cameras look along -z, Lanthorn's along +z."""
     return [[row[0], row[1], -row[2], row[3]] for row in matrix]
 
 
 def screen_window(projection, is_perspective):
-    """The edges of the picture (x0, x1, y0, y1): in the plane z = 1, or in metres of an orthographic camera."""
+    """Returns the edges of the picture (x0, x1, y0, y1): in the plane z = 1 of a perspective camera, or in metres."""
     p = projection
     if is_perspective:
         return [(p[0][2] - 1) / p[0][0], (p[0][2] + 1) / p[0][0], (p[1][2] - 1) / p[1][1], (p[1][2] + 1) / p[1][1]]
@@ -22,7 +22,7 @@ def screen_window(projection, is_perspective):
 
 
 def lens_of(camera, matrix_world):
-    """Radius and focal distance of the lens, in metres."""
+    """Returns the radius and the focal distance of the lens, in metres."""
     dof = camera.dof
     if not dof.use_dof:
         return {}
@@ -43,17 +43,17 @@ def without_scale(matrix):
 
 
 def camera_part(object, depsgraph, size, pixel_aspect, report):
-    """The camera of a final render. `size`: width and height of the whole picture, in pixels."""
+    """Returns the camera of a final render. `size` is the size of the whole picture in pixels."""
     camera = object.data
     if camera.type == "PANO":
-        report.note(object.name, "a panoramic camera becomes an equirectangular one")
+        report.note(object.name, "panoramic cameras are rendered as equirectangular ones")
         return {"type": "spherical", "mapping": "equirectangular",
                 "camera_to_world": times_flip_z(without_scale(object.matrix_world))}
     projection = object.calc_matrix_camera(depsgraph, x=size[0], y=size[1], scale_x=pixel_aspect[0],
                                            scale_y=pixel_aspect[1])
     is_perspective = camera.type == "PERSP"
     if camera.dof.use_dof and (camera.dof.aperture_blades or camera.dof.aperture_ratio != 1):
-        report.note(object.name, "the aperture is a disk, without blades")
+        report.note(object.name, "the blades and the ratio of the aperture are not supported: it is a disk")
     part = {"type": "perspective" if is_perspective else "orthographic",
             "camera_to_world": times_flip_z(without_scale(object.matrix_world)),
             "screen_window": screen_window(projection, is_perspective), **lens_of(camera, object.matrix_world)}
@@ -63,7 +63,7 @@ def camera_part(object, depsgraph, size, pixel_aspect, report):
 
 
 def view_part(region_data):
-    """What a viewport sees."""
+    """Returns the camera of a viewport."""
     is_perspective = region_data.is_perspective
     part = {"type": "perspective" if is_perspective else "orthographic",
             "camera_to_world": times_flip_z(region_data.view_matrix.inverted()),
@@ -79,12 +79,12 @@ def picture_size(render):
 
 
 def border_pixels(render, size):
-    """x0, y0, x1, y1 of the part that is rendered, y downwards, as `crop` of Lanthorn; the whole without a border."""
+    """Returns the pixels x0, y0, x1, y1 of the render region, y downwards, as Lanthorn's `crop`; all without a border."""
     width, height = size
     if not render.use_border:
         return [0, 0, width, height]
 
-    def pixel(share, extent):  # in single precision, as Blender does
+    def pixel(share, extent):  # rounded in single precision, as in Blender
         return int(numpy.float32(share) * numpy.float32(extent))
 
     x0, x1 = pixel(render.border_min_x, width), pixel(render.border_max_x, width)
@@ -97,13 +97,13 @@ def film_part(size):
 
 
 def filter_part(width):
-    """About the Blackman-Harris filter of Cycles: a Gaussian of the same width."""
+    """Returns a Gaussian of the width of Cycles' Blackman-Harris filter."""
     return {"kind": "gaussian", "radius": [width, width], "sigma": max(width, 1e-3) / 4}
 
 
 def axial_depth(distance, window):
-    """Depth along the camera's axis, as Blender has it, from the distance along rays of a perspective camera. `window`:
-    `screen_window` of the pixels of `distance`, an array with rows from the top."""
+    """Converts distances along the rays of a perspective camera to Blender's depth along the camera's axis. `distance`
+    has rows from the top; `window` is the `screen_window` of its pixels."""
     height, width = distance.shape
     x = numpy.linspace(window[0], window[1], 2 * width + 1, dtype=numpy.float32)[1::2]
     y = numpy.linspace(window[3], window[2], 2 * height + 1, dtype=numpy.float32)[1::2]

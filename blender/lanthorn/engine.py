@@ -1,16 +1,16 @@
 # SPDX-FileCopyrightText: 2026 The Lanthorn authors
 # SPDX-License-Identifier: Apache-2.0
-"""The render engine: final renders and the viewport."""
+"""Defines the render engine, with final renders and the viewport."""
 import weakref
 
 import bpy
 import gpu
 
-from . import camera, lights, motion, passes, settings, viewport
+from . import camera, motion, passes, settings, viewport
 from .link import Link, LinkError
 from .scene_export import SceneExport
 
-PATIENCE = 0.2  # seconds between looks at whether the user cancels
+PATIENCE = 0.2  # seconds between checks whether the user cancels
 ENDS = {"finished", "out_of_time"}
 
 
@@ -22,7 +22,7 @@ def start_program():
 
 
 class FinalRender:
-    """One picture of one view layer."""
+    """Renders one picture of one view layer."""
 
     def __init__(self, engine, depsgraph):
         self.engine, self.depsgraph = engine, depsgraph
@@ -41,8 +41,6 @@ class FinalRender:
             raise LinkError("the scene has no camera")
         self.camera = camera.camera_part(object.evaluated_get(self.depsgraph), self.depsgraph, self.size,
                                          (render.pixel_aspect_x, render.pixel_aspect_y), report)
-        for name in lights.seen_lamps(self.scene, object, self.depsgraph):
-            report.note(name, "the camera sees the lamp's surface unless something hides it; in Cycles it does not")
         return {"camera": self.camera, "film": camera.film_part(self.size),
                 "filter": camera.filter_part(render.filter_size)}
 
@@ -53,7 +51,7 @@ class FinalRender:
             export.bakes.size, export.bakes.frame = self.scene.lanthorn.bake_size, self.scene.frame_current
             parts = export.parts(self.depsgraph)
             if export.bakes.are_missing:
-                self.engine.update_stats("", "Baking nodes that have no counterpart")
+                self.engine.update_stats("", "Baking unsupported nodes")
             export.bake(parts, self.engine.test_break)
             if self.engine.test_break():
                 return
@@ -61,6 +59,7 @@ class FinalRender:
                 parts = export.parts(self.depsgraph)
                 export.bake(parts, self.engine.test_break)
             view = self.view_parts(export.report)
+            view["camera"].update(export.camera_medium(parts))
             motion.add_motion(self.engine, self.depsgraph, self.scene.camera, parts, view["camera"])
             changed, _ = export.changes(parts)
             link.request("update", set={**changed, **view})
@@ -129,7 +128,7 @@ class FinalRender:
 
 
 def redraw_of(engine):
-    """A function that redraws the engine's viewport. It holds only a weak reference to the engine."""
+    """Returns a function that redraws the engine's viewport and holds only a weak reference to the engine."""
     reference = weakref.ref(engine)
 
     def redraw():
@@ -137,7 +136,7 @@ def redraw_of(engine):
         try:
             if found is not None:
                 found.tag_redraw()
-        except ReferenceError:  # Blender has freed it meanwhile
+        except ReferenceError:  # Blender has freed the engine
             pass
     return redraw
 
@@ -162,7 +161,7 @@ class LanthornEngine(bpy.types.RenderEngine):
             self.report({"ERROR"}, f"Lanthorn: {error}")
             self.error_set(f"Lanthorn: {error}")
 
-    # Blender makes an engine for each viewport, and calls no __init__ that it may not leave out.
+    # Blender creates an engine for each viewport, but does not always call __init__.
     _viewport = None
 
     def view_update(self, context, depsgraph):
@@ -171,7 +170,7 @@ class LanthornEngine(bpy.types.RenderEngine):
             if self._viewport is None:
                 self._viewport = viewport.Viewport(start_program(), redraw_of(self), settings_of_scene.viewport_options(),
                                                    settings_of_scene.denoise)
-                # Not in __del__: by then Blender has freed the engine's members.
+                # Blender frees the engine's members before __del__ runs.
                 weakref.finalize(self, self._viewport.close)
             self._viewport.update_scene(context, depsgraph)
         except LinkError as error:

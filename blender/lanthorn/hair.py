@@ -1,14 +1,14 @@
 # SPDX-FileCopyrightText: 2026 The Lanthorn authors
 # SPDX-License-Identifier: Apache-2.0
-"""Hair of particle systems and curves objects as curves of Lanthorn."""
+"""Translates hair of particle systems and curves objects to curves of Lanthorn."""
 import numpy
 
 THINNEST = 1e-7  # metres
 
 
 def bezier(lines, radii):
-    """Curves through points. `lines`, `radii`: for each hair its points (n, 3), n > 1, and radii (n). Inner tangents are
-    those of Catmull and Rom, a third of them leads to the control points."""
+    """Returns Bézier curves through points. `lines` and `radii` have the points (n, 3), n > 1, and the radii (n) of each
+    hair. Tangents are those of Catmull-Rom splines; inner control points lie a third of them away."""
     points, segments, start = [], [], 0
     for line, radius in zip(lines, radii):
         tangents = numpy.gradient(line, axis=0) / 3
@@ -33,13 +33,13 @@ def _particle_lines(object, system, is_viewport):
     for number in range(first, parents + count):
         line = numpy.array([system.co_hair(object, particle_no=number, step=step) for step in range(steps)])
         used = numpy.r_[True, (numpy.abs(numpy.diff(line, axis=0)).max(axis=1) > 0)]
-        used[1:] &= numpy.abs(line[1:]).max(axis=1) > 0  # steps that a shorter hair lacks
+        used[1:] &= numpy.abs(line[1:]).max(axis=1) > 0  # shorter hairs have no points at the last steps
         if used.sum() > 1:
             yield number, line[used]
 
 
 def _particle_radii(settings, count):
-    """Radii from root to tip. Blender's names say radius; its values are diameters."""
+    """Returns radii from root to tip. Blender calls its values radii, but they are diameters."""
     root, tip = (settings.radius_scale * 0.5 * r for r in (settings.root_radius, settings.tip_radius))
     along = numpy.linspace(0, 1, count)
     shape = settings.shape
@@ -55,7 +55,7 @@ def _is_hair(system):
 
 
 class Strands:
-    """The hairs of a particle system in world space."""
+    """Holds the hairs of a particle system, in world space."""
 
     def __init__(self, object, modifier, is_viewport):
         self._object, self._modifier, self.system = object, modifier, modifier.particle_system
@@ -64,12 +64,12 @@ class Strands:
         self.slot = self.system.settings.material - 1
 
     def shape(self, chosen=None):
-        """Curves of all hairs, or of the chosen ones."""
+        """Returns curves of all hairs, or of the chosen ones."""
         lines = self.lines if chosen is None else [self.lines[i] for i in chosen]
         return bezier(lines, [_particle_radii(self.system.settings, len(line)) for line in lines])
 
     def roots(self):
-        """Texture coordinates (n, 2) of the surface at the roots; None if it has none."""
+        """Returns the texture coordinates (n, 2) of the surface at the roots; None if it has none."""
         particles = self.system.particles
         if not len(self._object.data.uv_layers) or not len(particles):
             return None
@@ -78,7 +78,7 @@ class Strands:
 
 
 def strands(object, is_viewport):
-    """The particle systems of an object that are hair."""
+    """Yields the hair of an object's particle systems."""
     for modifier in object.modifiers:
         if modifier.type == "PARTICLE_SYSTEM" and _is_hair(modifier.particle_system):
             made = Strands(object, modifier, is_viewport)
@@ -86,11 +86,11 @@ def strands(object, is_viewport):
                 yield made
 
 
-LEVELS = 8  # of each colour, for hairs of one material
+LEVELS = 8  # levels per colour channel that distinguish hairs
 
 
 def groups_of_color(image, roots):
-    """(color, numbers of hairs) for hairs whose roots have about the same colour in an image."""
+    """Groups hairs whose roots have about the same colour in an image. Yields the colour and the hairs' indices."""
     width, height = image.size
     pixels = numpy.empty(width * height * 4, dtype=numpy.float32)
     image.pixels.foreach_get(pixels)
@@ -106,7 +106,7 @@ def groups_of_color(image, roots):
 
 
 def curves_shape(object):
-    """The curves of a curves object, in its own space; None if it has none."""
+    """Returns the curves of a curves object in object space; None if it has none."""
     data = object.data
     count = len(data.points)
     if count == 0:
@@ -125,12 +125,12 @@ def curves_shape(object):
     return bezier(lines, widths) if lines else None
 
 
-DEFAULT_RADIUS = 0.005  # metres, as Cycles has it
+DEFAULT_RADIUS = 0.005  # metres, as in Cycles
 
 
 def color_of_melanin(node, number):
-    """Absorption of a Principled Hair node by melanin (Chiang et al. 2016, with the coefficients of d'Eon et al. 2011
-    as Cycles scales them)."""
+    """Returns the absorption coefficient of a Principled Hair node by melanin (Chiang et al. 2016, with the coefficients
+    of d'Eon et al. 2011, scaled as in Cycles)."""
     amount = -numpy.log(max(1e-4, 1 - number(node.inputs["Melanin"])))
     redness = number(node.inputs["Melanin Redness"])
     brown, red = numpy.array([0.506, 0.841, 1.653]), numpy.array([0.343, 0.733, 1.924])

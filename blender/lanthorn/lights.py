@@ -1,17 +1,18 @@
 # SPDX-FileCopyrightText: 2026 The Lanthorn authors
 # SPDX-License-Identifier: Apache-2.0
-"""Blender's lamps. The factors make the same light as Cycles does: tests/blender/test_lights.py measures them."""
+"""Translates Blender's lights. The factors give the same light as Cycles: tests/blender/test_lights.py measures them."""
 import math
 
-from bpy_extras.object_utils import world_to_camera_view
+from .textures import Textures
 
-# What stands in for a lamp without a size, whose light Cycles takes from a point.
+# Smaller point and spot lights become lights without a size.
 SMALLEST_RADIUS = 1e-4
-POINTS_OF_SPOT = 32  # lights without a size that stand for a spot light with one
-SMALLEST_SUN = math.radians(0.1)  # angle below which one direction stands for the sun
-WIDE_SUN, SUNS, WIDE_SUNS = math.radians(2), 16, 64  # directions that stand for a sun, and for one of a larger angle
+POINTS_OF_SPOT = 32  # lights without a size that approximate a spot light with a radius
+SMALLEST_SUN = math.radians(0.1)  # a smaller sun becomes a single direction
+WIDE_SUN, SUNS, WIDE_SUNS = math.radians(2), 16, 64  # number of directions of a sun, and of a wide one
 GOLDEN_ANGLE = math.pi * (3 - 5**0.5)
-WIDE_SPOT = 0.85  # cosine of half the cone from which the approximation of its profile is told
+SMALLEST_SPREAD = 1  # degrees, as in Cycles
+WIDE_SPOT = 0.85  # cosine of half the cone; wider spots get a warning
 
 
 def _color(light):
@@ -19,21 +20,25 @@ def _color(light):
 
 
 def _strength(light, power, report):
-    """Power times the strength of an Emission node, if the lamp has nodes."""
+    """Returns the power, multiplied by the colours and strengths of the light and of its Emission node."""
     color = _color(light)
     if light.use_nodes and light.node_tree:
-        node = next((n for n in light.node_tree.nodes if n.type == "EMISSION"), None)
-        others = [n for n in light.node_tree.nodes if n.type not in {"EMISSION", "OUTPUT_LIGHT"}]
-        if others:
-            report.note(light.name, "of the nodes of lamps, the Emission node's color and strength alone are used")
-        if node:
-            factor = node.inputs["Strength"].default_value
-            color = [c * e * factor for c, e in zip(color, node.inputs["Color"].default_value)]
+        output = light.node_tree.get_output_node("CYCLES") or light.node_tree.get_output_node("ALL")
+        values = Textures({"float_textures": {}, "spectrum_textures": {}}, report, None, None)
+        source = values.source(output.inputs["Surface"]) if output is not None else None
+        if source is None:
+            return [0.0, 0.0, 0.0]
+        if source.node.type != "EMISSION":
+            report.note(light.name, f"the node {source.node.bl_label} of a light is not supported: the light's own colour and power are used")
+            return [power * c for c in color]
+        emitted = values.constant_color(source.node.inputs["Color"], light.name, "the colour of a light")
+        factor = values.constant(source.node.inputs["Strength"], light.name, "the strength of a light")
+        color = [c * e * factor for c, e in zip(color, emitted)]
     return [power * c for c in color]
 
 
 def _disk(count):
-    """Points spread evenly over the unit disk (Vogel's spiral)."""
+    """Returns points that cover the unit disk evenly (Vogel's spiral)."""
     radii = [math.sqrt((i + 0.5) / count) for i in range(count)]
     return [(r * math.cos(i * GOLDEN_ANGLE), r * math.sin(i * GOLDEN_ANGLE)) for i, r in enumerate(radii)]
 
@@ -53,14 +58,14 @@ def _point(light, matrix, report):
 
 
 def _spot(light, matrix, report):
-    # Cycles multiplies the intensity P / 4 pi by the cosine to the axis; here, its mean over the cone stands for it.
+    # Cycles 3.4 multiplies the intensity P / 4 pi by the cosine to the axis. The mean cosine of the cone replaces it.
     power = _strength(light, light.energy, report)
     outer = math.degrees(light.spot_size) / 2
     # Cycles: smoothstep of (cos(angle) - cos(outer)) / ((1 - cos(outer)) blend).
     cosine = math.cos(light.spot_size / 2)
     mean_cosine = (1 + cosine) / 2
     if cosine < WIDE_SPOT:
-        report.note(light.name, "a wide spot light is evenly bright: Cycles' are darker to the edge")
+        report.note(light.name, "wide spot lights are brighter towards the edge than in Cycles")
     inner = math.degrees(math.acos(min(1, cosine + (1 - cosine) * light.spot_blend)))
     axes, radius = matrix.to_3x3().normalized(), light.shadow_soft_size
     places = [(0, 0)] if radius < SMALLEST_RADIUS else _disk(POINTS_OF_SPOT)
@@ -93,49 +98,40 @@ def _rectangle(width, height):
 
 
 def _area(light, matrix, report):
-    # Cycles: radiance P / 4 A, on the side of -z. (A Lambertian emitter of P watts would have P / pi A.)
+    # The radiance in Cycles is P / 4 A, on the side of -z. (A diffuse emitter of P watts would have P / pi A.)
     width = light.size
     height = light.size_y if light.shape in {"RECTANGLE", "ELLIPSE"} else light.size
     scale = matrix.to_scale()
     is_round = light.shape in {"DISK", "ELLIPSE"}
     area = width * scale.x * height * scale.y * (math.pi / 4 if is_round else 1)
     power = _strength(light, light.energy, report)
-    if light.spread < math.radians(179):
-        report.note(light.name, "the spread of an area light has no counterpart: it emits to all sides")
     shape = _rectangle(width, height)
     to_world = [list(row) for row in matrix]
     if is_round:
         shape = {"type": "disk", "radius": 0.5, "reverse_orientation": True}
         to_world = [[row[0] * width, row[1] * height, row[2], row[3]] for row in to_world]
-    return {"shape": {**shape, "object_to_world": to_world},
+    spread = max(math.degrees(light.spread), SMALLEST_SPREAD)
+    return {"shape": {**shape, "object_to_world": to_world}, "spread": min(spread, 180.0),
             "radiance": [p / (4 * max(area, 1e-12)) for p in power]}
 
 
+NAMES = {"POINT": "point lights", "SPOT": "spot lights", "SUN": "suns"}
 KINDS = {"POINT": _point, "SPOT": _spot, "SUN": _sun, "AREA": _area}
 
 
-def add_light(parts, name, light, matrix, report):
-    """Adds the lamp to the parts of a scene: lights, or a shape that emits."""
+def add_light(parts, name, object, matrix, report):
+    """Adds an object's light to the parts of a scene: as lights without a surface, or as an emitting shape."""
+    light = object.data
     made = KINDS[light.type](light, matrix, report)
     if "lights" in made:
+        size = light.angle if light.type == "SUN" else light.shadow_soft_size
+        if object.visible_camera and size > 0:
+            report.note(object.name, f"{NAMES[light.type]} are never visible to the camera")
         for number, part in enumerate(made["lights"]):
             parts["lights"][f"{name}/{number}" if number else name] = part
         return
-    parts["area_lights"][name] = {"radiance": made["radiance"]}
-    # A lamp does not stop the light of others: its surface lets all of it pass.
+    parts["area_lights"][name] = {"radiance": made["radiance"], "spread": made.get("spread", 180.0)}
+    # Lights do not cast shadows, so the surface lets all light pass.
     parts["materials"].setdefault("lamp", {"type": "thindielectric", "eta": 1.0})
-    parts["shapes"][name] = {**made["shape"], "material": "lamp", "area_light": name}
-
-
-def seen_lamps(scene, camera, depsgraph):
-    """Names of lamps that the camera probably sees: those whose centre or an extreme point is in the picture."""
-    for instance in depsgraph.object_instances:
-        object, light = instance.object, instance.object.data
-        if object.type != "LIGHT" or not instance.show_self or light.type not in {"POINT", "AREA"}:
-            continue
-        radius = light.shadow_soft_size if light.type == "POINT" else light.size / 2
-        middle = instance.matrix_world.translation
-        ends = [middle + sign * radius * camera.matrix_world.to_3x3().col[axis] for axis in (0, 1) for sign in (1, -1)]
-        views = [world_to_camera_view(scene, camera, point) for point in (middle, *ends)]
-        if radius >= SMALLEST_RADIUS and any(0 < v.x < 1 and 0 < v.y < 1 and v.z > 0 for v in views):
-            yield object.name
+    parts["shapes"][name] = {**made["shape"], "material": "lamp", "area_light": name,
+                             "visible_to_camera": object.visible_camera}

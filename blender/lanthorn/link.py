@@ -1,8 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The Lanthorn authors
 # SPDX-License-Identifier: Apache-2.0
-"""A client of `lanthorn link`: the program in a process of its own, and messages to and from it (docs/protocol.md).
+"""A client of `lanthorn link`, which runs the program as a separate process and exchanges messages with it
+(docs/protocol.md).
 
-Needs the standard library alone, and knows nothing of Blender.
+The client needs only the standard library and does not depend on Blender.
 """
 import array
 import json
@@ -24,18 +25,18 @@ TYPE_NAMES = {"b": "int8", "B": "uint8", "h": "int16", "H": "uint16", "i": "int3
 
 
 class LinkError(Exception):
-    """The program refuses a request, with its reason; or it cannot be started, or has ended."""
+    """Says why the program refuses a request, cannot be started, or has ended."""
 
 
 class Array:
-    """Numbers of an answer: `type` ("float32"), `shape`, and `bytes`, a memoryview; the last index runs fastest."""
+    """Holds an array of an answer: its `type` ("float32"), `shape`, and `bytes`, a memoryview. The last index runs fastest."""
 
     def __init__(self, type, shape, data):
         self.type, self.shape, self.bytes = type, tuple(shape), data
 
 
 class _Packer:
-    """A request as JSON, with its arrays (numpy's, or the standard library's) collected as bytes."""
+    """Converts a request to JSON, and collects the bytes of its arrays (of numpy or the standard library)."""
 
     def __init__(self):
         self.parts, self.size = [], 0
@@ -49,7 +50,7 @@ class _Packer:
             return self._add(TYPE_NAMES[value.typecode], [len(value)], value.tobytes())
         if hasattr(value, "dtype") and getattr(value, "ndim", 0) > 0:
             return self._add(value.dtype.name, value.shape, _bytes_of(value))
-        if hasattr(value, "item"):  # a number of numpy
+        if hasattr(value, "item"):  # a scalar of numpy
             return value.item()
         return value
 
@@ -61,7 +62,7 @@ class _Packer:
 
 
 def _bytes_of(values):
-    """The array's values in C order; copied only if they are stored in another order."""
+    """Returns the array's values in C order, without a copy if possible."""
     return memoryview(values).cast("B") if values.flags.c_contiguous and values.size else values.tobytes()
 
 
@@ -87,7 +88,7 @@ def _widen(pipe):
 
 
 class Link:
-    """The program, from the start to `close`. Not for several threads at a time."""
+    """Runs the program until `close`. Only one thread may use it at a time."""
 
     def __init__(self, program="lanthorn", arguments=()):
         self._messages = tempfile.TemporaryFile()
@@ -125,7 +126,7 @@ class Link:
         return _unpack(body, data)
 
     def close(self):
-        """Ends the program, whatever it is doing."""
+        """Ends the program, even if it is busy."""
         self.process.stdin.close()
         try:
             self.process.wait(timeout=1)

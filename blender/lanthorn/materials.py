@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The Lanthorn authors
 # SPDX-License-Identifier: Apache-2.0
-"""Node materials as materials, emission and media of Lanthorn."""
+"""Translates node materials to materials, emission and media of Lanthorn."""
 import math
 from dataclasses import dataclass
 
@@ -13,27 +13,28 @@ from .textures import Textures, is_native
 BLACK = [0.0, 0.0, 0.0]
 OPAQUE = 1.0
 HALFWAY = 0.5
-OLD_CLEARCOAT = 0.25  # Blender 3's factor
-# Blender 3's sheen has the albedo of fibres of this roughness, times this factor, within 10 % of it over all angles.
+OLD_CLEARCOAT = 0.25  # the factor in Blender 3
+# Fibres of this roughness, times this factor, have the albedo of Blender 3's sheen within 10 % at all angles.
 OLD_SHEEN, OLD_SHEEN_ROUGHNESS = 0.089, 0.4
-# For each sigma of Velvet: the fibres' roughness, and factors for their colour and for that of the surface under them.
-# They have the mean albedo of Cycles' velvet (Ashikhmin), and its albedo within 25 % at angles where it is large.
+# For each sigma of Velvet: the roughness of fibres, and factors for their colour and for that of the surface below.
+# The mean albedo is that of Cycles' velvet (Ashikhmin). At angles where it is large, the albedo is within 25 %.
 VELVET_SIGMA = [0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0]
 VELVET_ROUGHNESS = [0.15, 0.15, 0.16, 0.25, 0.35, 0.38, 0.41, 0.42, 0.44, 0.44, 0.44]
 VELVET_FIBRES = [0.0, 0.16, 0.70, 0.86, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0]
 VELVET_BASE = [0.0, 0.0, 0.0, 0.0, 0.004, 0.061, 0.124, 0.19, 0.254, 0.316, 0.37]
-SUBSURFACE = "subsurface scattering is replaced by diffuse reflection"
-NO_SUBDIVISION = 1e9  # metres: no edge is as long
+SUBSURFACE = "subsurface scattering is rendered as diffuse reflection"
+NO_SUBDIVISION = 1e9  # metres; longer than any edge
 
 
 @dataclass
 class Look:
-    """The translation of a shader node: its material (None if it only emits or lets light through), emission and opacity."""
+    """The translation of a shader node: its material (None if it only emits or transmits straight), emission and alpha."""
 
     material: dict | None = None
-    emission: object = None  # a color, or a texture
+    emission: object = None  # a colour or a texture
     strength: float = 1.0
     alpha: object = OPAQUE
+    hole: object = None  # the colour socket of a Transparent shader
 
 
 def clamped(color):
@@ -44,22 +45,23 @@ def is_black(color):
     return color is None or (isinstance(color, list) and max(color) <= 0)
 
 
-# The index for which a Layer Weight node has the reflection that its Fresnel output names.
 def eta_of_blend(blend):
+    """Returns the index of refraction of a Layer Weight node's Fresnel output."""
     return 1 / (1 - min(0.999, max(0.0, blend)))
 
 
 class Materials:
-    """Adds what a scene's materials need to its parts."""
+    """Adds the materials of a scene, with their textures, media and area lights, to its parts."""
 
     def __init__(self, parts, report, images, bakes):
         self.parts, self.report, self.bakes = parts, report, bakes
         self.textures = Textures(parts, report, images, bakes)
         self._done, self._kinds, self._mixes, self._tangent = {}, {}, 0, None
-        self.unfinished = []  # materials whose media need a second export, after bakes
+        self.around = None  # the world's volume, see media.medium
+        self.unfinished = []  # materials whose media must be exported again after a bake
 
     def shape(self, material, surface, slot):
-        """The triangles of a slot with their material, area_light, alpha."""
+        """Returns the triangles of a slot as a shape, with the members of its material."""
         name = material.name_full if material is not None else ""
         kind = name, surface.fields is not None
         if kind not in self._kinds:
@@ -77,27 +79,31 @@ class Materials:
         return {"type": "triangles", **triangles, **members}
 
     def box_members(self, material, box):
-        """What the box around a volume object needs: its medium."""
+        """Returns the members of the box around a volume object, with its medium."""
         key, members = f"{material.name_full if material is not None else ''} in {box.key}", {"material": self._interface()}
         self.textures.begin(material, box, 0, False, key)
         output = self._output(material)
         volume = self.textures.source(output.inputs["Volume"]) if output is not None else None
         if volume is None:
-            self.report.note(box.object_name, "a volume without a volume shader is left out")
+            self.report.note(box.object_name, "a volume without a volume shader is invisible")
             return members
         medium = self._medium(volume.node, material)
         if medium is not None:
             self.parts["media"][key] = medium
-            members["inside_medium"] = key
+            members.update(self._media_members(key))
         return members
+
+    def _media_members(self, inside):
+        """Returns the members of a shape that contains this medium."""
+        return {"inside_medium": inside, **({} if self.around is None else {"outside_medium": media.OF_WORLD})}
 
     def _interface(self):
         self.parts["materials"].setdefault("interface", {"type": "interface"})
         return "interface"
 
     def fibre_members(self, material, color=None):
-        """What curves with this material need: material, area_light, alpha. Fibres have no texture coordinates; images
-        have the `color` that they have at the root."""
+        """Returns the members of curves with this material. Fibres have no texture coordinates: `color`, the colour at the
+        root, replaces images."""
         name = "fibres " + (material.name_full if material is not None else "")
         key = name if color is None else f"{name} of {' '.join(f'{c:.4f}' for c in color)}"
         if key not in self._done:
@@ -108,7 +114,7 @@ class Materials:
         return {k: v for k, v in self._done[key][0].items() if k != "displacement"}
 
     def image_of_fibres(self, material):
-        """The image that colours a material by texture coordinates; None if there is none, or no pixels."""
+        """Returns the image of a material; None if it has none, or one without pixels."""
         output = self._output(material)
         if output is None:
             return None
@@ -116,19 +122,19 @@ class Materials:
         images = [node.image for node, outputs in self.textures.nodes_behind([output.inputs["Surface"]])
                   if node.type == "TEX_IMAGE" and "Color" in outputs and node.image is not None and node.image.size[0]]
         if len(set(images)) > 1:
-            self.report.note(material.name, "hair takes its colour from its first image; the others are ignored")
+            self.report.note(material.name, "hair takes its colour from its first image: the other images are ignored")
         return images[0] if images else None
 
     def _put_out(self, members, material):
-        """Fibres that emit would be lamps of many triangles each: they reflect the colour instead."""
+        """Removes the emission of fibres, because each fibre would be a light of many triangles."""
         if "area_light" in members:
-            self.report.note(material.name, "hair cannot emit: it reflects the colour instead")
+            self.report.note(material.name, "hair cannot emit light: it reflects its colour instead")
             lamp = members["area_light"]
             self.put_out(members)
             del self.parts["area_lights"][lamp]
 
     def put_out(self, members):
-        """Removes a shape's emission. If its surface is black, it reflects the emitted colour instead."""
+        """Removes the emission of a shape. A black surface reflects the emitted colour instead."""
         lamp, materials = members.pop("area_light"), self.parts["materials"]
         if materials[members["material"]] == {"type": "diffuse", "reflectance": BLACK}:
             unlit = f"{members['material']} that reflects"
@@ -146,7 +152,7 @@ class Materials:
         return material.node_tree.get_output_node("CYCLES") or material.node_tree.get_output_node("ALL")
 
     def _kind(self, material, surface):
-        """Three flags: the material needs baked images of its own; they need a place for each triangle; its volume varies."""
+        """Returns three flags: the material needs baked images; they need an atlas of triangles; its volume varies."""
         output = self._output(material)
         if output is None:
             return False, False, False
@@ -173,7 +179,7 @@ class Materials:
         members = {"material": name}
         if medium is not None:
             self.parts["media"][name] = medium
-            members["inside_medium"] = name
+            members.update(self._media_members(name))
         if not is_black(look.emission) and look.strength > 0:
             self.parts["area_lights"][name] = {"radiance": look.emission, "scale": look.strength, "two_sided": True}
             members["area_light"] = name
@@ -182,7 +188,7 @@ class Materials:
         return {**members, **moved}, self.textures.uses_colors, self._tangent
 
     def _look_of(self, material):
-        """Look, medium, and what the shape needs of a displacement."""
+        """Returns the look, the medium, and the member of the shape that displaces it."""
         if material is None:
             return Look({"type": "diffuse", "reflectance": [0.8] * 3}), None, {}
         if not (material.use_nodes and material.node_tree):
@@ -200,14 +206,14 @@ class Materials:
 
     def _medium(self, node, material):
         volume = media.Volume(material.name, self.textures, self.report)
-        made = media.medium(volume, node)
-        if volume.is_missing:  # until the bake has come, the sockets' own values stand in
+        made = media.medium(volume, node, self.around)
+        if volume.is_missing:  # until the bake is finished, the sockets' own values are used
             self.unfinished.append(material.name)
         return made
 
     @staticmethod
     def _with_measured(look, material):
-        """Index, dispersion and thin film, which are properties of the material."""
+        """Adds the measured index, dispersion and thin film of the material's own properties."""
         own, made = material.lanthorn, look.material
         if made is None:
             return look
@@ -224,14 +230,14 @@ class Materials:
         return look
 
     def _displacement(self, socket, material, look):
-        """Cycles moves vertices, or bends normals, or both, as the material says."""
+        """Translates displacement. Cycles moves vertices, changes normals, or both, as the material says."""
         output = self.textures.source(socket)
         if output is None:
             return {}
         node, method = output.node, getattr(material.cycles, "displacement_method", "BUMP")
         method = getattr(material, "displacement_method", method)
         if node.type != "DISPLACEMENT":
-            self.report.note(material.name, f"{node.bl_label} at the displacement has no counterpart: it is left out")
+            self.report.note(material.name, f"the node {node.bl_label} as displacement is not supported: it is left out")
             return {}
         height = self.textures.number(node.inputs["Height"], material.name)
         scale = self.textures.constant(node.inputs["Scale"], material.name, "the scale of a displacement")
@@ -242,21 +248,21 @@ class Materials:
             self._bend(look.material, moved)
             return {}
         if self.textures.is_atlas:
-            self.report.note(material.name, "displacement by other coordinates than UV changes normals and moves no vertices")
+            self.report.note(material.name, "displacement that depends on more than UV changes normals, but moves no vertices")
             self._bend(look.material, self._scaled(height, scale, 0))
             return {}
         # Vertices move, as in Cycles without adaptive subdivision.
         return {"displacement": {"height": moved, "edge_length": NO_SUBDIVISION}}
 
     def _scaled(self, height, scale, middle):
-        """scale * (height - middle)."""
+        """Returns scale * (height - middle)."""
         name = f"{height['texture']}*{scale}-{middle}"
         self.parts["float_textures"][name] = {"type": "mix", "tex1": -scale * middle, "tex2": scale * (1 - middle),
                                               "amount": height}
         return {"texture": name}
 
     def _bend(self, material, height):
-        """Gives the bump height to all closures of the material that have no bump or normal map yet."""
+        """Adds the bump height to all closures of the material without a bump or normal map."""
         if material is None:
             return
         if material["type"] == "mix":
@@ -268,7 +274,7 @@ class Materials:
     def _look(self, node, owner):
         make = SHADERS.get(node.type)
         if make is None:
-            self.report.note(owner, f"the shader {node.bl_label} has no counterpart: a grey diffuse one stands in")
+            self.report.note(owner, f"the shader {node.bl_label} is not supported: a grey diffuse one replaces it")
             return Look({"type": "diffuse", "reflectance": [HALFWAY] * 3})
         return make(self, node, owner)
 
@@ -277,22 +283,22 @@ class Materials:
         return self._look_of_output(source, owner) if source is not None else Look({"type": "diffuse", "reflectance": BLACK})
 
     def _look_of_output(self, output, owner):
-        """Colours in the place of a shader emit, as in Cycles."""
+        """Translates the output of a shader, or of a colour, which emits as in Cycles."""
         if output.type == "SHADER":
             return self._look(output.node, owner)
         return Look(emission=self.textures.color_of(output, owner) or [HALFWAY] * 3)
 
     def _count(self):
-        """A number for each mix of a material, the same at each export."""
+        """Returns a number for each mix of a material, the same at each export."""
         self._mixes += 1
         return self._mixes
 
     def _solid(self, node, owner, **material):
-        """A closure with the relief that its shader node asks for."""
+        """Returns a closure with the bump or normal map of its shader node."""
         return {**material, **self._relief(node, owner)}
 
     def _relief(self, node, owner):
-        """normal_map or displacement."""
+        """Returns the member normal_map or displacement, if the shader node has one."""
         socket = node.inputs.get("Normal")
         source = self.textures.source(socket) if socket is not None else None
         if source is None:
@@ -302,7 +308,7 @@ class Materials:
             return {"normal_map": made} if made else {}
         if source.node.type == "BUMP":
             return self._bump(source.node, owner)
-        self.report.note(owner, f"the node {source.node.bl_label} at a normal has no counterpart")
+        self.report.note(owner, f"the node {source.node.bl_label} as a normal is not supported: it is left out")
         return {}
 
     def _bump(self, node, owner):
@@ -321,7 +327,7 @@ class Materials:
         return clamped(self.textures.color(node.inputs[name], owner))
 
     def _constant(self, node, owner, name, what):
-        """The number of an input that no texture can vary."""
+        """Returns the value of an input that must be constant."""
         return self.textures.constant(node.inputs[name], owner, what)
 
     # Shaders.
@@ -334,17 +340,17 @@ class Materials:
                                 transmittance=self._albedo(node, owner)))
 
     def transparent(self, node, owner):
-        color = self.textures.color(node.inputs["Color"], owner)
-        if color != [1.0, 1.0, 1.0]:
-            self.report.note(owner, "transparency has no colour")
-        return Look(alpha=0.0)
+        socket = node.inputs["Color"]
+        if socket.is_linked or tuple(socket.default_value[:3]) != (1, 1, 1):
+            self.report.note(owner, "the colour of a Transparent shader is not supported")
+        return Look(alpha=0.0, hole=socket)
 
     def emission(self, node, owner):
         emission, strength = self._emitted(node.inputs["Color"], node.inputs["Strength"], owner)
         return Look(emission=emission, strength=strength)
 
     def _emitted(self, color, strength, owner):
-        """Radiance and its factor."""
+        """Returns the radiance and its factor."""
         color, strength = self.textures.color(color, owner), self.textures.number(strength, owner)
         if not isinstance(strength, dict):
             return color, strength
@@ -354,7 +360,7 @@ class Materials:
 
     def glossy(self, node, owner):
         made = self._metal(node, owner, "Color")
-        anisotropy = node.inputs.get("Anisotropy")  # of Anisotropic, and of Glossy since Blender 4
+        anisotropy = node.inputs.get("Anisotropy")  # of Anisotropic BSDFs, and from Blender 4 on of Glossy
         if anisotropy is not None:
             amount = min(0.99, max(-0.99, self.textures.constant(anisotropy, owner, "anisotropy")))
             factors = (1 - amount, 1 / (1 - amount)) if amount >= 0 else (1 / (1 + amount), 1 + amount)
@@ -362,7 +368,7 @@ class Materials:
         return Look(made)
 
     def _brush(self, made, node, owner, factors, rotation):
-        """Sets the roughness of an anisotropic metal along its tangent and across it."""
+        """Sets the roughness of an anisotropic metal along and across its tangent."""
         if factors == (1, 1):
             return
         alpha = made["roughness"]["u"]
@@ -370,22 +376,22 @@ class Materials:
         turn = self._constant(node, owner, rotation, "the rotation of anisotropy")
         tangent = (*self._direction_of_tangent(node.inputs.get("Tangent"), owner), turn)
         if self._tangent not in (None, tangent):
-            self.report.note(owner, "one material can have one tangent: the last one is used")
+            self.report.note(owner, "a material can have only one tangent: the last one is used")
         self._tangent = tangent
 
     def _direction_of_tangent(self, socket, owner):
-        """("RADIAL", axis) or ("UV", name of the layer)."""
+        """Returns ("RADIAL", axis) or ("UV", name of the layer)."""
         source = self.textures.source(socket) if socket is not None else None
         if source is None:
             return "RADIAL", "Z"
         if source.node.type == "TANGENT":
             node = source.node
             return ("RADIAL", node.axis) if node.direction_type == "RADIAL" else ("UV", node.uv_map)
-        self.report.note(owner, f"the node {source.node.bl_label} cannot set a tangent: it is ignored")
+        self.report.note(owner, f"the node {source.node.bl_label} as a tangent is not supported: it is ignored")
         return "RADIAL", "Z"
 
     def _dielectric(self, node, owner, color):
-        # Cycles multiplies by the colour at each interface, Lanthorn by the root of the tint.
+        # At each interface, Cycles multiplies by the colour, Lanthorn by the square root of the tint.
         tint = self.textures.color(node.inputs[color], owner)
         if isinstance(tint, list):
             tint = [c * c for c in clamped(tint)]
@@ -396,7 +402,7 @@ class Materials:
         return Look(self._dielectric(node, owner, "Color"))
 
     def refraction(self, node, owner):
-        self.report.note(owner, "a Refraction shader reflects, too, as Glass does")
+        self.report.note(owner, "a Refraction shader is rendered as Glass, which also reflects")
         return self.glass(node, owner)
 
     def subsurface(self, node, owner):
@@ -455,7 +461,7 @@ class Materials:
         return made
 
     def _blend(self, first, second, amount, owner, what):
-        """The material `first` makes where amount is 0, that of `second` where it is 1."""
+        """Returns a mix of the materials that the two functions make: `first` for an amount of 0, `second` for 1."""
         if amount == 0:
             return first()
         if amount == 1:
@@ -469,20 +475,21 @@ class Materials:
                            roughness=self._roughness(node, owner))
 
     def _plastic(self, node, owner):
-        # Blender 3: the reflection at normal incidence is 0.08 times Specular; 4: twice that of the index.
+        # The reflectance at normal incidence is 0.08 times Specular in Blender 3; in Blender 4, twice the level times that of
+        # the index.
         specular = node.inputs.get("Specular") or node.inputs["Specular IOR Level"]
         factor = self.textures.number(specular, owner)
         if not isinstance(factor, dict):
             factor *= 2
         if not isinstance(factor, dict) and factor > 1:
-            self.report.note(owner, "Specular above 0.5 is taken as 0.5")
+            self.report.note(owner, "Specular is limited to 0.5")
             factor = 1.0
         base = self._solid(node, owner, type="plastic", reflectance=self._diffuse_color(node, owner), eta=1.5,
                            specular=factor, roughness=self._roughness(node, owner), **self._sheen(node, owner))
         return self._coated(base, node, owner)
 
     def _diffuse_color(self, node, owner):
-        """The base colour, which Blender 3 mixes with the subsurface colour."""
+        """Returns the base colour. Blender 3 mixes it with the subsurface colour."""
         base, under = self._albedo(node, owner, "Base Color"), node.inputs.get("Subsurface Color")
         amount = 0 if under is None else self.textures.number(node.inputs["Subsurface"], owner)
         if amount == 0:
@@ -502,11 +509,11 @@ class Materials:
         rough = node.inputs.get("Sheen Roughness")
         if rough is None:
             return {"sheen_color": [min(1.0, OLD_SHEEN * amount)] * 3, "sheen_roughness": OLD_SHEEN_ROUGHNESS}
-        self.report.note(owner, "sheen becomes a layer of fibres, whose edge is softer")
+        self.report.note(owner, "sheen is rendered as a layer of fibres, which is softer at the edge")
         return {"sheen_color": [min(1.0, amount)] * 3, "sheen_roughness": rough.default_value}
 
     def _coated(self, base, node, owner):
-        """Blender 3 adds a quarter of a reflection of index 1.5, Blender 4 has a layer."""
+        """Adds the coat: in Blender 3 a quarter of a reflection of index 1.5, in Blender 4 a dielectric layer."""
         is_old = "Clearcoat" in node.inputs
         amount = self.textures.number(node.inputs["Clearcoat" if is_old else "Coat Weight"], owner)
         if amount == 0:
@@ -531,14 +538,14 @@ class Materials:
     def _note_principled(self, node, owner):
         metallic = self.textures.number(node.inputs["Metallic"], owner)
         for name, text in (("Subsurface", SUBSURFACE), ("Subsurface Weight", SUBSURFACE),
-                           ("Anisotropic", "anisotropy is left out: only metals can have it")):
+                           ("Anisotropic", "anisotropy is supported for metals only: it is left out")):
             socket = node.inputs.get(name)
             is_used = socket is not None and (socket.is_linked or socket.default_value > 0)
             if is_used and not (name == "Anisotropic" and metallic == 1):
                 self.report.note(owner, text)
 
     def _coat_of_fresnel(self, node, owner):
-        """Diffuse under a reflection that a Fresnel or Layer Weight node mixes in: plastic. None if it is not that."""
+        """Returns plastic for a mix of Diffuse and Glossy by Fresnel or Layer Weight; None for other mixes."""
         factor = self.textures.source(node.inputs[0])
         first, second = (self.textures.source(socket) for socket in node.inputs[1:3])
         if factor is None or factor.node.type not in {"FRESNEL", "LAYER_WEIGHT"} or first is None or second is None:
@@ -564,12 +571,12 @@ class Materials:
         return self._mixed(first, second, amount, owner)
 
     def _with_holes(self, look, amount, is_first_hole, owner):
-        """`look` where the other part of a mix, a Transparent shader, is not."""
+        """Makes `look` transparent where the other part of a mix, a Transparent shader, is."""
         share = amount
         if not is_first_hole:
             share = self._complement(amount, owner)
         if look.alpha != OPAQUE:
-            self.report.note(owner, "of several transparencies in one material, the outermost one is used")
+            self.report.note(owner, "of several Transparent shaders in one material, the outermost one is used")
         look.alpha = share
         return look
 
@@ -594,16 +601,16 @@ class Materials:
         if is_black(part.emission):
             return
         if isinstance(share, dict):
-            self.report.note(owner, "a texture that mixes emission counts as one half")
+            self.report.note(owner, "a texture cannot mix emission: one half is used")
             share = HALFWAY
         if not is_black(look.emission):
-            self.report.note(owner, "of two emissions in one material, the second one is used")
+            self.report.note(owner, "of two emissions in one material, only the second one is used")
         look.emission, look.strength = part.emission, part.strength * share
 
     def add(self, node, owner):
         first, second = (self._input_look(socket, owner) for socket in node.inputs[:2])
         if first.material is not None and second.material is not None:
-            self.report.note(owner, "Add of two surfaces becomes their mean")
+            self.report.note(owner, "Add of two surfaces is rendered as their mean")
             look = self._mixed(first, second, HALFWAY, owner)
             look.strength *= 2
             return look
@@ -611,18 +618,49 @@ class Materials:
         look = Look(solid.material, alpha=solid.alpha)
         self._add_emission(look, first, 1, owner)
         self._add_emission(look, second, 1, owner)
-        if any(part.material is None and is_black(part.emission) for part in (first, second)):
-            self._add_hole(look, owner)
+        for part in first, second:
+            if part.material is None and is_black(part.emission):
+                self._add_hole(look, part.hole, owner)
         return look
 
-    def _add_hole(self, look, owner):
-        if look.material is not None:
-            self.report.note(owner, "a Transparent shader that is added to a surface is left out")
-        elif not is_black(look.emission):  # half of it, twice as bright
-            self.report.note(owner, "an emission with Transparent added lets half of the light pass")
-            look.alpha, look.strength = HALFWAY, 2 * look.strength
-        else:
-            look.alpha = 0.0
+    def _add_hole(self, look, hole, owner):
+        """Adds a Transparent shader, whose colour socket is `hole` (None: black), to a look."""
+        if look.material is None:
+            if is_black(look.emission):
+                look.alpha, look.hole = 0.0, look.hole or hole
+            else:  # half of the surface, twice as bright
+                self.report.note(owner, "Transparent added to an emission lets only half of the light through")
+                look.alpha, look.strength = HALFWAY, 2 * look.strength
+            return
+        passing = self.textures.number(hole, owner) if hole is not None else 0
+        if isinstance(passing, dict):
+            self.report.note(owner, "where Transparent is added to a surface, the surface reflects less")
+            look.alpha = self._product(look.alpha, self._complement(passing, owner))
+        elif passing > 0:
+            if passing > HALFWAY:
+                self.report.note(owner, "Transparent added to a surface lets only half of the light through")
+            share = 1 - min(passing, HALFWAY)
+            look.alpha = self._product(look.alpha, share)
+            self._brighten(look.material, 1 / share)
+
+    def _product(self, first, second):
+        """Returns the product of two numbers or textures."""
+        if not isinstance(first, dict):
+            first, second = second, first
+        if not isinstance(first, dict):
+            return first * second
+        if second == 1:
+            return first
+        name = f"{first['texture']} * {second['texture'] if isinstance(second, dict) else second}"
+        self.parts["float_textures"][name] = {"type": "scale", "tex": first, "scale": second}
+        return {"texture": name}
+
+    def _brighten(self, material, factor):
+        """Multiplies the colours of a material's diffuse closures by a factor."""
+        for name in material.get("materials", ()):
+            self._brighten(self.parts["materials"][name], factor)
+        for name in {"reflectance", "transmittance"} & material.keys():
+            material[name] = clamped(self._times_color(material[name], factor))
 
 
 SHADERS = {"BSDF_DIFFUSE": Materials.diffuse, "BSDF_TRANSLUCENT": Materials.translucent,

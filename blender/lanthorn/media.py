@@ -1,17 +1,21 @@
 # SPDX-FileCopyrightText: 2026 The Lanthorn authors
 # SPDX-License-Identifier: Apache-2.0
-"""Volume shaders as media: homogeneous ones, or grids where a socket varies over space. Cycles bakes such sockets at the
-middles of the grid's cells (bake.py)."""
+"""Translates volume shaders to homogeneous media, or to grids if a socket varies over space. Cycles bakes such sockets
+at the centres of the grid's cells (bake.py)."""
+import math
+
 import numpy
 
-from . import voxels
+from . import blackbody, voxels
 
-LEAST_ABSORPTION = 1e-4  # per metre, of a volume that emits
-RAMP = 256               # samples of a Color Ramp
+LEAST_ABSORPTION = 1e-4  # per metre; a smaller one could not emit
+STEFAN_BOLTZMANN = 5.670373e-8 * 1e-6 / math.pi  # of Cycles' volumes: W m^-2 K^-4 sr^-1, times 10^-6
+RAMP = 256               # samples that represent a Color Ramp
 OPERATIONS = {"ADD": numpy.add, "SUBTRACT": numpy.subtract, "MULTIPLY": numpy.multiply, "MINIMUM": numpy.minimum,
               "MAXIMUM": numpy.maximum, "DIVIDE": lambda a, b: a / numpy.where(b == 0, numpy.inf, b),
               "POWER": lambda a, b: numpy.maximum(a, 0) ** b, "GREATER_THAN": lambda a, b: (a > b) * 1.0,
               "LESS_THAN": lambda a, b: (a < b) * 1.0}
+OF_WORLD = "world volume"  # the name of the medium around all objects
 KINDS = {"VOLUME_ABSORPTION", "VOLUME_SCATTER", "PRINCIPLED_VOLUME", "EMISSION", "ADD_SHADER", "MIX_SHADER"}
 
 
@@ -20,7 +24,7 @@ def _zero():
 
 
 def _sum(first, second, shares=(1.0, 1.0)):
-    """Two media in one place; of the phase functions, the mean by what they scatter."""
+    """Adds two media. The anisotropy is the mean, weighted by the scattering coefficients."""
     made = {name: shares[0] * first[name] + shares[1] * second[name] for name in ("sigma_a", "sigma_s", "emission")}
     weights = [numpy.mean(share * part["sigma_s"]) for share, part in zip(shares, (first, second))]
     total = sum(weights)
@@ -29,14 +33,14 @@ def _sum(first, second, shares=(1.0, 1.0)):
 
 
 class Volume:
-    """A volume shader. Numbers and colours are constants, or arrays with one row per cell."""
+    """Evaluates a volume shader. Numbers and colours are constants, or arrays with one row per cell."""
 
     def __init__(self, owner, textures, report):
         self.owner, self.textures, self.report = owner, textures, report
-        self.grid, self.is_missing = None, False  # the cells, if something varies; whether a bake has still to come
+        self.grid, self.is_missing = None, False  # the cells of sockets that vary; True if a bake is still to come
 
     def _field(self, output):
-        """The socket's values, one per cell, of shape (n, 3); None if it is constant or cannot be evaluated."""
+        """Returns the socket's values in all cells, of shape (n, 3); None if it is constant or cannot be evaluated."""
         surface = self.textures.surface
         if output is None or surface is None:
             return None
@@ -71,7 +75,7 @@ class Volume:
         fields = self.textures.surface.fields
         self.grid = fields.grid
         if name not in fields.values:
-            self.report.note(self.owner, f"the volume has no grid {name}: it counts as 0")
+            self.report.note(self.owner, f"the volume has no grid {name}: its value is 0")
             return numpy.zeros((int(fields.grid.counts.prod()), 3))
         return fields.values[name]
 
@@ -102,7 +106,7 @@ class Volume:
         if output is not None and output.node.type == "RGB":
             return numpy.array(output.default_value[:3])
         if output is not None:
-            self.report.note(self.owner, f"the nodes at {name} of a volume cannot be evaluated: the socket's own value is used")
+            self.report.note(self.owner, f"the nodes behind {name} of a volume cannot be evaluated: the socket's own value is used")
         return numpy.array(node.inputs[name].default_value[:3])
 
     def _of_socket(self, socket):
@@ -111,7 +115,7 @@ class Volume:
 
     def of(self, node):
         if node.type not in KINDS:
-            self.report.note(self.owner, f"the volume shader {node.bl_label} has no counterpart: it is left out")
+            self.report.note(self.owner, f"the volume shader {node.bl_label} is not supported: it is left out")
             return _zero()
         if node.type == "ADD_SHADER":
             return _sum(*(self._of_socket(socket) for socket in node.inputs[:2]))
@@ -128,29 +132,41 @@ class Volume:
         return {**_zero(), "sigma_s": density * color, "g": self._even(self.number(node, "Anisotropy"))}
 
     def _even(self, value):
-        """The mean of a number that Lanthorn takes as a constant."""
+        """Returns the mean of a value that must be constant in Lanthorn."""
         if numpy.size(value) > 1:
             self.report.note(self.owner, "the anisotropy of a volume cannot vary: its mean is used")
         return float(numpy.mean(value))
 
     def _principled(self, node):
-        """Cycles scatters by the colour; the rest is absorbed, where the absorption colour is white not at all."""
-        density = numpy.maximum(0.0, self.number(node, "Density"))
-        fields, attribute = self.textures.surface.fields, node.inputs["Density Attribute"].default_value
-        if fields is not None and attribute in fields.values:
-            density = density * self._attribute(attribute).mean(axis=1, keepdims=True)
+        """Returns Cycles' coefficients: the colour scatters, and the absorption colour lets part of the rest pass."""
+        density = self._times_attribute(numpy.maximum(0.0, self.number(node, "Density")), node, "Density Attribute")
         color, absorbed = self.color(node, "Color"), self.color(node, "Absorption Color")
         emitted = self.number(node, "Emission Strength")
-        if numpy.max(self.number(node, "Blackbody Intensity")) > 0:
-            self.report.note(self.owner, "the black body of a volume is left out")
+        glow = emitted * self.color(node, "Emission Color") + self._blackbody(node)
         return {"sigma_s": density * color,
                 "sigma_a": density * numpy.maximum(0.0, 1 - color) * numpy.maximum(0.0, 1 - numpy.maximum(0.0, absorbed) ** 0.5),
                 "g": self._even(self.number(node, "Anisotropy")),
-                "emission": emitted * self.color(node, "Emission Color")}
+                "emission": glow}
+
+    def _times_attribute(self, value, node, name):
+        """Returns the value times the grid that a socket names, if the object has that grid."""
+        surface, attribute = self.textures.surface, node.inputs[name].default_value
+        if surface is None or surface.fields is None or attribute not in surface.fields.values:
+            return value
+        return value * self._attribute(attribute).mean(axis=1, keepdims=True)
+
+    def _blackbody(self, node):
+        """Returns the emission per metre of a Principled Volume that is hot."""
+        intensity = self.number(node, "Blackbody Intensity")
+        if numpy.max(intensity) <= 0:
+            return numpy.zeros(3)
+        kelvin = numpy.maximum(0.0, self._times_attribute(self.number(node, "Temperature"), node, "Temperature Attribute"))
+        power = STEFAN_BOLTZMANN * (1 + numpy.minimum(intensity, 1) * (kelvin**4 - 1))
+        return power * blackbody.colors(kelvin) * self.color(node, "Blackbody Tint")
 
 
 def _with_emission(made):
-    """Converts Cycles' emission per metre to Lanthorn's radiance of an infinitely deep medium: divides it by sigma_a."""
+    """Divides Cycles' emission per metre by sigma_a, which gives Lanthorn's: the radiance of an infinitely deep medium."""
     emission = made["emission"]
     if numpy.max(emission) <= 0:
         made.pop("emission")
@@ -162,9 +178,16 @@ def _with_emission(made):
     return made
 
 
-def medium(volume, node):
-    """The medium of the volume shader at a node; None if the node is no volume shader."""
-    made = volume.of(node)
+def medium(volume, node, around=None):
+    """Returns the medium of the volume shader at a node, or None if there is no such medium. `around` is the world's
+    volume (`Volume.of`): as in Cycles, it also fills the objects inside it."""
+    made = volume.of(node) if around is None else _sum(volume.of(node), around)
+    return part_of(made, volume)
+
+
+def part_of(made, volume=None):
+    """Returns the medium as a part of a scene; None if it neither emits nor takes light. `volume` has the grid of values
+    that vary."""
     if numpy.max(made["emission"]) <= 0 and max(numpy.max(made["sigma_a"]), numpy.max(made["sigma_s"])) <= 0:
         return None
     made = _with_emission(made)

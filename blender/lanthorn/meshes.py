@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The Lanthorn authors
 # SPDX-License-Identifier: Apache-2.0
-"""Evaluated meshes as arrays."""
+"""Copies evaluated meshes to arrays."""
 import numpy
 
 from . import atlas
@@ -13,7 +13,7 @@ def _get(collection, name, count, dtype):
 
 
 def _has_normals_of_vertices(mesh, smooth):
-    """Whether all corners at a vertex share its normal. `smooth`: a flag for each polygon."""
+    """Returns whether all corners of a vertex share its normal. `smooth` has a flag for each polygon."""
     if hasattr(mesh, "normals_domain"):  # from Blender 4.1 on
         return mesh.normals_domain == "POINT"
     return bool(smooth.all()) and not mesh.use_auto_smooth
@@ -35,14 +35,14 @@ def _smooth_polygons(mesh):
 
 
 def _slots(mesh, count):
-    """The number of the material of each triangle."""
-    if len(mesh.materials) < 2:  # numbers beyond the last slot count as the last one
+    """Returns the material slot of each triangle."""
+    if len(mesh.materials) < 2:  # larger indices refer to the last slot
         return numpy.zeros(count, dtype=numpy.int32)
     return _get(mesh.loop_triangles, "material_index", count, numpy.int32)
 
 
 def _corner_colors(mesh, attribute, vertices):
-    """Linear colours and alpha of the corners; None for domains without corners."""
+    """Returns linear colours and alpha of the corners; None for other domains than points and corners."""
     if attribute.domain not in {"POINT", "CORNER"} or not len(attribute.data):
         return None
     colors = _get(attribute.data, "color", 4 * len(attribute.data), numpy.float32).reshape(-1, 4)
@@ -53,7 +53,7 @@ VALUES_OF = {"FLOAT": ("value", 1), "FLOAT_VECTOR": ("vector", 3)}
 
 
 def _corner_values(mesh, attribute, vertices):
-    """A numeric or vector attribute at the corners, as colours; None for other types."""
+    """Returns a numeric or vector attribute of the corners, as colours; None for other types."""
     if attribute.data_type not in VALUES_OF or attribute.name.startswith(".") or attribute.name == "position":
         return None
     member, count = VALUES_OF[attribute.data_type]
@@ -70,12 +70,12 @@ def _corner_values(mesh, attribute, vertices):
 
 
 class Surface:
-    """A mesh: a copy of what shapes and bakes need, so that Blender's may go."""
+    """Holds a copy of a mesh for shapes and bakes, because Blender's own is temporary."""
 
     def __init__(self, mesh, key, texspace=None):
         self.key, self.texspace = key, texspace
         self.object_name, self.to_world = key, None
-        self.fields = None  # of fluids: volumes.Fields
+        self.fields = None  # volumes.Fields of fluid domains
         self._stored, self._atlases, self._shapes, self._bounds = {}, {}, {}, {}
         mesh.calc_loop_triangles()
         count, loops = len(mesh.loop_triangles), len(mesh.loops)
@@ -94,20 +94,27 @@ class Surface:
             self.normals = self.vertex_normals[self.vertices]
         elif self.is_smooth:
             self.normals = _corner_normals(mesh, loops)
-        # Not before: the normals add a layer, which moves the others.
+        # UV layers are read last: computing normals adds a layer, which moves the others.
         self.uv_layers = {layer.name: _get(layer.data, "uv", 2 * loops, numpy.float32).reshape(-1, 2)
                           for layer in mesh.uv_layers}
+        # In Blender 3.4, geometry nodes turn UV maps into attributes.
+        self.uv_layers.update({a.name: _get(a.data, "vector", 2 * loops, numpy.float32).reshape(-1, 2)
+                               for a in mesh.attributes if self._is_uv_map(a)})
         shown = next((layer.name for layer in mesh.uv_layers if layer.active_render), None)
         self.uv_name = shown if shown is not None else next(iter(self.uv_layers), None)
         colors = {a.name: _corner_colors(mesh, a, self.vertices) for a in mesh.color_attributes}
         self.colors = {name: values for name, values in colors.items() if values is not None}
         values = {a.name: _corner_values(mesh, a, self.vertices) for a in mesh.attributes if a.name not in colors}
-        self.values = {name: array for name, array in values.items() if array is not None}  # for bakes alone
+        self.values = {name: array for name, array in values.items() if array is not None}  # for bakes only
         active = mesh.color_attributes.active_color
         self.color_name = active.name if active is not None and active.name in self.colors else None
 
+    def _is_uv_map(self, attribute):
+        is_of_corners = attribute.data_type == "FLOAT2" and attribute.domain == "CORNER"
+        return is_of_corners and attribute.name not in self.uv_layers and not attribute.name.startswith(".")
+
     def stored(self, bakes, slot):
-        """The path of the file with `atlas_arrays`, and the size of the image for them."""
+        """Returns the path of a file with `atlas_arrays`, and the size of their image."""
         key = slot, bakes.size
         if key not in self._stored:
             self._stored[key] = bakes.store(self.atlas_arrays(slot, bakes.size)), self._atlas(slot, bakes.size)[1]
@@ -117,9 +124,9 @@ class Surface:
         return [] if self.is_empty else numpy.flatnonzero(numpy.bincount(self.slots)).tolist()
 
     def shape(self, slot, color_name=None, is_welded=False, tangent=None):
-        """The triangles of a slot as a mesh of Lanthorn, whose vertices are the corners of Blender's. Welded: one vertex
-        for all that are alike. `tangent`: see `_tangents`. The same arrays at each call, so that nobody need compare
-        them."""
+        """Returns the triangles of a slot as a mesh of Lanthorn, with one vertex for each corner in Blender. If welded,
+        equal corners share a vertex. `tangent` has the arguments of `_tangents`. Each call returns the same arrays, which
+        makes comparisons cheap."""
         key = slot, color_name, is_welded, tangent
         if key not in self._shapes:
             self._shapes[key] = self._shape(*key)
@@ -147,7 +154,7 @@ class Surface:
         return _subset(_welded(triangles, self.vertices, corners) if is_welded else triangles, corners)
 
     def atlas_shape(self, slot, size, tangent=None):
-        """As `shape`, with a place of its own in an image for each triangle."""
+        """Returns the same with the texture coordinates of the atlas."""
         key = "atlas", slot, size, tangent
         if key not in self._shapes:
             self._shapes[key] = self._atlas_shape(slot, size, tangent)
@@ -164,8 +171,9 @@ class Surface:
         return shape
 
     def _tangents(self, kind, name, turn):
-        """The direction at each corner along which brushes went. RADIAL: around the axis `name` of the texture space; UV:
-        along u of the layer `name`. `turn`: around the normal, in full turns."""
+        """Returns the tangent of anisotropy at each corner. A tangent of kind RADIAL runs around the axis `name` of the
+        texture space, one of kind UV along u of the layer `name`. `turn` is the rotation around the normal, in full
+        turns."""
         around = self._around(name) if kind == "RADIAL" else self._along_u(name)
         if turn == 0:
             return around  # the program makes it perpendicular to the normal
@@ -196,14 +204,14 @@ class Surface:
         return self._of_corners(numpy.cross(points[:, 1] - points[:, 0], points[:, 2] - points[:, 0]))
 
     def _of_corners(self, vectors):
-        """Normalizes a vector for each triangle and repeats it at the triangle's corners."""
+        """Normalizes the vectors of triangles and copies them to the corners."""
         vectors = vectors / numpy.maximum(numpy.linalg.norm(vectors, axis=1, keepdims=True), 1e-20)
         of_corners = numpy.zeros((len(self.vertices), 3), dtype=numpy.float32)
         of_corners[self.triangles] = vectors[:, None, :]
         return of_corners
 
     def texture_space(self):
-        """Centre and half extent of the box of Generated coordinates."""
+        """Returns the centre and the half extent of the box of Generated coordinates."""
         if self.texspace is not None:
             return numpy.array(self.texspace)
         low, high = self.positions.min(axis=0), self.positions.max(axis=0)
@@ -219,7 +227,7 @@ class Surface:
         return name in self.colors or name in self.values or name in self.uv_layers
 
     def uv_bounds(self, slot):
-        """The lowest and the highest texture coordinates of a slot; the unit square if it contains them."""
+        """Returns the bounds of a slot's texture coordinates, which contain the unit square."""
         if slot not in self._bounds:
             self._bounds[slot] = self._uv_bounds(slot)
         return self._bounds[slot]
@@ -233,7 +241,7 @@ class Surface:
         return low, high
 
     def atlas_arrays(self, slot, size):
-        """What bake_worker.py needs to bake the slot."""
+        """Returns the arrays with which bake_worker.py bakes the slot."""
         chosen = self._triangles_of(slot)
         corners = chosen.reshape(-1)
         used, inverse = numpy.unique(self.vertices[corners], return_inverse=True)
@@ -246,7 +254,7 @@ class Surface:
         return arrays
 
     def square_arrays(self, low, high):
-        """A square whose texture coordinates are those between two corners, and which fills its image."""
+        """Returns the arrays of a square that fills its image and has texture coordinates from `low` to `high`."""
         uvs = numpy.array([[low[0], low[1]], [high[0], low[1]], [high[0], high[1]], [low[0], low[1]],
                            [high[0], high[1]], [low[0], high[1]]], dtype=numpy.float32)
         unit = numpy.array([[0, 0], [1, 0], [1, 1], [0, 0], [1, 1], [0, 1]], dtype=numpy.float32)
@@ -257,7 +265,7 @@ class Surface:
 
 
 def _welded(triangles, vertices, corners):
-    """The triangles with the first of all corners that are alike."""
+    """Replaces each corner of the triangles by the first of all equal corners."""
     columns = [vertices[:, None].astype(numpy.float64)]
     columns += [numpy.round(values, 5) for name, values in corners.items() if name != "positions"]
     _, first, inverse = numpy.unique(numpy.concatenate(columns, axis=1), axis=0, return_index=True, return_inverse=True)
@@ -265,7 +273,7 @@ def _welded(triangles, vertices, corners):
 
 
 def _subset(triangles, corners):
-    """The triangles with the corners that they have alone."""
+    """Returns the triangles, with only the corners that they use."""
     used = numpy.zeros(len(corners["positions"]), dtype=bool)
     used[triangles] = True
     if used.all():

@@ -1,12 +1,12 @@
 # SPDX-FileCopyrightText: 2026 The Lanthorn authors
 # SPDX-License-Identifier: Apache-2.0
-"""Motion blur: where objects and the camera are when the shutter opens and when it closes."""
+"""Adds motion blur: the places of objects and the camera when the shutter opens and closes."""
 from . import camera
 from .scene_export import SceneExport
 
 
 def shutter_times(scene):
-    """Frames, relative to the current one."""
+    """Returns when the shutter opens and closes, in frames relative to the current one."""
     shutter = scene.render.motion_blur_shutter
     position = getattr(getattr(scene, "cycles", None), "motion_blur_position", "CENTER")
     start = {"START": 0.0, "CENTER": -shutter / 2, "END": -shutter}[position]
@@ -14,14 +14,14 @@ def shutter_times(scene):
 
 
 def _places(depsgraph, camera_object):
-    """Matrices by the names of instances, and that of the camera."""
+    """Returns the matrices of all instances by name, and that of the camera."""
     places = {SceneExport.name_of(i): camera.rows(i.matrix_world) for i in depsgraph.object_instances if i.show_self}
     seen = camera_object.evaluated_get(depsgraph)
     return places, camera.times_flip_z(camera.without_scale(seen.matrix_world))
 
 
 def add_motion(engine, depsgraph, camera_object, parts, camera_part):
-    """Replaces the places of what moves. Lamps, and what bends, stand still."""
+    """Gives moving instances and the camera two places. Lights and deforming meshes do not blur."""
     scene = depsgraph.scene
     if not scene.render.use_motion_blur:
         return

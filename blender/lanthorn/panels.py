@@ -1,12 +1,13 @@
 # SPDX-FileCopyrightText: 2026 The Lanthorn authors
 # SPDX-License-Identifier: Apache-2.0
-"""Panels: nothing needs to be set for a first picture."""
+"""Defines the panels of the interface. All settings have defaults for a first picture."""
 import bpy
 
-# Panels of Blender and of Eevee that make sense here. Others belong to another engine.
+# Panels of Blender and Eevee that also apply to this engine.
 SHARED_PREFIXES = ("RENDER_PT_", "VIEWLAYER_PT_", "MATERIAL_PT_", "DATA_PT_", "WORLD_PT_", "TEXTURE_PT_", "OBJECT_PT_",
                    "PARTICLE_PT_", "SCENE_PT_", "CAMERA_PT_")
 EEVEE_PANELS = {"EEVEE_MATERIAL_PT_surface", "EEVEE_MATERIAL_PT_volume", "EEVEE_WORLD_PT_surface"}
+VISIBLE_TYPES = {"MESH", "CURVE", "SURFACE", "META", "FONT", "CURVES", "LIGHT"}  # objects that can be hidden from the camera
 NOT_SHARED = {"RENDER_PT_stamp_note", "RENDER_PT_simplify", "RENDER_PT_freestyle", "VIEWLAYER_PT_filter",
               "DATA_PT_EEVEE_light", "DATA_PT_EEVEE_shadow", "DATA_PT_spot"}
 
@@ -104,10 +105,25 @@ class LANTHORN_LIGHT_PT_lamp(LanthornPanel, bpy.types.Panel):
             layout.prop(light, "size")
             if light.shape in {"RECTANGLE", "ELLIPSE"}:
                 layout.prop(light, "size_y")
+            layout.prop(light, "spread")
+
+
+class LANTHORN_OBJECT_PT_visibility(LanthornPanel, bpy.types.Panel):
+    bl_label = "Ray Visibility"
+    bl_context = "object"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context):
+        return context.object is not None and context.object.type in VISIBLE_TYPES and super().poll(context)
+
+    def draw(self, context):
+        self.layout.use_property_split = True
+        self.layout.prop(context.object, "visible_camera", text="Camera")
 
 
 CLASSES = (LANTHORN_RENDER_PT_quality, LANTHORN_RENDER_PT_method, LANTHORN_VIEWLAYER_PT_passes, LANTHORN_MATERIAL_PT_measured,
-           LANTHORN_LIGHT_PT_lamp)
+           LANTHORN_LIGHT_PT_lamp, LANTHORN_OBJECT_PT_visibility)
 
 
 def _shared_panels():

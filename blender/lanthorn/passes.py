@@ -1,20 +1,20 @@
 # SPDX-FileCopyrightText: 2026 The Lanthorn authors
 # SPDX-License-Identifier: Apache-2.0
-"""Blender's passes and the layers of Lanthorn that they show."""
+"""Maps Blender's passes to layers of Lanthorn."""
 from dataclasses import dataclass
 
 import numpy
 
-FAR = 1e10  # Blender's depth where there is nothing
+FAR = 1e10  # Blender's depth of the background
 
 
 @dataclass(frozen=True)
 class Pass:
-    name: str      # Blender's
-    channels: str  # and their letters
+    name: str      # in Blender
+    channels: str  # their letters
     kind: str
-    layer: str     # Lanthorn's
-    first: str     # channel of the layer
+    layer: str     # in Lanthorn
+    first: str     # the layer's first channel
 
 
 def count_text(count):
@@ -36,7 +36,7 @@ DENOISING = (color_pass("Denoising Albedo", "albedo"), Pass("Denoising Normal", 
 
 
 def wanted_passes(view_layer):
-    """Those beside Combined."""
+    """Returns the passes that a view layer asks for, without Combined."""
     passes = [p for flag, p in OF_VIEW_LAYER if getattr(view_layer, flag)]
     passes += [p for flag, p in OWN if getattr(view_layer.lanthorn, flag)]
     cycles = getattr(view_layer, "cycles", None)
@@ -53,7 +53,7 @@ def layers_of(passes, is_transparent):
 
 
 class Picture:
-    """An answer's channels, rows from the top."""
+    """Reads the channels of an answer, rows from the top."""
 
     def __init__(self, answer):
         array = answer["pixels"]
@@ -61,7 +61,7 @@ class Picture:
         self.pixels = numpy.frombuffer(array.bytes, dtype=numpy.float32).reshape(array.shape)
 
     def values(self, first, count):
-        """`count` channels from that of the name `first` on; none if the layer is not there."""
+        """Returns `count` channels, starting with the one named `first`; None if there is no such channel."""
         if first not in self.channels:
             return None
         begin = self.channels.index(first)
@@ -84,8 +84,8 @@ class Picture:
 
 
 def fill(layer, values, size):
-    """Writes the passes of a render layer: `values` has an array (height, width, channels), rows from the top, or None,
-    for each name. All at once, which is 300 times as fast as one by one."""
+    """Writes the passes of a render layer. `values` has an array (height, width, channels), rows from the top, or None,
+    for each pass name. One call for all passes is 300 times as fast as one for each."""
     flat = []
     for blender_pass in layer.passes:
         pixels = values.get(blender_pass.name)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The Lanthorn authors
 # SPDX-License-Identifier: Apache-2.0
-"""What of a scene has no counterpart in Lanthorn, each said once."""
+"""Collects the features of a scene that Lanthorn does not support, and names each of them once."""
 
 
 class Report:
@@ -8,11 +8,11 @@ class Report:
         self._notes = {}
 
     def note(self, owner, text):
-        """`text` says what is missing and what stands in for it; `owner` is the name of where it is."""
+        """Notes that an object or material (`owner`) has an unsupported feature. `text` also names what replaces it."""
         self._notes.setdefault(text, []).append(owner)
 
     def lines(self):
-        """One line for each kind of note, with the names of up to three owners."""
+        """Returns a line for each text, with the names of up to three owners."""
         lines = []
         for text, owners in self._notes.items():
             names = list(dict.fromkeys(owners))

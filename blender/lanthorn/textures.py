@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The Lanthorn authors
 # SPDX-License-Identifier: Apache-2.0
-"""Values of sockets: constants, and textures that nodes describe."""
+"""Translates the values of sockets to constants and textures."""
 import math
 import os
 import struct
@@ -9,14 +9,16 @@ import zlib
 import bpy
 import numpy
 
+from . import blackbody
+
 
 def source_of(socket):
-    """(socket of the node that feeds `socket`, stack of groups entered), reroutes and muted nodes aside; None."""
+    """Returns the output that is linked to `socket`, or None."""
     return socket.links[0].from_socket if socket.is_linked else None
 
 
 def linear_map(mapping):
-    """The matrix and the offset of (u, v) of a Mapping node."""
+    """Returns the matrix and the offset by which a Mapping node transforms (u, v)."""
     angle = mapping.inputs["Rotation"].default_value[2]
     sx, sy = mapping.inputs["Scale"].default_value[:2]
     cos, sin = math.cos(angle), math.sin(angle)
@@ -30,9 +32,9 @@ def linear_map(mapping):
 
 
 def _png(path, pixels):
-    """Writes (height, width, 4) of 8 bits, rows from the top."""
+    """Writes a PNG file. `pixels` has the shape (height, width, 4), 8 bits, rows from the top."""
     height, width = pixels.shape[:2]
-    rows = numpy.zeros((height, 1 + 4 * width), dtype=numpy.uint8)  # each after its filter: none
+    rows = numpy.zeros((height, 1 + 4 * width), dtype=numpy.uint8)  # the first byte of each row is its filter: none
     rows[:, 1:] = pixels.reshape(height, -1)
     chunks = ((b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 6, 0, 0, 0)),
               (b"IDAT", zlib.compress(rows.tobytes(), 1)), (b"IEND", b""))
@@ -43,7 +45,7 @@ def _png(path, pixels):
 
 
 def _written(image, path):
-    """Writes the pixels of an image that is no file. Returns the name, with its extension."""
+    """Writes the pixels of an image without a file. Returns the path, with its extension."""
     width, height = image.size
     pixels = numpy.empty(width * height * 4, dtype=numpy.float32)
     image.pixels.foreach_get(pixels)
@@ -61,13 +63,13 @@ def _written(image, path):
 
 
 class ImageFiles:
-    """Images as files that Lanthorn reads; images without a file are written to a folder, once."""
+    """Provides files for images. Images without a file are written to a folder, once each."""
 
     def __init__(self, folder):
         self.folder, self._written = folder, {}
 
     def path_of(self, image):
-        """Returns None if the image has no pixels."""
+        """Returns the path of the image's file, or None if the image has no pixels."""
         path = bpy.path.abspath(image.filepath, library=image.library)
         if image.source == "FILE" and image.packed_file is None and not image.is_dirty and os.path.isfile(path):
             return path
@@ -79,33 +81,33 @@ class ImageFiles:
         return self._written[key]
 
 
-# Nodes whose values depend on the ray that meets the surface, or on the light path.
+# Nodes whose values depend on the ray or the light path.
 OF_THE_RAY = {"FRESNEL", "LAYER_WEIGHT", "CAMERA", "LIGHT_PATH"}
 TRUE_RAYS = {"Is Camera Ray"}
-# Textures of three dimensions, which are put on by Generated coordinates unless others are given.
+# Three-dimensional textures, which use Generated coordinates by default.
 SOLID = {"TEX_NOISE", "TEX_VORONOI", "TEX_MUSGRAVE", "TEX_WAVE", "TEX_MAGIC", "TEX_GRADIENT", "TEX_WHITE_NOISE",
          "TEX_BRICK", "TEX_CHECKER", "TEX_POINTDENSITY", "TEX_IES"}
-# Values of a place on an object, beside its texture coordinates.
+# Nodes whose values depend on more than texture coordinates.
 OF_A_PLACE = {"NEW_GEOMETRY", "AMBIENT_OCCLUSION", "BEVEL", "WIREFRAME", "TANGENT", "ATTRIBUTE", "PARTICLE_INFO",
               "HAIR_INFO", "OBJECT_INFO", "UVALONGSTROKE", "VERTEX_COLOR", "CURVES_INFO"}
 NATIVE = {"RGB", "VALUE", "BLACKBODY", "TEX_IMAGE", "MAPPING", "TEX_COORD", "UVMAP", "NORMAL_MAP", "BUMP", "DISPLACEMENT"}
-# Values of a place in the world, not on the object.
+# Nodes whose values depend on the place in the world.
 OF_THE_WORLD = {"NEW_GEOMETRY", "OBJECT_INFO", "CAMERA", "AMBIENT_OCCLUSION"}
 WORLD_OUTPUTS = {"Camera", "Window", "Reflection"}  # of Texture Coordinate
-SIDE_OF_A_CONSTANT = 4  # texels of the image of a tree that is the same everywhere
+SIDE_OF_A_CONSTANT = 4  # texels along a side of the image of a constant
 GREY_OF_MAGENTA = 0.2848
 
 
 def is_native(node):
-    """Whether a node's values surely need no image of their own."""
+    """Returns whether a node's values never need a baked image."""
     if node.type in {"MIX_RGB", "MIX"}:
         return node.blend_type in {"MIX", "MULTIPLY"} and getattr(node, "data_type", "RGBA") == "RGBA"
     return node.type in NATIVE or node.type in OF_THE_RAY or node.bl_idname.startswith(("ShaderNodeBsdf", "ShaderNodeVolume"))
 
 
 def mean_fresnel(eta):
-    """The share of even light from all sides that a smooth dielectric surface reflects, by Schlick's approximation; from
-    inside (eta below 1), by what passes being the same both ways."""
+    """Returns the hemispherical reflectance of a smooth dielectric surface, by Schlick's approximation. From inside (eta
+    below 1), it follows from reciprocity: the flux that passes is the same both ways."""
     if eta < 1:
         return 1 - (1 - mean_fresnel(1 / max(eta, 1e-3))) * eta**2
     head_on = ((eta - 1) / (eta + 1)) ** 2
@@ -113,31 +115,31 @@ def mean_fresnel(eta):
 
 
 def _magenta(is_color, channel):
-    """The colour that Cycles shows for a missing image."""
+    """Returns the colour, or a channel of it, that Cycles shows for a missing image."""
     if is_color:
         return [1, 0, 1]
     return {"Alpha": 1.0, "Red": 1.0, "R": 1.0, "Green": 0.0, "G": 0.0, "Blue": 1.0, "B": 1.0}.get(channel, GREY_OF_MAGENTA)
 
 
 class Textures:
-    """Adds textures to the parts of a scene. The values of sockets are numbers, lists, or references to textures. What
-    no texture can do is baked to an image, by texture coordinates, or triangle by triangle where a node asks for other
-    coordinates (then no image can keep its own place, and all of a material's are baked)."""
+    """Adds textures to the parts of a scene. The value of a socket is a number, a list, or a reference to a texture.
+    Unsupported nodes are baked to an image: over the UV square if they depend on UV only, otherwise into an atlas of the
+    triangles. In the second case, all textures of the material are baked, because they share the atlas."""
 
     def __init__(self, parts, report, images, bakes):
         self.parts, self.report, self.images, self.bakes = parts, report, images, bakes
-        self.groups = []  # group nodes that were entered
-        self.uses_colors = None  # of vertices, by their name
-        self.color_at_root = None  # of images, for hair
+        self.groups = []  # group nodes that `source` has entered
+        self.uses_colors = None  # name of the colour attribute in use
+        self.color_at_root = None  # the colour of images at the root of hair
 
     def begin(self, material, surface, slot, is_atlas, prefix):
-        """What follows is about this material on a slot of this surface. Names of parts begin with the prefix."""
+        """Starts the translation of a material on a slot of a surface. Names of parts begin with the prefix."""
         self.material, self.surface, self.slot = material, surface, slot
         self.is_atlas, self.prefix = is_atlas, prefix
         self.groups, self.uses_colors = [], None
 
     def nodes_behind(self, sockets):
-        """All nodes from which these sockets get values, in the order in which they are met, with the output used."""
+        """Returns all nodes behind these sockets, in breadth-first order, each with the set of its outputs in use."""
         met, waiting = {}, list(sockets)
         while waiting:
             output = self.source(waiting.pop(0))
@@ -152,7 +154,7 @@ class Textures:
 
     @staticmethod
     def is_solid(node, outputs):
-        """Whether a node's values depend on more than texture coordinates."""
+        """Returns whether a node's values depend on more than texture coordinates."""
         if node.type == "TEX_COORD":
             return bool(outputs - {"UV"})
         if node.type == "TEX_IMAGE":
@@ -160,31 +162,31 @@ class Textures:
         return node.type in OF_A_PLACE or (node.type in SOLID and not node.inputs["Vector"].is_linked)
 
     def _baked(self, output, is_number, owner):
-        """An image of what the tree at this socket makes; None if it cannot be baked."""
+        """Returns a texture with a baked image of this output; None if it cannot be baked."""
         nodes = self._nodes_behind_output(output)
         of_ray = [node for node, _ in nodes if node.type in OF_THE_RAY]
         if self.surface is None or of_ray:
             return None
         for node, _ in nodes:
             if node.type == "ATTRIBUTE" and not self.surface.has_attribute(node.attribute_name):
-                self.report.note(owner, f"the mesh has no attribute {node.attribute_name}: it counts as 0")
+                self.report.note(owner, f"the mesh has no attribute {node.attribute_name}: its value is 0")
         is_varying = any(node.type in OF_A_PLACE or node.type in SOLID or node.type in {"TEX_COORD", "TEX_IMAGE", "UVMAP"}
                          for node, _ in nodes)
         domain, place = self._domain(is_number, is_varying, self._is_of_world(nodes))
         path = self.bakes.image(self.material, output, self._path_of_groups(output.node), self, domain)
-        self.report.note(owner, f"{output.node.bl_label} has no counterpart: baked to an image")
+        self.report.note(owner, f"{output.node.bl_label} is baked to an image")
         name = f"{self.prefix}/{os.path.basename(path)}"
         texture = {"type": "image", "filename": path, "encoding": "linear", "wrap": "clamp", **place}
         self.parts["float_textures" if is_number else "spectrum_textures"][name] = texture
         return {"texture": name}
 
     def varies_in_space(self, output):
-        """Whether a volume's socket varies over space."""
+        """Returns whether a socket of a volume varies over space."""
         return any(node.type in OF_A_PLACE or node.type in SOLID or node.type in {"TEX_COORD", "TEX_IMAGE"}
                    for node, _ in self._nodes_behind_output(output))
 
     def baked_field(self, output, grid, owner):
-        """The path of a file that holds the socket's value in each cell of a grid."""
+        """Returns the path of a baked file with the socket's value in each cell of a grid."""
         nodes = self._nodes_behind_output(output)
         arrays = {**grid.arrays(), "texspace": self.surface.texture_space()}
         mesh, job = self.bakes.store(arrays), {"is_number": False, "object": self.surface.object_name}
@@ -206,7 +208,7 @@ class Textures:
         return [own, *self.nodes_behind(output.node.inputs)]
 
     def _domain(self, is_number, is_varying, is_of_world):
-        """Where a bake takes place, and the members by which its image is put on."""
+        """Returns the domain of a bake (see Bakes.image), and the members of a texture that maps its image."""
         surface, slot = self.surface, self.slot
         job = {"is_number": is_number, "object": surface.object_name}
         if self.is_atlas:
@@ -227,7 +229,7 @@ class Textures:
         return domain, place
 
     def _path_of_groups(self, node):
-        """The names of the group nodes that lead from the material's tree to that of the node."""
+        """Returns the names of the group nodes on the way from the material's tree to the node."""
         path, tree = [], node.id_data
         while tree != self.material.node_tree:
             group = next(g for g in reversed(self.groups) if g.node_tree == tree)
@@ -236,7 +238,7 @@ class Textures:
         return path
 
     def source(self, socket):
-        """The output socket that feeds `socket`, through reroutes and groups; None if nothing does."""
+        """Returns the output that feeds `socket`, through reroutes and groups; None if nothing is linked."""
         output = source_of(socket)
         while output is not None:
             node = output.node
@@ -259,13 +261,13 @@ class Textures:
         return None
 
     def color(self, socket, owner):
-        """[r, g, b] or {"texture": name}."""
+        """Returns the colour of a socket: [r, g, b] or {"texture": name}."""
         output = self.source(socket)
         made = self.color_of(output, owner) if output is not None else None
         return made if made is not None else self._constant(socket)
 
     def color_of(self, output, owner):
-        """The colour of an output; None, with a note, if there is no counterpart."""
+        """Returns the colour of an output; None, with a note, if it is not supported."""
         of_ray = self._of_the_ray(output, owner)
         if of_ray is not None:
             return [of_ray] * 3
@@ -277,11 +279,11 @@ class Textures:
         if made is None:
             made = self._baked(output, False, owner)
         if made is None:
-            self.report.note(owner, f"the node {output.node.bl_label} has no counterpart: the socket's own value is used")
+            self.report.note(owner, f"the node {output.node.bl_label} is not supported here: the socket's own value is used")
         return made
 
     def number(self, socket, owner):
-        """A number or {"texture": name}."""
+        """Returns the number of a socket: a float or {"texture": name}."""
         output = self.source(socket)
         if output is None:
             return self._number(socket)
@@ -295,11 +297,11 @@ class Textures:
             made = self._baked(output, True, owner)
         if made is not None:
             return made
-        self.report.note(owner, f"the node {output.node.bl_label} has no counterpart: the socket's own value is used")
+        self.report.note(owner, f"the node {output.node.bl_label} is not supported here: the socket's own value is used")
         return self._number(socket)
 
     def constant(self, socket, owner, what):
-        """The number of a socket that no texture can vary."""
+        """Returns the number of a socket that must be constant."""
         output = self.source(socket)
         if output is None:
             return self._number(socket)
@@ -307,15 +309,28 @@ class Textures:
         if made is None and not self._is_texture(output):
             made = self._number_node(output, owner)
         if made is None or isinstance(made, dict):
-            self.report.note(owner, f"{what} cannot vary over a surface: the socket's own value is used")
+            self.report.note(owner, f"{what} must be constant: the socket's own value is used")
             return self._number(socket)
+        return made
+
+    def constant_color(self, socket, owner, what):
+        """Returns the colour [r, g, b] of a socket that must be constant."""
+        output = self.source(socket)
+        if output is None:
+            return self._constant(socket)
+        made = None
+        if not self._is_texture(output):
+            made = self._color_node(output, owner)
+        if made is None:
+            self.report.note(owner, f"{what} must be constant: the socket's own value is used")
+            return self._constant(socket)
         return made
 
     def _is_texture(self, output):
         return output.node.type not in {"RGB", "VALUE", "BLACKBODY"}
 
     def _of_the_ray(self, output, owner):
-        """A constant in the place of a value that depends on the ray; None if it does not."""
+        """Returns a constant that replaces a value that depends on the ray; None for other values."""
         node = output.node
         if node.type not in OF_THE_RAY:
             return None
@@ -326,11 +341,11 @@ class Textures:
             value = mean_fresnel(1 / (1 - blend)) if output.name == "Fresnel" else blend
         else:
             value = 1.0 if output.name in TRUE_RAYS else 0.0
-        self.report.note(owner, f"{node.bl_label} depends on the ray: its mean, or the value for the camera, stands in")
+        self.report.note(owner, f"{node.bl_label} depends on the ray: its mean, or the value for camera rays, is used")
         return value
 
     def _number_node(self, output, owner):
-        """None if there is no counterpart."""
+        """Returns the number of an output without a bake; None if it is not supported."""
         node = output.node
         if node.type == "VALUE":
             return output.default_value
@@ -373,11 +388,11 @@ class Textures:
         if node.type in {"VERTEX_COLOR", "ATTRIBUTE"} and output.name == "Color":
             return self._vertex_colors(node)
         if node.type == "BLACKBODY":
-            return {"blackbody": node.inputs["Temperature"].default_value}
+            return blackbody.color(self.constant(node.inputs["Temperature"], owner, "the temperature of a black body"))
         return None
 
     def _color_name(self, node):
-        """The colours of the surface's vertices that a node names; None if there are none."""
+        """Returns the name of the colour attribute that a node reads; None if the surface does not have it."""
         name = node.layer_name if node.type == "VERTEX_COLOR" else node.attribute_name
         name = name or self.surface.color_name
         return name if name in self.surface.colors else None
@@ -391,7 +406,7 @@ class Textures:
         return {"texture": "vertex colours"}
 
     def _mapping(self, node, owner):
-        """Of (u, v), for the vector of a texture node; None if that is something else."""
+        """Returns the mapping of (u, v) for the vector of a texture node; None if the vector depends on more than UV."""
         output = self.source(node.inputs["Vector"])
         mapping = {}
         if output is not None and output.node.type == "MAPPING":
@@ -414,7 +429,7 @@ class Textures:
             return _magenta(is_color, channel)
         filename = self.images.path_of(node.image)
         if filename is None:
-            self.report.note(owner, f"the image {node.image.name} is not there: magenta stands in")
+            self.report.note(owner, f"the image {node.image.name} is missing: it is magenta")
             return _magenta(is_color, channel)
         name = self._name(node, f":{channel}" if channel else "")
         wraps = {"REPEAT": "repeat", "EXTEND": "clamp", "CLIP": "black", "MIRROR": "mirror"}
@@ -480,7 +495,7 @@ class Textures:
         return operations.get(node.operation)
 
     def squared(self, value, owner):
-        """The square of a number or a texture: Blender's roughness to the width of the distribution of facets."""
+        """Returns the square of a number or texture, which converts Blender's roughness to the alpha of microfacets."""
         if not isinstance(value, dict):
             return value * value
         name = f"{value['texture']}^2"
@@ -488,13 +503,13 @@ class Textures:
         return {"texture": name}
 
     def normal_map(self, node, owner):
-        """The normal map of a Normal Map node; None if there is none."""
+        """Returns the normal map of a Normal Map node, or None."""
         output = self.source(node.inputs["Color"])
         if output is None:
             return None
         strength = self.constant(node.inputs["Strength"], owner, "the strength of a normal map")
         if node.space != "TANGENT" or self.is_atlas:
-            self.report.note(owner, "a normal map in other coordinates than UV's is left out")
+            self.report.note(owner, "normal maps are supported in tangent space of UV only: it is left out")
             return None
         mapping = self._mapping(output.node, owner) if output.node.type == "TEX_IMAGE" else None
         if mapping is None or output.node.image is None:

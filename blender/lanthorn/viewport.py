@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The Lanthorn authors
 # SPDX-License-Identifier: Apache-2.0
-"""The rendered viewport: a thread talks to the program, the interface draws the picture that it has."""
+"""Implements the rendered viewport: a thread talks to the program, and Blender's thread draws the latest picture."""
 import collections
 import threading
 
@@ -12,25 +12,25 @@ from . import camera, passes
 from .link import LinkError
 from .scene_export import SceneExport
 
-PATIENCE = 0.1  # seconds that the thread waits for a picture before it looks for edits
+PATIENCE = 0.1  # seconds to wait for a picture before looking for edits
 
-orphans = []  # textures that only Blender's own thread may free
+orphans = []  # textures, which only Blender's thread may free
 
 
 class Viewport:
-    """`edit` and `draw` are called by Blender, the rest belongs to the thread."""
+    """Blender's thread calls the public functions; the private ones below `The thread's side` run in the thread."""
 
     def __init__(self, link, redraw, options, denoises):
         self._link, self._redraw = link, redraw
         self._options, self._denoises = options, denoises
-        self._edits = collections.deque()  # None at the end
+        self._edits = collections.deque()  # None asks the thread to end
         self._lock = threading.Condition()
         self._answer, self._texture = None, None
         self.problem = ""
         self.status = "Loading"
         self._export, self._said = SceneExport(), set()
-        self.is_baked = False  # images have come since the scene was sent
-        self._view = None
+        self.is_baked = False  # True if images have been baked since the scene was sent
+        self._view, self._medium = None, {}  # members of the camera
         self._thread = threading.Thread(target=self._run, daemon=True)
         self._is_started = False
 
@@ -42,18 +42,19 @@ class Viewport:
         bakes = self._export.bakes
         bakes.size, bakes.frame = context.scene.lanthorn.bake_size, context.scene.frame_current
         parts = self._export.parts(depsgraph, context.space_data)
-        if bakes.are_missing:  # grey stands in until they are there
+        if bakes.are_missing:  # until then, they are grey
             bakes.run_beside(self._tell_of_bakes)
         self._export.settle(parts)
         self._say(self._export.report.lines())
+        self._medium = self._export.camera_medium(parts)
         changed, gone = self._export.changes(parts)
         self.update_view(context, changed, gone)
 
     def update_view(self, context, changed=None, gone=None):
-        """Sends what has changed, if anything has."""
+        """Sends the view and the parts that have changed, if any."""
         region = context.region
         size = max(1, region.width), max(1, region.height)
-        view = {"camera": camera.view_part(context.region_data), "film": camera.film_part(size),
+        view = {"camera": {**camera.view_part(context.region_data), **self._medium}, "film": camera.film_part(size),
                 "filter": camera.filter_part(context.scene.render.filter_size)}
         is_moved = view != self._view
         if not (changed or gone or is_moved):
@@ -65,14 +66,14 @@ class Viewport:
             self._thread.start()
 
     def _say(self, lines):
-        """On the terminal, each once: a viewport has no reports."""
+        """Prints each line once on the terminal, because a viewport cannot show reports."""
         for line in lines:
             if line not in self._said:
                 self._said.add(line)
                 print(f"Lanthorn: {line}", flush=True)
 
     def _tell_of_bakes(self):
-        """Called by another thread."""
+        """Requests another export. The thread of the bake calls this function."""
         self.is_baked = True
         self._redraw()
 
@@ -91,7 +92,7 @@ class Viewport:
             self._lock.notify_all()
 
     def close(self):
-        """Lets the thread end the program, without waiting for it."""
+        """Asks the thread to end the program, without waiting for it."""
         orphans.append(self._texture)
         self._texture = None
         self._put(None)
@@ -137,7 +138,7 @@ class Viewport:
                 self._redraw()
 
     def _next_edit(self, is_running):
-        """The next edit; an empty one if there is none; None at the end. Of several views, only the last one counts."""
+        """Returns the next edit, an empty one if there is none, or None at the end. Skips all but the last of several views."""
         with self._lock:
             while not self._edits and not is_running:
                 self._lock.wait()

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The Lanthorn authors
 # SPDX-License-Identifier: Apache-2.0
-"""Grids of volume objects (OpenVDB) and of fluid domains. OpenVDB files are read by the Python module of OpenVDB, which
-later versions of Blender contain; Debian has it as python3-openvdb."""
+"""Reads the grids of volume objects (OpenVDB) and fluid domains. Reading OpenVDB files needs OpenVDB's Python module,
+which later versions of Blender contain (in Debian: python3-openvdb)."""
 from dataclasses import dataclass
 
 import bpy
@@ -15,13 +15,13 @@ SIDES = numpy.array([[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0,
 
 @dataclass
 class Fields:
-    """Arrays of shape (n, 3) by name, with a row for each cell of one grid; x varies fastest."""
+    """Holds arrays of shape (n, 3) by name, with one row for each cell of a grid; x varies fastest."""
     grid: Grid
     values: dict
 
 
 class Box:
-    """The surface around a grid, with what materials ask of a meshes.Surface."""
+    """The box around a grid, with the interface of meshes.Surface."""
     color_name, colors, uv_name = None, {}, None
 
     def __init__(self, key, fields):
@@ -44,7 +44,7 @@ class Box:
 
 
 def _averaged(values, factor):
-    """Means over blocks of factor³ cells of an array (z, y, x, channels). Incomplete blocks are padded with zeros."""
+    """Averages blocks of factor³ cells of an array (z, y, x, channels). Zeros fill incomplete blocks."""
     if factor == 1:
         return values
     padded = numpy.pad(values, [(0, -n % factor) for n in values.shape[:3]] + [(0, 0)])
@@ -53,7 +53,7 @@ def _averaged(values, factor):
 
 
 def _fields(arrays, low, cell):
-    """Fields from arrays (z, y, x, channels) of one shape. `low`: the lowest corner; `cell`: the size of a cell."""
+    """Makes Fields of arrays (z, y, x, channels) of equal shape. `low` is the lowest corner, `cell` a cell's size."""
     shape = next(iter(arrays.values())).shape[:3]
     factor = -(-max(shape) // LARGEST)
     arrays = {name: _averaged(values, factor) for name, values in arrays.items()}
@@ -64,7 +64,7 @@ def _fields(arrays, low, cell):
 
 
 def openvdb_module():
-    """The Python module of OpenVDB under either of its names; None if it is not installed."""
+    """Returns the Python module of OpenVDB under either of its names; None if it is not installed."""
     for name in ("openvdb", "pyopenvdb"):
         try:
             return __import__(name)
@@ -74,7 +74,7 @@ def openvdb_module():
 
 
 def of_volume(object, report):
-    """Fields of a volume object; None, with a note, if they cannot be read."""
+    """Returns the Fields of a volume object; None, with a note, if they cannot be read."""
     data, vdb = object.data, openvdb_module()
     if vdb is None:
         report.note(object.name, "the volume is left out: it needs OpenVDB's Python module (Debian: python3-openvdb)")
@@ -88,7 +88,7 @@ def of_volume(object, report):
         read = {}
     boxes = [grid.evalActiveVoxelBoundingBox() for grid in read.values() if grid.activeVoxelCount()]
     if not boxes:
-        report.note(object.name, "the OpenVDB file cannot be read, or is empty: it is left out")
+        report.note(object.name, "the OpenVDB file is empty or cannot be read: it is left out")
         return None
     first, last = numpy.min([b[0] for b in boxes], axis=0), numpy.max([b[1] for b in boxes], axis=0)
     arrays = {}
@@ -97,13 +97,13 @@ def of_volume(object, report):
         grid.copyToArray(values, ijk=tuple(int(i) for i in first))
         arrays[name] = numpy.moveaxis(values.reshape(*(last - first + 1), -1), 2, 0).swapaxes(1, 2)
     place = next(iter(read.values())).transform
-    # As in Cycles, cell i reaches from i to i + 1.
+    # As in Cycles, cell i extends from i to i + 1.
     low, high = (numpy.array(place.indexToWorld(tuple(float(i) for i in corner))) for corner in (first, first + 1))
     return _fields(arrays, low, high - low)
 
 
 def of_fluid(object):
-    """Fields of an object's fluid domain; None if it has no domain, or no smoke."""
+    """Returns the Fields of an object's fluid domain; None without a domain or smoke."""
     for modifier in object.modifiers:
         domain = modifier.domain_settings if modifier.type == "FLUID" and modifier.fluid_type == "DOMAIN" else None
         if domain is None or domain.domain_type != "GAS":
@@ -121,8 +121,8 @@ def of_fluid(object):
 
 
 def _of_domain(values, counts):
-    """A flat grid of the domain as an array (z, y, x, channels); None if its length does not fit. Its resolution may be a
-    multiple of the domain's, and colours have four channels, of which three are kept."""
+    """Returns a flat grid of the domain as an array (z, y, x, channels); None if its length does not fit. The resolution
+    may be a multiple of the domain's. Of the four channels of colours, three are kept."""
     values = numpy.array(values, dtype=numpy.float32)
     for channels in (1, 4):
         factor = round((len(values) / channels / max(1, counts.prod())) ** (1 / 3))

@@ -1,13 +1,13 @@
 # SPDX-FileCopyrightText: 2026 The Lanthorn authors
 # SPDX-License-Identifier: Apache-2.0
-"""Values in a box of cells. For a bake, the box's layers lie side by side in one image, with a texel for each cell."""
+"""Stores values in a box of cells. For a bake, the layers of the box lie side by side in one image, one texel per cell."""
 import numpy
 
-LARGEST_SIDE = 256  # cells
+LARGEST_SIDE = 256  # cells along a side
 
 
 def around(surface, size):
-    """The box around a surface, divided into about as many cells as an image of this size has texels."""
+    """Returns the box around a surface, with about as many cells as an image of this size has texels."""
     low, high = (f(surface.positions, axis=0).astype(numpy.float64) for f in (numpy.min, numpy.max))
     extent = numpy.maximum(high - low, 1e-6)
     cell = max((extent.prod() / size**2) ** (1 / 3), extent.max() / LARGEST_SIDE)
@@ -15,7 +15,7 @@ def around(surface, size):
 
 
 class Grid:
-    """A box in cells; `counts` along x, y and z."""
+    """A box that is divided into `counts` cells along x, y and z."""
 
     def __init__(self, low, high, counts):
         self.low, self.high, self.counts = numpy.asarray(low), numpy.asarray(high), numpy.asarray(counts)
@@ -25,7 +25,7 @@ class Grid:
         self.size = int(max(self.columns * nx, self.rows * ny))  # texels along each side of the image
 
     def arrays(self):
-        """What bake_worker.py needs: a square for each layer, with its place in the image."""
+        """Returns the arrays for bake_worker.py: a square for each layer, with its place in the image."""
         (nx, ny, nz), layers = self.counts, numpy.arange(self.counts[2])
         corners = numpy.array([[0, 0], [1, 0], [1, 1], [0, 1]])
         z = self.low[2] + (layers + 0.5) / nz * (self.high[2] - self.low[2])
@@ -39,8 +39,8 @@ class Grid:
         return {"vertices": points.reshape(-1, 3), "triangles": triangles, "is_smooth": False, "atlas": atlas}
 
     def read(self, path):
-        """The values (n, 3) of all cells, x running fastest, from the texels that bake_worker.py has written; None if
-        it has not."""
+        """Reads the values (n, 3) of all cells, x varying fastest, from the file of bake_worker.py; None if there is no
+        file."""
         try:
             texels = numpy.load(path)["texels"]  # rows from the bottom
         except OSError:
@@ -50,6 +50,6 @@ class Grid:
         return tiles.transpose(0, 2, 1, 3, 4).reshape(-1, ny, nx, 3)[:nz].reshape(-1, 3)
 
     def part(self, values):
-        """As a grid of Lanthorn. `values`: (3), or (n, 3)."""
+        """Returns a grid of Lanthorn. The shape of `values` is (3) or (n, 3)."""
         cells = numpy.broadcast_to(values, (int(self.counts.prod()), 3)).astype(numpy.float32)
         return {"size": self.counts.tolist(), "low": self.low.tolist(), "high": self.high.tolist(), "values": cells}

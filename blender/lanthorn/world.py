@@ -1,17 +1,18 @@
 # SPDX-FileCopyrightText: 2026 The Lanthorn authors
 # SPDX-License-Identifier: Apache-2.0
-"""The world as an environment light."""
+"""Translates the world to an environment light and a medium."""
 import numpy
 
+from . import media
 from .bake import signature_of
 from .textures import Textures
 
-BAKED = "baked world"  # a light that must be replaced by those of its file
+BAKED = "baked world"  # a placeholder for the lights of a baked file
 KNOWN_SPACES = {"sRGB", "Linear", "Linear Rec.709", "Non-Color", "Raw"}
 
 
 def _source(socket):
-    """The node behind a socket, reroutes aside; None if nothing is linked."""
+    """Returns the node behind a socket, through reroutes; None if nothing is linked."""
     while socket.is_linked:
         node = socket.links[0].from_node
         if node.type != "REROUTE":
@@ -24,8 +25,9 @@ BLACK = {}
 
 
 def texels_of_image(image, strength, turn):
-    """Blender's equirectangular pixels as Lanthorn's, in linear Rec.709. Blender has +x in the middle and turns
-    clockwise as seen from above, Lanthorn has +x at the left edge and turns counter-clockwise. `turn`: radians about z."""
+    """Converts Blender's equirectangular pixels to Lanthorn's, in linear Rec. 709. Seen from above, Blender's turn
+    clockwise, with +x in the middle; Lanthorn's turn counter-clockwise, with +x at the left edge. `turn` is the rotation
+    about z in radians."""
     width, height = image.size
     pixels = numpy.empty(width * height * 4, dtype=numpy.float32)
     image.pixels.foreach_get(pixels)
@@ -37,7 +39,7 @@ def texels_of_image(image, strength, turn):
 
 
 def _turn_of(node):
-    """Radians about z that the vector of an environment texture is turned; None if that is not all."""
+    """Returns the rotation about z, in radians, of an environment texture; None for other mappings."""
     fed = _source(node.inputs["Vector"])
     if fed is None:
         return 0
@@ -51,7 +53,7 @@ def _turn_of(node):
 
 
 def _environment(node, strength):
-    """A light, or None if the image must be baked."""
+    """Returns a light, or None if the texture must be baked."""
     image, turn = node.image, _turn_of(node)
     if image is None or image.size[0] == 0 or turn is None or node.projection != "EQUIRECTANGULAR":
         return None
@@ -65,7 +67,7 @@ def _even(color):
 
 
 def _of_nodes(node):
-    """Lights of a Background shader that need no bake; None if there are none."""
+    """Returns the lights of a Background shader, or None if it must be baked."""
     if node.type != "BACKGROUND" or _source(node.inputs["Strength"]) is not None:
         return None
     strength, fed = node.inputs["Strength"].default_value, _source(node.inputs["Color"])
@@ -79,14 +81,14 @@ def _of_nodes(node):
 
 
 def _baked(world, report, bakes):
-    """What Cycles sees in all directions; the sun of a sky, which is smaller than a texel, by itself."""
+    """Bakes the world to an image. The sun of a sky texture, which is smaller than a texel, becomes a light of its own."""
     textures = Textures(None, report, None, bakes)
     output = world.node_tree.get_output_node("CYCLES") or world.node_tree.get_output_node("ALL")
     nodes = [node for node, _ in textures.nodes_behind([output.inputs["Surface"]])]
     names = sorted({node.bl_label for node in nodes} - {"Background", "Texture Coordinate", "Mapping"})
     report.note(world.name, f"the world is baked to an image ({', '.join(names)})")
     if any(node.type == "LIGHT_PATH" for node in nodes):
-        report.note(world.name, "Light Path in a world counts as for rays of the camera")
+        report.note(world.name, "Light Path in a world is evaluated for camera rays")
     path = bakes.world(world, signature_of(textures.source(output.inputs["Surface"]), textures.source))
     if bakes.is_missing(path):
         return {BAKED: {"type": "infinite", "path": path}}
@@ -94,7 +96,7 @@ def _baked(world, report, bakes):
 
 
 def lights_of_bake(path):
-    """Lights of the file that bake_worker.py has written; none if it has not."""
+    """Returns the lights of a file of bake_worker.py; none if there is no file."""
     try:
         with numpy.load(path) as file:
             texels, sun = file["texels"], file["sun"]
@@ -109,15 +111,27 @@ def lights_of_bake(path):
     return lights
 
 
+def volume_of_world(world, report):
+    """Returns the world's volume as `media.Volume.of` does, or None."""
+    if not (world.use_nodes and world.node_tree):
+        return None
+    output = world.node_tree.get_output_node("CYCLES") or world.node_tree.get_output_node("ALL")
+    textures = Textures(None, report, None, None)
+    textures.begin(world, None, 0, False, world.name)
+    source = textures.source(output.inputs["Volume"]) if output is not None else None
+    if source is None:
+        return None
+    made = media.Volume(world.name, textures, report).of(source.node)
+    return made if any(numpy.max(made[name]) > 0 for name in ("sigma_a", "sigma_s", "emission")) else None
+
+
 def lights_of_world(world, report, bakes):
-    """Lights of Lanthorn by their names; that of the name BAKED refers to an image that is not there yet."""
+    """Returns lights by name. A light named BAKED refers to an image that is still to be baked."""
     if not (world.use_nodes and world.node_tree):
         return _even(list(world.color))
     output = world.node_tree.get_output_node("CYCLES") or world.node_tree.get_output_node("ALL")
     if output is None:
         return BLACK
-    if output.inputs["Volume"].is_linked:
-        report.note(world.name, "the volume of a world has no counterpart: it is left out")
     node = _source(output.inputs["Surface"])
     if node is None:
         return BLACK

@@ -422,6 +422,9 @@ struct Curves {
 /// Diffuse emission of a shape's surface.
 struct AreaLight {
   SpectrumParameter radiance{1.0f, {}};
+  /// Degrees, in (0, 180]: full angle of the cone around the normal that receives all light. Below 180, the surface
+  /// lies behind a grid of deep slats, as in a soft box: it emits the same power, brightest along the normal.
+  float spread = 180;
   float scale = 1;
   std::optional<float> power;  ///< watts; rescales the emission to this total power
   bool two_sided = false;
@@ -447,7 +450,10 @@ struct Shape {
   bool shares_power = false;  ///< the area light's power applies to the whole shape, not to each of its primitives
   FloatParameter alpha{1, {}};
   std::optional<Pane> pane{};  ///< rays hit the shape only with the probability of reflection; `material` is a mirror
-  std::optional<MeshDisplacement> displacement;        ///< of meshes
+  std::optional<MeshDisplacement> displacement;  ///< of meshes
+  /// False: rays from the camera pass through the shape until a surface or a medium scatters them. The shape casts
+  /// shadows, emits, and is seen in mirrors. Shapes that bound media are always visible.
+  bool visible_to_camera = true;
   std::optional<Index> inside_medium, outside_medium;  ///< into SceneDescription::media; none: vacuum
   SourceLocation location;
 };

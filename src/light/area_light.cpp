@@ -82,14 +82,15 @@ std::optional<LightSample> AreaLight::sample_direct(const Point& from, const Vec
   const std::optional<EmitterDirection> s = draw_towards(from, u);
   if (!s) return result;
   const Normal normal = flip_normal ? -s->normal : s->normal;
-  if (!two_sided && dot(normal, s->wi) >= 0) return result;
+  const float factor = factor_towards(normal, -s->wi);
+  if (!(factor > 0)) return result;
   LightSample& sample = result.emplace();
   sample.wi = s->wi;
   sample.position = s->point;
   sample.normal = normal;
   sample.distance = s->distance;
   sample.position_error = position_error + tracing_error * s->distance;
-  sample.radiance = radiance_at(s->point, normal, w);
+  sample.radiance = radiance_at(s->point, normal, w) * factor;
   sample.pdf = s->pdf;
   sample.delta = invisible;
   return result;
@@ -100,13 +101,16 @@ float AreaLight::pdf_direct(const Point& from, const EmitterHit& hit) const {
 }
 
 Spectrum AreaLight::emitted(const EmitterHit& hit, const Direction& direction, const Wavelengths& w) const {
-  if (!two_sided && dot(hit.normal, direction) <= 0) return {};
-  return pattern != nullptr ? pattern->seen(primitive, hit, w) * pattern_scale : radiance.evaluate(w);
+  const float factor = factor_towards(hit.normal, direction);
+  if (!(factor > 0)) return {};
+  return (pattern != nullptr ? pattern->seen(primitive, hit, w) * pattern_scale : radiance.evaluate(w)) * factor;
 }
 
 const SphereEmitter* AreaLight::leaves_by_direction() const {
   const auto* const sphere = std::get_if<SphereEmitter>(&shape);
-  return sphere != nullptr && sphere->world_radius > 0 && !two_sided && brightness == nullptr ? sphere : nullptr;
+  return sphere != nullptr && sphere->world_radius > 0 && !two_sided && brightness == nullptr && spread.is_diffuse()
+             ? sphere
+             : nullptr;
 }
 
 std::optional<EmissionSample> AreaLight::sample_emission(const Vec2& u_position, const Vec2& u_direction,
@@ -123,7 +127,7 @@ std::optional<EmissionSample> AreaLight::sample_emission(const Vec2& u_position,
   const bool back = two_sided && u_direction.x >= 0.5f;
   const Vec2 u = two_sided ? Vec2(2 * u_direction.x - (back ? 1.0f : 0.0f), u_direction.y) : u_direction;
   const Normal normal = flip_normal ? -at.normal : at.normal;
-  const Direction direction = Frame(back ? -normal : normal).to_world(sample_cosine_hemisphere(u));
+  const Direction direction = Frame(back ? -normal : normal).to_world(spread.sample(u));
   emit(at, density_at(at.point), direction, w, result.emplace());
   return result;
 }
@@ -136,16 +140,16 @@ void AreaLight::emit(const EmitterPoint& at, float density, const Direction& dir
   sample.position_error = position_error;
   sample.direction = direction;
   sample.cos_origin = std::fabs(dot(sample.normal, direction));
-  // The cosine cancels: all photons of one light carry the same flux (about the same if it has a pattern).
-  sample.flux = radiance_at(sample.origin, sample.normal, w) * (pi * total * sides / density);
+  // The cosine cancels: all photons of a diffuse light carry the same flux (about the same if it has a pattern).
+  const float cone = spread.is_diffuse() ? 1.0f : sqr(spread.sin()) * spread.factor(sample.cos_origin);
+  sample.flux = radiance_at(sample.origin, sample.normal, w) * (pi * total * sides * cone / density);
   sample.pdf_position = density / total;
-  sample.pdf_direction = pdf_cosine_hemisphere(sample.cos_origin) / sides;
+  sample.pdf_direction = spread.pdf(sample.cos_origin) / sides;
 }
 
 EmissionPdf AreaLight::pdf_emission(const EmitterHit& origin, const Direction& direction) const {
   const float cos = dot(origin.normal, direction);
-  const float pdf =
-      two_sided ? 0.5f * pdf_cosine_hemisphere(std::fabs(cos)) : pdf_cosine_hemisphere(std::max(0.0f, cos));
+  const float pdf = two_sided ? 0.5f * spread.pdf(std::fabs(cos)) : spread.pdf(std::max(0.0f, cos));
   return {density_at(origin.position) / area(shape), pdf};
 }
 
@@ -156,7 +160,7 @@ EmissionNumbers AreaLight::invert_emission(const EmitterHit& origin, const Direc
   }
   const bool back = two_sided && dot(origin.normal, direction) < 0;
   const Vec3 local = Frame(back ? -origin.normal : origin.normal).to_local(direction);
-  Vec2 u = invert_concentric_disk({local.x, local.y});
+  Vec2 u = spread.invert(local);
   if (two_sided) u.x = 0.5f * (u.x + (back ? 1.0f : 0.0f));
   const std::optional<Vec2> even = invert_sample_area(shape, origin.position);
   return {even && brightness != nullptr ? brightness->invert(*even) : even, u};
@@ -164,7 +168,7 @@ EmissionNumbers AreaLight::invert_emission(const EmitterHit& origin, const Direc
 
 float AreaLight::power() const { return luminance(radiance.rgb) * pi * area(shape) * (two_sided ? 2.0f : 1.0f); }
 
-float AreaLight::largest_radiance(float /*has extent*/) const { return largest_value(radiance); }
+float AreaLight::largest_radiance(float /*has extent*/) const { return spread.peak() * largest_value(radiance); }
 
 EmissionBounds AreaLight::bounds() const {
   NormalCone cone = normal_cone(shape);
@@ -172,7 +176,8 @@ EmissionBounds AreaLight::bounds() const {
   // A surface with normals in all directions shows about a quarter of its area to any side (Cauchy's formula, exact for
   // the sphere).
   const float shown = cone.cos > -1 ? 1.0f : 0.25f;
-  return {lanthorn::bounds(shape), cone, 0, luminance(radiance.rgb) * area(shape) * shown, two_sided};
+  const float intensity = spread.peak() * luminance(radiance.rgb) * area(shape) * shown;
+  return {lanthorn::bounds(shape), cone, spread.cos(), intensity, two_sided};
 }
 
 }  // namespace lanthorn

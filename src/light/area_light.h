@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -9,6 +10,7 @@
 #include "light/brightness.h"
 #include "light/emitter.h"
 #include "light/sample.h"
+#include "light/spread.h"
 #include "math/distribution.h"
 #include "spectrum/curve.h"
 #include "spectrum/wavelengths.h"
@@ -25,7 +27,8 @@ struct EmissionPattern {
   std::function<Spectrum(std::uint32_t primitive, const Point&, const Normal&, const Wavelengths&)> drawn;
 };
 
-/// A surface that emits the same radiance in all directions of its side, or of both sides.
+/// A surface that emits the same radiance in all directions of its side, or of both sides, times the factor of
+/// `spread`.
 ///
 /// The oriented geometric normal, which every function here takes and returns, is the shape's natural normal (see
 /// emitter.h), negated if `flip_normal`. To agree with pbrt-v4, a quadric sets `flip_normal` to reverse_orientation !=
@@ -41,7 +44,8 @@ struct AreaLight {
   SpectrumCurve radiance;
   bool two_sided = false;
   bool flip_normal = false;
-  bool invisible = false;                    ///< no ray can hit the surface
+  bool invisible = false;  ///< no ray can hit the surface
+  Spread spread{};
   const EmissionPattern* pattern = nullptr;  ///< null: the radiance is uniform
   float pattern_scale = 1;
   std::uint32_t primitive = 0;  ///< primitive of the pattern's shape
@@ -67,6 +71,11 @@ struct AreaLight {
   /// Density of photon origins times the area: 1 if they are drawn uniformly.
   float density_at(const Point& point) const;
   EmitterPoint sample_position(const Vec2& u) const;
+  /// Factor of the radiance in a direction, 0 on a dark side.
+  float factor_towards(const Normal& normal, const Direction& direction) const {
+    const float cos = dot(normal, direction);
+    return cos > 0 || two_sided ? spread.factor(std::fabs(cos)) : 0.0f;
+  }
   /// The shape if it is a sphere whose photons have their direction drawn before their position, else null.
   const SphereEmitter* leaves_by_direction() const;
   std::optional<EmitterDirection> draw_towards(const Point& from, const Vec2& u) const;

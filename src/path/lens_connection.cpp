@@ -21,7 +21,7 @@ std::optional<CameraConnection> find_lens_from(const PathContext& path, const Vi
 std::optional<LensLight> finish(const PathContext& path, const View& view, const WalkState& state,
                                 const CameraConnection& lens, const Ray& ray, MediumId medium, const Spectrum& value,
                                 bool dispersive) {
-  const Passage way = passage(path, ray, medium, visitor_dimensions(state.depth));
+  const Passage way = passage_to_lens(path, ray, medium, visitor_dimensions(state.depth));
   const Spectrum light = value * way.transmittance * (lens.importance * view.imaging_ratio);
   if (light.is_black()) return {};
   return LensLight{lens.raster,
@@ -35,6 +35,7 @@ std::optional<LensLight> finish(const PathContext& path, const View& view, const
 }  // namespace
 
 std::optional<CameraConnection> find_lens(const PathContext& path, const View& view, const SurfaceVertex& vertex) {
+  if (vertex.at.is_hidden) return {};
   return find_lens_from(path, view, vertex.state, vertex.at.position, vertex.at.time);
 }
 

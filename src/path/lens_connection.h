@@ -21,7 +21,8 @@ struct LensLight {
   float optical_depth = 0;  ///< of the way (`Passage`)
 };
 
-/// Film position at which the lens would see a light vertex, ignoring occlusion. Draws from the visitor's dimensions.
+/// Film position at which the lens would see a light vertex, ignoring occlusion; empty on shapes that are hidden from
+/// the camera. Draws from the visitor's dimensions.
 std::optional<CameraConnection> find_lens(const PathContext& path, const View& view, const SurfaceVertex& vertex);
 std::optional<CameraConnection> find_lens(const PathContext& path, const View& view, const MediumVertex& vertex);
 

@@ -21,6 +21,8 @@ struct Passage {
 
 /// Passage of light that travels from the ray's origin, which lies in `medium`, to its end.
 Passage passage(const PathContext& path, const Ray& ray, MediumId medium, std::uint32_t dimensions);
+/// The same for a ray that ends at the camera's lens: shapes that are hidden from the camera do not block it.
+Passage passage_to_lens(const PathContext& path, const Ray& ray, MediumId medium, std::uint32_t dimensions);
 /// Radiance that the medium `emissive` sends to the ray's origin, from all parts of the ray inside that medium. The
 /// origin lies in `medium`; the ray is infinite.
 Spectrum volume_emission(const PathContext& path, const Ray& ray, MediumId medium, MediumId emissive,

@@ -201,6 +201,14 @@ void draw_ahead(const PathContext& path, int depth) {
   path.sampler.draw_ahead(is_eye_walk ? visitor_dimensions(depth) : walk_dimensions(depth));
 }
 
+/// The rest of a ray behind a surface that it passes through, with its footprint there.
+inline Ray beyond(const SurfacePoint& at, const Ray& ray) {
+  Ray rest = spawn_ray(at, ray.direction);
+  rest.width = ray.width + ray.spread * std::sqrt(distance_squared(at.position, ray.origin));
+  rest.spread = ray.spread;
+  return rest;
+}
+
 /// How the crossing of a medium ends: the walk passes to the end of the ray, ends, or scatters.
 enum class Crossing : std::uint8_t { passed, ended, scattered };
 
@@ -243,7 +251,7 @@ Crossing cross_medium(const PathContext& path, Ray& ray, const Normal& begin_nor
 /// - `visit(MediumRay)`, if the visitor declares it, for each ray through a medium.
 /// - `visit(FlownSegment)`, if the visitor declares it, for each flight.
 /// The walk draws from `path.sampler` at `walk_dimensions(depth)`. A visitor must seek `visitor_dimensions(depth)`
-/// before it draws.
+/// before it draws. Eye walks pass through shapes that are hidden from the camera until they scatter.
 template <Transport transport, class Visit>
 void walk(const PathContext& path, Ray ray, WalkState& state, Visit&& visit) {
   // Scenes without media need not pay for this hash.
@@ -261,6 +269,11 @@ void walk(const PathContext& path, Ray ray, WalkState& state, Visit&& visit) {
       if (crossing == walk_detail::Crossing::scattered) continue;
     } else {
       walk_detail::show(visit, state, ray, begin_normal, at);
+    }
+    if (transport == Transport::radiance && at && at->is_hidden && state.depth == 0) {
+      begin_normal = at->normal;
+      ray = walk_detail::beyond(*at, ray);
+      continue;
     }
     if (at && at->is_interface) {
       begin_normal = at->normal;

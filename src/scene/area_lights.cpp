@@ -2,15 +2,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/area_lights.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include "base/parallel.h"
+#include "lanthorn/error.h"
 #include "light/emitter_geometry.h"
 #include "math/affine.h"
 #include "math/sampler.h"
@@ -249,6 +253,10 @@ std::vector<Light> make_area_lights(const EmittingShape& emitter, const descript
   const description::Shape& source = *emitter.source;
   const Emission emission(shape, radiance, light.scale);
   const EmissionPattern* pattern = emission.varies() ? &store.patterns.emplace_back(emission.pattern()) : nullptr;
+  if (!(light.spread > 0 && light.spread <= 180))
+    throw Error(light.location,
+                fmt::format("expected a spread of more than 0 and at most 180 degrees, got {}", light.spread));
+  const Spread spread(static_cast<double>(light.spread) / 360 * std::numbers::pi);
   const std::size_t count = shape.record.lit_in_pairs ? shape.primitives() / 2 : shape.primitives();
   const std::size_t side = table_side(count);
   const std::uint32_t samples = samples_of_each(count);
@@ -263,6 +271,7 @@ std::vector<Light> make_area_lights(const EmittingShape& emitter, const descript
     set_errors(l, emitter);
     l.pattern = pattern;
     l.two_sided = light.two_sided;
+    l.spread = spread;
     l.invisible = emission.is_invisible();
     l.radiance = pattern != nullptr ? mean_radiance(emission, l, light.scale, samples) : emission.constant();
     if (pattern != nullptr && side >= 2 && invert_sample_area(l.shape, Point(0)))

@@ -49,6 +49,7 @@ std::optional<SurfacePoint> Scene::intersect(const Ray& ray, const Wavelengths& 
   p.uv = surface.uv;
   p.media = record.media;
   p.is_interface = record.is_interface;
+  p.is_hidden = record.is_hidden;
   if (!record.is_interface) {
     TexturePoint at{surface.position, surface.normal, surface.uv, surface.color};
     if (record.wants_footprint) at.footprint = footprint_of(surface, ray.width + ray.spread * hit->t);
@@ -84,6 +85,7 @@ bool Scene::may_be_specular() const { return data_->materials.may_be_specular();
 bool Scene::has_fibres() const { return data_->materials.has_fibres(); }
 bool Scene::has_media() const { return !data_->media->empty(); }
 bool Scene::has_interfaces() const { return data_->has_interfaces; }
+bool Scene::has_hidden_shapes() const { return data_->has_hidden_shapes; }
 bool Scene::has_scattering_media() const {
   return has_media() &&
          std::any_of(data_->media->begin(), data_->media->end(), [](const Medium& m) { return scatters(m); });

@@ -79,6 +79,8 @@ class Scene {
   bool has_fibres() const;
   /// True if some shape is only an interface between media. If not, a ray that passes no surface stays in one medium.
   bool has_interfaces() const;
+  /// True if rays from the camera pass through some shape that other rays meet.
+  bool has_hidden_shapes() const;
   /// True if any medium scatters.
   bool has_scattering_media() const;
   /// The largest albedo of a medium (`largest_albedo`); 0 if none scatters.

@@ -65,6 +65,7 @@ class SceneBuilder {
   void count();
   bool is_visible(const description::Shape& shape) const;
   std::unique_ptr<ShapeStore> store(description::Shape& shape, const Transform& to_space);
+  bool may_be_hidden(const GeometryRecord& record, const SourceLocation& location);
   void displace(description::Shape& shape);
   void settle_emission(description::Shape& shape);
   std::uint32_t add_emitter(EmittingShape emitter);
@@ -143,12 +144,21 @@ std::unique_ptr<ShapeStore> SceneBuilder::store(description::Shape& shape, const
   data_.has_measured_spectra = data_.has_measured_spectra || traits.has_tables || traits.is_dispersive;
   data_.has_dispersion = data_.has_dispersion || traits.is_dispersive;
   data_.has_interfaces = data_.has_interfaces || traits.is_interface;
+  stored->record.is_hidden = !shape.visible_to_camera && may_be_hidden(stored->record, shape.location);
+  data_.has_hidden_shapes = data_.has_hidden_shapes || stored->record.is_hidden;
   stored->textures = &data_.textures;
   stored->alpha = data_.textures.without_opaque_image(data_.textures.compile(shape.alpha));
   stored->pane = shape.pane;
   stored->record.emits = shape.area_light.has_value();
   stored->record.wants_uv = traits.varies || traits.has_relief || stored->is_cut_out() || stored->record.emits;
   return stored;
+}
+
+// Rays that pass through a hidden shape stay in their medium.
+bool SceneBuilder::may_be_hidden(const GeometryRecord& record, const SourceLocation& location) {
+  if (!record.is_interface && !record.media.is_transition()) return true;
+  warn_once(data_.description, location, "a shape that bounds media cannot be hidden from the camera: it is visible");
+  return false;
 }
 
 void SceneBuilder::displace(description::Shape& shape) {

@@ -68,6 +68,7 @@ struct SceneData {
   BoundingSphere sphere;
   float largest_radiance = 0;
   bool has_measured_spectra = false, has_dispersion = false, has_interfaces = false, has_emissive = false;
+  bool has_hidden_shapes = false;
   bool has_unlit_emission = false;      ///< some emissive medium is not a light
   std::vector<MediumId> endless_media;  ///< around the whole scene
   bool is_edited = false;

@@ -70,6 +70,7 @@ class SceneEditor {
     keep();
     data_->media = base_->media;
     data_->has_interfaces = base_->has_interfaces;
+    data_->has_hidden_shapes = base_->has_hidden_shapes;
     data_->has_emissive = base_->has_emissive;
     data_->has_unlit_emission = base_->has_unlit_emission;
     data_->endless_media = base_->endless_media;

@@ -28,6 +28,7 @@ struct SurfacePoint {
   float time = 0;
   MediumInterface media;
   bool is_interface = false;  ///< no surface, only an interface of media; the closure is undefined
+  bool is_hidden = false;     ///< rays from the camera pass through
   /// A hair, seen as a ribbon that faces the ray: `normal` depends on the ray; `shading.s` runs along the hair.
   bool is_hair = false;
   PointBsdf bsdf;

@@ -60,9 +60,10 @@ struct alignas(64) GeometryRecord {
   bool has_normals = false;
   bool has_uvs = false;
   bool has_colors = false;
-  bool quads = false;         ///< triangles 2 i and 2 i + 1 are patch i
-  bool lit_in_pairs = false;  ///< triangles 2 i and 2 i + 1 are one parallelogram, and light i of the shape
-  bool is_interface = false;  ///< no surface, only an interface between media
+  bool quads = false;             ///< triangles 2 i and 2 i + 1 are patch i
+  bool lit_in_pairs = false;      ///< triangles 2 i and 2 i + 1 are one parallelogram, and light i of the shape
+  bool is_interface : 1 = false;  ///< no surface, only an interface between media
+  bool is_hidden : 1 = false;     ///< rays from the camera pass through
   MediumInterface media;
 
   bool wants_derivatives() const { return wants_tangents || wants_footprint; }

@@ -33,6 +33,7 @@ class LightTest(unittest.TestCase):
         cycles = stage.render("CYCLES", samples=samples, max_bounces=0)
         ours = stage.render("LANTHORN", method="path", max_depth=1, noise=0, seconds=0, passes=256)
         ratio = ours[:, :, :3].mean() / cycles[:, :, :3].mean()
+        self.ratios = ours[:, :, :3].mean(axis=(0, 1)) / cycles[:, :, :3].mean(axis=(0, 1))  # of the colours
         theirs, means = block_means(cycles, blocks), block_means(ours, blocks)
         lit = theirs > 0.05 * cycles[:, :, :3].max()
         ratios = means[lit] / theirs[lit]
@@ -52,7 +53,6 @@ class LightTest(unittest.TestCase):
         self.compare("point-0")
 
     def test_point(self):
-        # Outside the picture, because our camera sees lamps and that of Cycles does not.
         stage.add_light("POINT", 100, (2.5, 0.4, 1), shadow_soft_size=0.25, color=(1, 0.5, 0.2))
         self.compare("point")
 
@@ -88,6 +88,35 @@ class LightTest(unittest.TestCase):
         light = stage.add_light("AREA", 100, (2.4, 0, 1), (0, 0.8, 0), shape="RECTANGLE", size=0.6, size_y=0.3)
         light.scale = (2, 0.5, 1)
         self.compare("area-scaled")
+
+    def test_lights_in_the_picture(self):
+        """The camera sees a light only if its Ray Visibility says so."""
+        for is_seen in (False, True):
+            with self.subTest(is_seen):
+                self.setUp()
+                stage.add_light("POINT", 20, (0.2, 0.2, 1), shadow_soft_size=0.1).visible_camera = is_seen
+                self.compare(f"in-picture-{is_seen}", blocks=6)
+
+    def test_spread_of_area_lights(self):
+        for degrees in (120, 60, 15):
+            with self.subTest(degrees):
+                self.setUp()
+                stage.add_light("AREA", 100, (0.4, 0.2, 1.5), (0.2, 0.3, 0), shape="RECTANGLE", size=0.6, size_y=0.3,
+                                spread=math.radians(degrees))
+                self.compare(f"spread-{degrees}", blocks=6)
+
+    def test_black_bodies(self):
+        """Of a light's nodes, and of a mesh."""
+        light = stage.add_light("SPOT", 100, (0.3, 0, 2), (0.2, 0, 0), shadow_soft_size=0, spot_size=math.radians(40))
+        light.data.use_nodes = True
+        lamp = stage.node_material("lamp", "ShaderNodeEmission", Strength=20)
+        stage.add_ball(radius=0.2, location=(3, 0, 1.5), material=lamp)
+        for tree, kelvin in ((light.data.node_tree, 2500), (lamp.node_tree, 9000)):
+            black_body = tree.nodes.new("ShaderNodeBlackbody")
+            black_body.inputs["Temperature"].default_value = kelvin
+            tree.links.new(black_body.outputs[0], next(n for n in tree.nodes if n.type == "EMISSION").inputs["Color"])
+        self.compare("black-bodies")
+        self.assertLess(abs(self.ratios - 1).max(), TOLERANCE)
 
     def test_mesh(self):
         lamp = stage.node_material("lamp", "ShaderNodeEmission", Color=(1, 0.8, 0.6, 1), Strength=20)

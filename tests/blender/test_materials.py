@@ -118,6 +118,8 @@ MATERIALS = {
     "glass": (shader(GLASS, Color=(0.8, 0.9, 1, 1), IOR=1.5, Roughness=0.0), TOLERANCE),
     "rough-glass": (shader(GLASS, IOR=1.5, Roughness=0.4), 0.06),
     "hole": (mixed((DIFFUSE, {"Color": RED}), (HOLE, {})), TOLERANCE),
+    "veil": (mixed((DIFFUSE, {"Color": (0.5, 0.15, 0.1, 1)}), (HOLE, {"Color": (0.4, 0.4, 0.4, 1)}),
+                   kind="ShaderNodeAddShader"), TOLERANCE),
     "mix": (mixed((DIFFUSE, {"Color": RED}), (GLOSSY, {"Roughness": 0.2})), TOLERANCE),
     "emission": (shader(EMISSION, Color=RED, Strength=3.0), TOLERANCE),
     "diffuse-emission": (mixed((DIFFUSE, {"Color": RED}), (EMISSION, {"Strength": 0.5}), kind="ShaderNodeAddShader"),

@@ -238,16 +238,63 @@ class RenderTest(unittest.TestCase):
         scene.render.use_motion_blur, scene.render.motion_blur_shutter = True, 0.8
         self.compare_blocks("motion-blur")
 
-    def test_lamps_in_the_picture_are_named(self):
-        from lanthorn import lights
+    def test_objects_that_the_camera_does_not_see(self):
+        """They cast shadows and are seen in mirrors, as in Cycles."""
+        self.blocks_in_the_sky()
+        stage.add_camera((0, -4, 2), (math.radians(65), 0, 0), lens=30)
+        stage.add_light("SUN", 2, rotation=(0.5, 0.3, 0), angle=0)
+        bpy.data.objects["ball"].visible_camera = False
+        hidden = self.compare_blocks("hidden")[1]
+        bpy.data.objects["ball"].visible_camera = True
+        self.assertGreater(abs(hidden - self.compare_blocks("visible")[1]).mean(), 0.008)
+
+    def exported(self):
+        """Returns the parts of the scene, and what is noted about them."""
+        from lanthorn.scene_export import SceneExport
+        export = SceneExport()
+        self.addCleanup(export.close)
+        return export.parts(bpy.context.evaluated_depsgraph_get()), export.report.lines()
+
+    def test_curves_texts_and_metaballs_are_exported_once(self):
+        """The depsgraph shows their meshes, too. Particles instance curves without a mesh, which Cycles does not draw."""
         stage.empty_scene(16, 16)
-        camera = stage.add_camera((0, -4, 1.2), (math.radians(80), 0, 0), lens=50)
-        seen = [stage.add_light("POINT", 10, (0, 0, 1), shadow_soft_size=0.1),
-                stage.add_light("AREA", 10, (2.2, 2, 1), size=3)]  # an edge of it
-        stage.add_light("POINT", 10, (0, -8, 1), shadow_soft_size=0.1)  # behind the camera
-        stage.add_light("POINT", 10, (0, 0, 1), shadow_soft_size=0)
-        names = lights.seen_lamps(bpy.context.scene, camera, bpy.context.evaluated_depsgraph_get())
-        self.assertEqual(list(names), [light.name for light in seen])
+        text = bpy.data.curves.new("text", "FONT")
+        text.body, text.extrude = "A", 0.1
+        source = stage.link("text", text)
+        bpy.ops.object.metaball_add()
+        plane = stage.add_plane()
+        plane.modifiers.new("crowd", "PARTICLE_SYSTEM")
+        settings = plane.particle_systems[0].settings
+        settings.type, settings.count, settings.render_type, settings.instance_object = "HAIR", 5, "OBJECT", source
+        parts, _ = self.exported()
+        self.assertEqual(len(parts["instances"]), 3, parts["instances"].keys())
+
+    def test_uv_maps_survive_geometry_nodes(self):
+        """Blender 3.4 turns UV maps into attributes when nodes realize instances."""
+        stage.empty_scene(16, 16)
+        source, target = stage.add_plane(), stage.add_plane()
+        source.hide_render = True
+        tree = bpy.data.node_groups.new("realized", "GeometryNodeTree")
+        info, realize, end = (tree.nodes.new(kind) for kind in ("GeometryNodeObjectInfo", "GeometryNodeRealizeInstances",
+                                                              "NodeGroupOutput"))
+        tree.outputs.new("NodeSocketGeometry", "Geometry")
+        info.inputs["Object"].default_value, info.inputs["As Instance"].default_value = source, True
+        tree.links.new(info.outputs["Geometry"], realize.inputs[0])
+        tree.links.new(realize.outputs[0], end.inputs[0])
+        target.modifiers.new("nodes", "NODES").node_group = tree
+        self.assertFalse(len(target.evaluated_get(bpy.context.evaluated_depsgraph_get()).data.uv_layers))
+        shapes = [shape for made in self.exported()[0]["objects"].values() for shape in made["shapes"]]
+        self.assertTrue(all(numpy.ptp(shape["uvs"]) == 1 for shape in shapes), shapes)
+
+    def test_what_is_not_supported_is_named(self):
+        self.blocks_in_the_sky()
+        ball = bpy.data.objects["ball"]
+        ball.visible_glossy, ball.is_shadow_catcher = False, True
+        stage.add_light("SPOT", 10, (0, 0, 3), shadow_soft_size=0.1).visible_camera = True
+        ball.lightgroup = "key"
+        notes = "\n".join(self.exported()[1])
+        for text in ("of Ray Visibility, only Camera", "shadow catchers", "spot lights are never visible", "light groups"):
+            self.assertIn(text, notes)
 
     def test_errors_name_what_to_do(self):
         scene = self.blocks_in_the_sky()

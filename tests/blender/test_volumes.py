@@ -35,9 +35,11 @@ class VolumeTest(unittest.TestCase):
         scene.world.color = (0.3, 0.35, 0.4)
         stage.add_light("AREA", 300, (2, -3, 4), (0.6, 0.35, 0), size=1)
 
-    def compare(self, name):
-        cycles = stage.render("CYCLES", samples=128, max_bounces=16, volume_bounces=16, volume_step_rate=0.3)
-        ours = stage.render("LANTHORN", method="path", noise=0, seconds=0, passes=96)
+    def compare(self, name, bounces=16, passes=96, of_blocks=OF_BLOCKS):
+        cycles = stage.render("CYCLES", samples=128, max_bounces=bounces, volume_bounces=bounces, volume_step_rate=0.3)
+        # In fog without end, paths are long: they are cut after as many scatterings as in Cycles.
+        depth = bounces + 1 if bounces < 16 else 0
+        ours = stage.render("LANTHORN", method="path", noise=0, seconds=0, passes=passes, max_depth=depth)
         if FOLDER:
             stage.save_png(os.path.join(FOLDER, f"{name}.png"), cycles, ours)
         mean = cycles[:, :, :3].mean()
@@ -45,7 +47,7 @@ class VolumeTest(unittest.TestCase):
         worst = abs(blocks[1] - blocks[0]).max() / mean
         print(f"{name}: lanthorn / cycles {ours[:, :, :3].mean() / mean:.4f}; blocks differ by up to {worst:.4f}", flush=True)
         self.assertAlmostEqual(ours[:, :, :3].mean() / mean, 1, delta=TOLERANCE)
-        self.assertLess(worst, OF_BLOCKS)
+        self.assertLess(worst, of_blocks)
         return ours
 
     def test_openvdb(self):
@@ -74,6 +76,30 @@ class VolumeTest(unittest.TestCase):
         bpy.data.objects.remove(object)
         without = stage.render("LANTHORN", method="path", noise=0, seconds=0, passes=24)
         return abs(seen - without)[16:48, 16:48, :3].mean() / without[:, :, :3].mean()
+
+    def world_volume(self, kind, **inputs):
+        """Fills the world with a volume."""
+        world = bpy.context.scene.world
+        world.use_nodes = True
+        nodes, links = world.node_tree.nodes, world.node_tree.links
+        shader = nodes.new(kind)
+        for name, value in inputs.items():
+            shader.inputs[name].default_value = value
+        links.new(shader.outputs[0], next(n for n in nodes if n.type == "OUTPUT_WORLD").inputs["Volume"])
+
+    def test_volume_of_the_world(self):
+        """Fog fills everything: also another fog. The sky and suns are dark behind it. Both fogs have the same anisotropy:
+        otherwise Cycles 3.4 is too bright where they overlap (by 18 % in blue with 0.03 beside 0)."""
+        self.world_volume("ShaderNodeVolumeScatter", Color=(0.9, 0.7, 0.4, 1), Density=0.12, Anisotropy=0.0)
+        stage.add_light("SUN", 3, rotation=(0.5, 0.3, 0))
+        stage.add_ball(0.5, (0.7, 0, 0.5), principled_volume(Color=(0.3, 0.6, 0.9, 1), Density=1.0))
+        self.compare("world-volume", bounces=4, passes=96, of_blocks=2 * OF_BLOCKS)
+
+    def test_hot_volumes(self):
+        """The black body of a Principled Volume."""
+        stage.add_ball(0.7, (0, 0, 0.7), principled_volume(Color=(0.5, 0.5, 0.5, 1), Density=0.4, Blackbody_Intensity=0.05,
+                                                          Temperature=2500.0, Blackbody_Tint=(1, 0.9, 0.8, 1)))
+        self.compare("hot")
 
     def test_smoke_of_a_fluid_domain(self):
         with tempfile.TemporaryDirectory() as folder:

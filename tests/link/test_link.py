@@ -48,6 +48,14 @@ def mean(answer, channel="R"):
     return sum(values) / len(values)
 
 
+def raised(z):
+    return [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, z], [0, 0, 0, 1]]
+
+
+def values_of(answer):
+    return array.array("f", bytes(answer["pixels"].bytes))
+
+
 def last_picture(client, after=0, revision=0, layers=("color",)):
     """Waits for the finished picture of this revision or of a later one."""
     picture = None
@@ -169,6 +177,85 @@ class LinkTest(unittest.TestCase):
         self.assertAlmostEqual(mean(last_picture(self.client, revision=revision)), 0.4, delta=0.03)
         self.assert_refused("refers to itself", "update",
                             set={"materials": {"a": {"type": "mix", "materials": ["a", "white"]}}})
+
+    def picture_of_ball(self, method, **members):
+        """Renders a ball that emits, above a mirror on the square."""
+        ball = {"type": "sphere", "radius": 0.3, "object_to_world": raised(0.8), "material": "clear", "area_light": "lamp"}
+        mirror = {"type": "disk", "radius": 0.5, "object_to_world": raised(0.01), "material": "mirror"}
+        made = scene()
+        made["lights"].clear()
+        made["materials"].update(clear={"type": "thindielectric", "eta": 1.0},
+                                 mirror={"type": "conductor", "reflectance": 0.9})
+        self.client.request("update", set={**made, "area_lights": {"lamp": {"radiance": 2.0}},
+                                           "shapes": {"ball": {**ball, **members}, "mirror": mirror}})
+        self.client.request("start", options={"integrator": method, "passes": 200 if method == "path" else 40,
+                                              "photons": 10000, "color": "rgb"})
+        return last_picture(self.client, layers=("color", "emission"))
+
+    def test_shapes_are_hidden_from_the_camera_alone(self):
+        seen = self.picture_of_ball("path")
+        reference = self.picture_of_ball("path", visible_to_camera=False)
+        middle = seen["pixels"].shape[2] * (16 * 6 + 8)
+        self.assertGreater(values_of(seen)[middle], 2)
+        # The mirror shows the ball.
+        self.assertGreater(mean(reference, "emission.R"), 0.005)
+        self.assertLess(values_of(reference)[middle], 2)
+        invisible = self.picture_of_ball("path", alpha=0.0)
+        self.assertEqual(mean(invisible, "emission.R"), 0)
+        for method in ("bdpt", "vcm", "probppm", "mlt"):
+            with self.subTest(method):
+                hidden = self.picture_of_ball(method, visible_to_camera=False)
+                self.assertAlmostEqual(mean(hidden) / mean(reference), 1, delta=0.05)
+
+    def test_light_reaches_the_camera_through_a_hidden_wall(self):
+        """The wall is between the camera and the square. A point light shines on both."""
+        means = {}
+        for method, passes in (("path", 200), ("light", 20), ("bdpt", 40)):
+            made = scene()
+            made["lights"] = {"lamp": {"type": "point", "from": [0.3, 0.2, 0.7]}}
+            made["shapes"] = {"wall": {**square(), "object_to_world": raised(1.2), "visible_to_camera": False}}
+            self.start(made, integrator=method, passes=passes, photons=10000, max_depth=2, color="rgb")
+            means[method] = mean(last_picture(self.client))
+        self.assertAlmostEqual(means["light"] / means["path"], 1, delta=0.04)
+        self.assertAlmostEqual(means["bdpt"] / means["path"], 1, delta=0.04)
+
+    def test_a_shape_that_bounds_a_medium_is_visible(self):
+        made = scene()
+        made["media"] = {"fog": {"sigma_a": 1.0}}
+        made["shapes"] = {"ball": {"type": "sphere", "radius": 0.3, "material": "white", "inside_medium": "fog",
+                                   "visible_to_camera": False}}
+        self.client.request("update", set=made)
+        warnings = self.client.request("start", options={"integrator": "path", "passes": 1})["warnings"]
+        self.assertTrue(any("cannot be hidden from the camera" in line for line in warnings), warnings)
+
+    def test_spread_narrows_an_area_light(self):
+        """The square gets the same power from above, on a smaller spot."""
+        made = scene(reflectance=1.0)
+        made["lights"].clear()
+        made["area_lights"] = {"lamp": {"radiance": 10.0}}
+        made["materials"]["clear"] = {"type": "thindielectric", "eta": 1.0}
+        made["shapes"] = {"lamp": {"type": "disk", "radius": 0.05, "object_to_world": raised(0.4), "material": "clear",
+                                   "area_light": "lamp", "reverse_orientation": True, "visible_to_camera": False}}
+        means, largest = {}, {}
+        for method, passes in (("path", 500), ("light", 40)):
+            for spread in (180, 60):
+                made["area_lights"]["lamp"]["spread"] = spread
+                self.start(made, integrator=method, passes=passes, photons=10000, max_depth=1, color="rgb")
+                picture = last_picture(self.client)
+                means[method, spread], largest[method, spread] = mean(picture), max(values_of(picture))
+        self.assertAlmostEqual(means["light", 60] / means["path", 60], 1, delta=0.03)
+        # Nearly all light is in the picture. Straight below the lamp, it is 1 / (1 - (pi / 6) / tan 30°) = 10.7 times as bright.
+        self.assertAlmostEqual(means["path", 60] / means["path", 180], 1.07, delta=0.07)
+        self.assertGreater(largest["path", 60], 3 * largest["path", 180])
+        self.assert_bad_spread(made, 0)
+        self.assert_bad_spread(made, 200)
+
+    def assert_bad_spread(self, made, spread):
+        made["area_lights"]["lamp"]["spread"] = spread
+        self.client.request("stop")
+        self.client.request("update", set=made)
+        self.assert_refused(f"expected a spread of more than 0 and at most 180 degrees, got {spread}", "start",
+                            options={"integrator": "path", "passes": 1})
 
     def test_goes_on_until_it_is_told_to_end(self):
         self.client.request("update", set=scene())

@@ -212,9 +212,11 @@ TEST(LightStatistics, DirectionsOfSpotsFollowTheirDensity) {
   }
 }
 
-TEST(LightStatistics, SurfaceEmissionIsCosineDistributed) {
+TEST(LightStatistics, SurfaceEmissionFollowsItsDensity) {
   for (const bool two_sided : {false, true}) {
-    const Light light = AreaLight{DiskEmitter(Transform(), 0, 1), test_colour(), two_sided, false};
+    AreaLight light_of_disk{DiskEmitter(Transform(), 0, 1), test_colour(), two_sided, false};
+    if (two_sided) light_of_disk.spread = Spread(0.8);
+    const Light light = light_of_disk;
     const DirectionSampler sampler{[&](float u, const Vec2& v) {
                                      return std::optional(sample_emission(light, {u, 0.3f}, v, rgb)->direction);
                                    },

@@ -210,6 +210,12 @@ inline std::vector<NamedLight> test_lights() {
     all.push_back({s.name + " two-sided", AreaLight{s.shape, test_colour(), true, false}});
   }
   for (const auto& [surface, light] : test_screens()) all.push_back({surface.name + " as a screen", light});
+  for (const TestSurface& s : test_surfaces()) {
+    if (s.name != "square" && s.name != "sphere" && s.name != "mirrored ring") continue;
+    AreaLight light{s.shape, test_colour(), s.name == "square", false};
+    light.spread = Spread(0.6);
+    all.push_back({s.name + " behind slats", light});
+  }
   const BoundingSphere scene{{0.5f, 1, -0.2f}, 2.5f};
   const Direction axis = normalize(Vec3(1, -2, 0.5f));
   all.push_back({"point", PointLight{{0.3f, 0.2f, -0.1f}, test_colour()}});

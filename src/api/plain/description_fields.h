@@ -458,8 +458,9 @@ struct Fields<description::Curves> {
 template <>
 struct Fields<description::AreaLight> {
   using T = description::AreaLight;
-  static constexpr auto list = std::tuple(field("radiance", &T::radiance), field("scale", &T::scale),
-                                          field("power", &T::power), field("two_sided", &T::two_sided));
+  static constexpr auto list =
+      std::tuple(field("radiance", &T::radiance), field("scale", &T::scale), field("power", &T::power),
+                 field("two_sided", &T::two_sided), field("spread", &T::spread));
 };
 template <>
 struct Fields<description::MeshDisplacement> {
@@ -479,7 +480,8 @@ struct Fields<description::Shape> {
       field("reverse_orientation", &T::reverse_orientation), reference("material", "materials", &T::material),
       reference("area_light", "area_lights", &T::area_light), field("shares_power", &T::shares_power),
       field("alpha", &T::alpha), field("pane", &T::pane), field("displacement", &T::displacement),
-      reference("inside_medium", "media", &T::inside_medium), reference("outside_medium", "media", &T::outside_medium));
+      field("visible_to_camera", &T::visible_to_camera), reference("inside_medium", "media", &T::inside_medium),
+      reference("outside_medium", "media", &T::outside_medium));
 };
 template <>
 struct Fields<description::Object> {

@@ -278,6 +278,30 @@ TEST(AreaLight, EmitsOnTheSideOfItsNormal) {
   EXPECT_LT(sample_emission(both, {0.5f, 0.5f}, {0.7f, 0.3f}, rgb)->direction.z, 0);
 }
 
+// Cycles' profile: 1 - tan(a) / tan(h), normalised.
+TEST(AreaLight, SlatsKeepThePowerAndNarrowTheLight) {
+  for (const double half : {0.01, 0.3, 0.785398163397, 1.5}) {
+    const Spread spread(half);
+    double mean = 0;
+    constexpr int n = 20000;
+    for (int i = 0; i < n; ++i) {
+      const double angle = half * (i + 0.5) / n;
+      const double factor = to_double(spread.factor(static_cast<float>(std::cos(angle))));
+      mean += factor * 2 * std::cos(angle) * std::sin(angle) * half / n;
+      ASSERT_NEAR(factor / to_double(spread.peak()), 1 - std::tan(angle) / std::tan(half), half > 0.1 ? 1e-3 : 5e-2);
+    }
+    EXPECT_NEAR(mean, 1, half > 0.1 ? 1e-3 : 1e-2) << half;
+    EXPECT_EQ(spread.factor(static_cast<float>(std::cos(half + 0.01))), 0) << half;
+  }
+  EXPECT_NEAR(Spread(0.785398163397).peak(), 1 / (1 - pi / 4), 1e-4f);
+  AreaLight light{DiskEmitter(Transform(), 0, 1), test_colour()};
+  const float open = light.power();
+  light.spread = Spread(0.5);
+  EXPECT_EQ(light.power(), open);
+  EXPECT_TRUE(sample_direct(light, {0, 0, 9}, {0.5f, 0.5f}, rgb));
+  EXPECT_FALSE(sample_direct(light, {9, 0, 9}, {0.5f, 0.5f}, rgb));
+}
+
 TEST(AreaLight, MirroredQuadricsKeepTheirOutside) {
   const Transform mirror = translate({1, 0, 0}) * scale({-1, 1, 1});
   const SphereEmitter sphere(mirror, 0.5f);
@@ -309,7 +333,8 @@ TEST(Light, EmissionAgreesWithItsDensities) {
         ASSERT_FALSE(radiance.is_black()) << l.name;
         ASSERT_NEAR(s->flux[0], radiance[0] * s->cos_origin / (s->pdf_position * s->pdf_direction), 1e-3f * s->flux[0])
             << l.name;
-        ASSERT_TRUE(area_light->pattern != nullptr || area_light->radiance.evaluate(rgb) == radiance);
+        ASSERT_TRUE(area_light->pattern != nullptr || !area_light->spread.is_diffuse() ||
+                    area_light->radiance.evaluate(rgb) == radiance);
       }
     }
 }
@@ -326,11 +351,11 @@ TEST(Light, EmissionIsInverted) {
       const Point origin = is_far(l.light) ? s->origin + 1.7f * s->direction : s->origin;
       const EmissionNumbers found = invert_emission(l.light, {origin, s->normal}, s->direction);
       // Random numbers that a light does not need do not affect it. Positions on stretched and twisted emitters, and on
-      // two-sided spheres, cannot be inverted.
+      // two-sided spheres and those behind slats, cannot be inverted.
       const bool rejects = l.name.starts_with("ellipsoid") || l.name.starts_with("sheared sphere") ||
                            l.name.starts_with("partial ellipsoid") || l.name.starts_with("sheared cylinder") ||
                            l.name.starts_with("saddle") || l.name == "sphere two-sided" ||
-                           l.name == "mirrored sphere two-sided";
+                           l.name == "mirrored sphere two-sided" || l.name == "sphere behind slats";
       ASSERT_FALSE(found.position && rejects) << l.name;
       const Vec2 position = found.position.value_or(rejects ? u_position : rng.next2());
       const Vec2 direction = found.direction.value_or(rng.next2());
@@ -358,8 +383,9 @@ TEST(Light, PhotonsCarryEqualFluxWhoseMeanIsThePower) {
       sum += flux / n;
       squares += flux * flux / n;
     }
-    // If solid angle varies within a texel, or colours are interpolated, flux varies.
-    const bool varies = l.name == "projection" || l.name == "equirectangular infinite" || l.name.ends_with("portal");
+    // If solid angle varies within a texel, colours are interpolated, or slats take some of the light, flux varies.
+    const bool varies = l.name == "projection" || l.name == "equirectangular infinite" || l.name.ends_with("portal") ||
+                        l.name.ends_with("slats");
     const double variance = squares / (sum * sum) - 1;
     EXPECT_NEAR(sum / to_double(power(l.light)), 1, varies ? 4 * std::sqrt(variance / n) : 1e-4) << l.name;
     EXPECT_LT(variance, varies ? 1.0 : 1e-5) << l.name;
