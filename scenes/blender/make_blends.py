@@ -140,7 +140,12 @@ def ring():
 def pool():
     scene = start()
     scene.world.color = (0.35, 0.5, 0.8)
-    put("floor", plane(8, material("tiles", "Diffuse", Color=(0.55, 0.75, 0.8, 1)), z=-1.2))
+    tiles = material("tiles", "Diffuse", Color=(0.55, 0.75, 0.8, 1))
+    put("floor", plane(8, tiles, z=-1.2))
+    # Without walls, light would enter the water from the sides without being refracted, of which engines make what they like.
+    corners = [(-4, -4), (4, -4), (4, 4), (-4, 4)]
+    put("walls", mesh("walls", [(x, y, z) for z in (-1.2, 0.05) for x, y in corners],
+                      [(i, (i + 1) % 4, (i + 1) % 4 + 4, i + 4) for i in range(4)], tiles, is_smooth=False))
     n = 160
     points, faces = [], []
     for j in range(n + 1):
