@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The Lanthorn authors
 # SPDX-License-Identifier: Apache-2.0
-"""Makes the .blend files of docs/from-cycles.md (a glass of water, a ring, a pool, a lamp) and of tests/blender, one for
-each theme of the add-on.
+"""Makes the .blend files of docs/from-cycles.md (a glass of water, a ring, a pool, a lamp), of docs/comparison.md (also
+beams in fog) and of tests/blender, one for each theme of the add-on.
 
 Usage: blender -b --factory-startup --python make_blends.py -- FOLDER [NAME...]
 """
@@ -44,6 +44,17 @@ def material(name, kind, **inputs):
     return made
 
 
+def scattering(name, density, anisotropy):
+    """A volume without a surface."""
+    made = material(name, "Diffuse")
+    tree = made.node_tree
+    tree.nodes.remove(next(n for n in tree.nodes if n.type == "BSDF_DIFFUSE"))
+    medium = tree.nodes.new("ShaderNodeVolumeScatter")
+    medium.inputs["Density"].default_value, medium.inputs["Anisotropy"].default_value = density, anisotropy
+    tree.links.new(medium.outputs[0], next(n for n in tree.nodes if n.type == "OUTPUT_MATERIAL").inputs["Volume"])
+    return made
+
+
 def mesh(name, points, faces, made_of, is_smooth=True):
     made = bpy.data.meshes.new(name)
     made.from_pydata(points, [], faces)
@@ -68,6 +79,12 @@ def lathe(name, profile, made_of, steps=STEPS):
             a, b = row * steps, (row + 1) * steps
             faces.append((a + i, a + j, b + j, b + i))
     return mesh(name, points, faces, made_of)
+
+
+def ball_profile(radius, steps=48):
+    """Of a sphere, from the bottom up; in reverse, its outside is inside."""
+    return [(max(1e-5, radius * math.sin(math.pi * k / steps)), -radius * math.cos(math.pi * k / steps))
+            for k in range(steps + 1)]
 
 
 def plane(size, made_of, z=0.0):
@@ -123,7 +140,12 @@ def ring():
 def pool():
     scene = start()
     scene.world.color = (0.35, 0.5, 0.8)
-    put("floor", plane(8, material("tiles", "Diffuse", Color=(0.55, 0.75, 0.8, 1)), z=-1.2))
+    tiles = material("tiles", "Diffuse", Color=(0.55, 0.75, 0.8, 1))
+    put("floor", plane(8, tiles, z=-1.2))
+    # Without walls, light would enter the water from the sides without being refracted, of which engines make what they like.
+    corners = [(-4, -4), (4, -4), (4, 4), (-4, 4)]
+    put("walls", mesh("walls", [(x, y, z) for z in (-1.2, 0.05) for x, y in corners],
+                      [(i, (i + 1) % 4, (i + 1) % 4 + 4, i + 4) for i in range(4)], tiles, is_smooth=False))
     n = 160
     points, faces = [], []
     for j in range(n + 1):
@@ -145,21 +167,58 @@ def lamp_with_shade():
     put("wall", plane(6, material("wall", "Diffuse", Color=(0.7, 0.7, 0.68, 1))), (0, 1.0, 0), (math.pi / 2, 0, 0))
     put("table", plane(6, material("table", "Diffuse", Color=(0.5, 0.35, 0.25, 1))))
     glass = material("bulb glass", "Glass", IOR=1.5, Roughness=0.0)
-    def ball(radius, sign):
-        steps = 48
-        return [(max(1e-5, radius * math.sin(math.pi * k / steps)), -sign * radius * math.cos(math.pi * k / steps))
-                for k in range(steps + 1)]
-    put("bulb", lathe("bulb", ball(0.12, 1), glass), (0, 0.3, 0.45))
-    put("bulb inside", lathe("bulb inside", ball(0.112, -1), glass), (0, 0.3, 0.45))
+    put("bulb", lathe("bulb", ball_profile(0.12), glass), (0, 0.3, 0.45))
+    put("bulb inside", lathe("bulb inside", ball_profile(0.112)[::-1], glass), (0, 0.3, 0.45))
     lamp("POINT", 15, (0, 0.3, 0.45), shadow_soft_size=0.02)
     camera((0.2, -1.9, 0.75), (math.radians(80), 0, math.radians(5)), lens=45)
 
 
+def tile_with_hole(size, radius, made_of, steps=64):
+    """A square in the plane z = 0 with a round hole in its middle."""
+    points, faces = [], []
+    for i in range(steps):
+        c, s = math.cos(2 * math.pi * (i + 0.5) / steps), math.sin(2 * math.pi * (i + 0.5) / steps)
+        edge = size / 2 / max(abs(c), abs(s))
+        points += [(radius * c, radius * s, 0), (edge * c, edge * s, 0)]
+    corners = [(x * size / 2, y * size / 2, 0) for x, y in ((1, 1), (-1, 1), (-1, -1), (1, -1))]
+    for i in range(steps):
+        a, b = 2 * i, 2 * ((i + 1) % steps)
+        faces.append((a, a + 1, b + 1, b))
+        if (i + 1) % (steps // 4) == steps // 8:
+            faces.append((a + 1, 2 * steps + i // (steps // 4), b + 1))
+    return mesh("tile", points + corners, faces, made_of, is_smooth=False)
+
+
+def lens(radius, curvature, made_of, steps=24):
+    """A lens whose two sides are parts of spheres; its rim is sharp."""
+    half = math.asin(radius / curvature)
+    sides = [(curvature * math.sin(half * k / steps), curvature * (math.cos(half * k / steps) - math.cos(half)))
+             for k in range(steps + 1)]
+    profile = [(max(1e-5, r), -z) for r, z in sides] + [(max(1e-5, r), z) for r, z in reversed(sides[:-1])]
+    return lathe("lens", profile, made_of)
+
+
+def beams():
+    """Fog below a board with three holes: light passes the first freely, the others through a ball and a lens."""
+    scene = start()
+    scene.world.color = (0.004, 0.005, 0.007)
+    put("floor", plane(8, material("floor", "Diffuse", Color=(0.5, 0.5, 0.5, 1))))
+    wood = material("board", "Diffuse", Color=(0.2, 0.15, 0.1, 1))
+    board = tile_with_hole(0.7, 0.15, wood)
+    for x in (-0.7, 0, 0.7):
+        put("board", board, (x, 0, 1.5))
+    for x, y, width, depth in ((0, -1.35, 6, 2), (0, 1.35, 6, 2), (-2.025, 0, 1.95, 0.7), (2.025, 0, 1.95, 0.7)):
+        put("board", plane(1, wood), (x, y, 1.5)).scale = (width, depth, 1)
+    put("ball", lathe("ball", ball_profile(0.16), material("water", "Glass", IOR=1.33, Roughness=0.0)), (0, 0, 1.5))
+    put("lens", lens(0.16, 0.45, material("glass", "Glass", IOR=1.5, Roughness=0.0)), (0.7, 0, 1.5))
+    cube("fog", 1, (0, 0, 0.69), scattering("fog", 0.5, 0.3)).scale = (3, 1.2, 1.3)
+    lamp("AREA", 900, (0, 0, 3.2), shape="DISK", size=0.05)
+    camera((0, -3.6, 0.8), (math.radians(88), 0, 0), lens=42)
+
+
 def ball(name, radius, location, made_of, steps=48):
     """A smooth sphere."""
-    profile = [(max(1e-5, radius * math.sin(math.pi * k / steps)), -radius * math.cos(math.pi * k / steps))
-               for k in range(steps + 1)]
-    return put(name, lathe(name, profile, made_of, 2 * steps), location)
+    return put(name, lathe(name, ball_profile(radius, steps), made_of, 2 * steps), location)
 
 
 def cube(name, size, location, made_of, rotation=(0, 0, 0)):
@@ -265,13 +324,7 @@ def fog():
     scene = start()
     scene.world.color = (0.02, 0.02, 0.02)
     put("floor", plane(8, colored("floor", 0.5, 0.5, 0.5)))
-    made = material("fog", "Diffuse")
-    made.node_tree.nodes.remove(next(n for n in made.node_tree.nodes if n.type == "BSDF_DIFFUSE"))
-    medium = made.node_tree.nodes.new("ShaderNodeVolumeScatter")
-    medium.inputs["Density"].default_value, medium.inputs["Anisotropy"].default_value = 0.4, 0.3
-    output = next(n for n in made.node_tree.nodes if n.type == "OUTPUT_MATERIAL")
-    made.node_tree.links.new(medium.outputs[0], output.inputs["Volume"])
-    cube("fog", 2.0, (0, 0, 1.05), made)
+    cube("fog", 2.0, (0, 0, 1.05), scattering("fog", 0.4, 0.3))
     lamp("AREA", 150, (1.8, -0.5, 3.2), (math.radians(-8), math.radians(35), 0), size=0.4)
     camera((0, -6, 2.0), (math.radians(80), 0, 0), lens=50)
 
@@ -327,12 +380,13 @@ def deformed():
     bent.modifiers.new("armature", "ARMATURE").object = bones
 
 
-SCENES = {"glass-of-water": glass_of_water, "ring": ring, "pool": pool, "lamp": lamp_with_shade, "modifiers": modifiers,
-          "instances": instances, "text-and-curves": text_and_curves, "sky": sky, "noise": noise, "hair": hair, "fog": fog,
-          "metals": metals, "lamps": lamps, "focus": focus, "deformed": deformed}
+SCENES = {"glass-of-water": glass_of_water, "ring": ring, "pool": pool, "lamp": lamp_with_shade, "beams": beams,
+          "modifiers": modifiers, "instances": instances, "text-and-curves": text_and_curves, "sky": sky, "noise": noise,
+          "hair": hair, "fog": fog, "metals": metals, "lamps": lamps, "focus": focus, "deformed": deformed}
 
 if __name__ == "__main__":
     folder, *names = sys.argv[sys.argv.index("--") + 1:]
+    folder = os.path.abspath(folder)  # Blender refuses relative paths
     os.makedirs(folder, exist_ok=True)
     for name in names or SCENES:
         SCENES[name]()

@@ -39,6 +39,7 @@ def render(engine, path, seconds):
 
 if __name__ == "__main__":
     folder, seconds, *names = sys.argv[sys.argv.index("--") + 1:]
+    folder = os.path.abspath(folder)  # Blender refuses relative paths
     enable()
     for name in names:
         bpy.ops.wm.open_mainfile(filepath=os.path.join(folder, f"{name}.blend"))
