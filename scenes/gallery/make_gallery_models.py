@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The Lanthorn authors
 # SPDX-License-Identifier: Apache-2.0
-"""Makes the meshes of four more scenes of the gallery: a glass of water, a whisky on ice, a diamond ring, an aquarium.
+"""Makes the meshes of six more scenes of the gallery: a glass of water, a whisky on ice, a diamond ring, a church, a torch
+with a stencil and a lens, an aquarium.
 
 Usage: scenes/gallery/make_gallery_models.py [--check] [FOLDER]
 
@@ -17,7 +18,7 @@ sys.dont_write_bytecode = True
 sys.path[:0] = [str(Path(__file__).resolve().parents[1]), str(Path(__file__).resolve().parents[1] / "lectures"),
                 str(Path(__file__).resolve().parent)]
 from make_gallery_meshes import filled, step  # noqa: E402
-from make_meshes import (Mesh, add, arc, cross, dot, lathe, line, mul, placed, rounded_cube, scene_text, sub, surface,  # noqa: E402
+from make_meshes import (Mesh, add, arc, cross, dot, lathe, line, mul, placed, plate, rounded_cube, scene_text, sub, surface,  # noqa: E402
                          unit, write_or_check)
 from make_models import boxes, grid, joined, spline  # noqa: E402
 
@@ -235,6 +236,8 @@ def bubbles():
     return scene_text(lines, "make_gallery_models.py")
 
 
+# A church, in metres
+
 def sweep(path, radius, sides=10, normal=(0, 0, 1)):
     """A round tube along a path in space; `radius` is a number or a function of the point's index."""
     mesh = Mesh()
@@ -250,6 +253,192 @@ def sweep(path, radius, sides=10, normal=(0, 0, 1)):
     for lower, upper in zip(rows, rows[1:]):
         mesh.strip(lower, upper)
     return mesh
+
+
+def pointed(half, steps=16):
+    """A pointed arch of two arcs over a span of 2 half, from the left springing (x, z) = (-half, 0) over the apex."""
+    turns = [60 * i / steps for i in range(steps + 1)]
+    left = [(half - 2 * half * math.cos(math.radians(a)), 2 * half * math.sin(math.radians(a))) for a in turns]
+    return left + [(-x, z) for x, z in left[-2::-1]]
+
+
+def faces(mesh, inner, outer, depth):
+    """Both faces of a wall, y = -depth/2 and depth/2, between two rows of points (x, z) that run clockwise as seen from
+    y < 0."""
+    for side in (-1, 1):
+        rows = [[mesh.vertex((x, side * depth / 2, z), (0, side, 0)) for x, z in row] for row in (inner, outer)]
+        mesh.strip(*(row[::-side] for row in rows))
+
+
+def reveal(mesh, loop, depth):
+    """The inside of an opening, along points (x, z) that run clockwise as seen from y < 0."""
+    for (ax, az), (bx, bz) in zip(loop, loop[1:]):
+        dx, dz = unit((bx - ax, bz - az))
+        mesh.polygon([(ax, depth / 2, az), (bx, depth / 2, bz), (bx, -depth / 2, bz), (ax, -depth / 2, az)], (dz, 0, -dx))
+
+
+def roll_along(mesh, loop, depth, offset, radius):
+    """A moulding on both faces of a wall, beside an opening: each point moves outwards by `offset`."""
+    moved = []
+    for i, (x, z) in enumerate(loop):
+        a, b = loop[max(i - 1, 0)], loop[min(i + 1, len(loop) - 1)]
+        dx, dz = unit((b[0] - a[0], b[1] - a[1]))
+        moved.append((x - dz * offset, z + dx * offset))
+    for y in (-depth / 2, depth / 2):
+        joined(mesh, sweep([(x, y, z) for x, z in moved], radius, 10, (0, 1, 0)))
+
+
+def arcade_panel(width, height, half, depth):
+    """Masonry over a pointed arch, from its springing z = 0 up."""
+    mesh, arch = Mesh(), pointed(half)
+    outer = [(-width / 2, height), *((x, height) for x, _ in arch[1:-1]), (width / 2, height)]
+    faces(mesh, [(-width / 2, 0), *arch, (width / 2, 0)], [outer[0], *outer, outer[-1]], depth)
+    reveal(mesh, arch, depth)
+    for offset, radius in ((0.02, 0.09), (0.24, 0.07), (0.42, 0.05)):
+        roll_along(mesh, arch, depth, offset, radius)
+    return mesh
+
+
+def window_panel(width, height, half, sill, springing, depth):
+    """A wall with a pointed window."""
+    mesh = Mesh()
+    loop = [(-half, sill), *((-half, sill + (springing - sill) * i / 8) for i in range(1, 8)),
+            *((x, z + springing) for x, z in pointed(half)),
+            *((half, springing - (springing - sill) * i / 8) for i in range(1, 9)), *((half - half * i / 4, sill) for i in range(1, 9))]
+    middle = (0, (sill + springing) / 2)
+    outer = []
+    for x, z in loop:
+        dx, dz = x - middle[0], z - middle[1]
+        reach = min(s for s in ((width / 2 / abs(dx)) if dx else 1e9, ((height - middle[1]) / dz) if dz > 0 else 1e9,
+                                (middle[1] / -dz) if dz < 0 else 1e9))
+        outer.append((dx * reach, middle[1] + dz * reach))
+    for corner in ((-width / 2, 0), (-width / 2, height), (width / 2, height), (width / 2, 0)):
+        nearest = min(range(len(outer) - 1), key=lambda k: math.dist(outer[k], corner))
+        outer[nearest] = corner
+        if nearest == 0:
+            outer[-1] = corner
+    faces(mesh, loop, outer, depth)
+    reveal(mesh, loop, depth)
+    roll_along(mesh, loop[:-9], depth, 0.06, 0.07)
+    # A mullion and the tracery of two lancets and a ring
+    arch = pointed(half / 2)
+    z = springing - 0.25 * half
+    joined(mesh, sweep([(0, 0, sill), (0, 0, z)], 0.07, 10, (0, 1, 0)))
+    for x in (-half / 2, half / 2):
+        joined(mesh, sweep([(x + px, 0, z + pz) for px, pz in arch], 0.055, 10, (0, 1, 0)))
+    ring = [(0.36 * half * math.sin(a), 0, springing + 0.93 * half + 0.36 * half * math.cos(a)) for a in (math.tau * i / 32 for i in range(33))]
+    return joined(mesh, sweep(ring, 0.055, 10, (0, 1, 0)))
+
+
+def pier(height, radius):
+    """A pier of eight shafts, with base and capital."""
+    def position(u, v):
+        t = v / height
+        lobes = 1 + 0.16 * abs(math.cos(4 * u)) ** 0.8
+        swell = 0.45 * step((0.09 - t) / 0.03) + 0.18 * step((0.14 - t) / 0.02) + 0.5 * step((t - 0.9) / 0.09) + 0.12 * math.exp(-((t - 0.89) / 0.008) ** 2)
+        r = radius * (lobes + swell)
+        return (r * math.cos(u), r * math.sin(u), v)
+
+    heights = [0, 0.06, 0.065, 0.075, 0.085, 0.095, 0.115, 0.125, 0.135, 0.15, 0.5, 0.86, 0.875, 0.882, 0.888, 0.894, 0.9, 0.91,
+               0.93, 0.95, 0.97, 0.99]
+    mesh = surface(position, [math.tau * i / 64 for i in range(65)], [height * t for t in heights])
+    r = 1.62 * radius
+    return lathe([line((0, 0), (r + 0.1, 0)), line((r + 0.1, 0), (r + 0.1, 0.18)), line((r + 0.1, 0.18), (0, 0.2)),
+                  line((0, 0.985 * height), (r, 0.985 * height)), line((r, 0.985 * height), (r + 0.04, height - 0.02)),
+                  line((r + 0.04, height), (0, height))], 8, mesh)
+
+
+def rise(t):
+    """The height of a pointed arch at a share of its half span; 1 in its middle."""
+    return math.sqrt(max(0.0, 4 - (1 + abs(t)) ** 2) / 3)
+
+
+def rib_vault(width, length, height, rib, steps=14):
+    """A bay of a quadripartite vault about z, seen from below: four webs, ribs below their edges."""
+    mesh = Mesh()
+    for axis in (0, 1):
+        for side in (-1, 1):
+            rows = []
+            for i in range(steps + 1):
+                t = i / steps
+                row = []
+                for j in range(-steps, steps + 1):
+                    # A web reaches from the middle to one side; across it the arch of the other direction.
+                    s = t * j / steps
+                    x, y = ((side * t, s), (s, side * t))[axis]
+                    z = height * rise(s)
+                    slope = -height * (1 + abs(s)) / (3 * max(0.15, rise(s))) * math.copysign(1, s) if s else 0
+                    n = (0, slope / (length / 2), -1) if axis == 0 else (slope / (width / 2), 0, -1)
+                    row.append(mesh.vertex((x * width / 2, y * length / 2, z), unit(n)))
+                rows.append(row)
+            for lower, upper in zip(rows, rows[1:]):
+                mesh.strip(*((lower, upper) if (side > 0) == (axis == 0) else (upper, lower)))
+    ts = [i / 20 - 1 for i in range(41)]
+    for k in (-1, 1):
+        joined(mesh, sweep([(t * width / 2, k * t * length / 2, height * rise(t) - 0.02) for t in ts], rib))
+        joined(mesh, sweep([(k * width / 2, t * length / 2, height * rise(t) - 0.02) for t in ts], 0.8 * rib))
+    joined(mesh, sweep([(t * width / 2, -length / 2, height * rise(t) - 0.04) for t in ts], 1.5 * rib))
+    return lathe([[(0.28 * math.sin(math.radians(a)), height - 0.1 - 0.14 * math.cos(math.radians(a))) for a in range(0, 91, 15)]], 24, mesh)
+
+
+def wall_shaft(height):
+    """Three shafts on a wall, at x = 0, with a capital: from z = 0 up."""
+    mesh = Mesh()
+    for y, x, r in ((0, -0.16, 0.12), (-0.19, -0.05, 0.09), (0.19, -0.05, 0.09)):
+        joined(mesh, sweep([(x, y, 0), (x, y, height)], r, 16, (1, 0, 0)))
+    return lathe([spline([(0.24, height - 0.5), (0.27, height - 0.3), (0.42, height - 0.06)], 5), line((0.42, height - 0.06), (0.42, height)),
+                  line((0.42, height), (0, height))], 24, mesh)
+
+
+def pew(length):
+    """A bench along x about the origin, its back towards -y, with carved ends."""
+    outline = [(-0.36, 0), (0.32, 0), (0.32, 0.08), (0.26, 0.13), (0.24, 0.3), (0.27, 0.42), (0.24, 0.5), (0.14, 0.53), (-0.1, 0.56), (-0.2, 0.62),
+               (-0.24, 0.75), (-0.25, 0.92), (-0.22, 1.0), (-0.25, 1.08), (-0.31, 1.1), (-0.37, 1.07), (-0.39, 1.0), (-0.36, 0.9), (-0.32, 0.5), (-0.32, 0.13),
+               (-0.36, 0.08)]
+    end = plate(outline, 0.07, 0.012)
+    mesh = Mesh()
+    for x in (-length / 2, length / 2 - 0.07):
+        first = len(mesh.vertices)
+        mesh.vertices += [((p[2] + x, p[0], p[1]), (n[2], n[0], n[1])) for p, n in end.vertices]
+        mesh.triangles += [tuple(first + k for k in t) for t in end.triangles]
+    x = length / 2 - 0.07
+    return boxes((-x, -0.27, 0.43, x, 0.22, 0.47), (-x, -0.31, 0.1, x, -0.28, 0.98), (-x, -0.33, 0.96, x, -0.25, 1.02),
+                 (-x, 0.05, 0.1, x, 0.08, 0.43), (-x, -0.5, 0.78, x, -0.3, 0.8), mesh=mesh)
+
+
+BAY, WIDTH, AISLE, BAYS = 5.0, 9.0, 4.2, 7
+
+
+def church_placements():
+    lines = []
+
+    def put(name, x, y, z, turn=0):
+        at = f"Translate {x:g} {y:g} {z:g}" + (f" Rotate {turn} 0 0 1" if turn else "")
+        lines.append(f'AttributeBegin {at} ObjectInstance "{name}" AttributeEnd')
+
+    for i in range(BAYS):
+        y = BAY * (i + 0.5)
+        put("vault", 0, y, 11)
+        for side in (-1, 1):
+            x = side * WIDTH / 2
+            put("pier", x, BAY * i, 0)
+            put("arcade", x, y, 5, 90)
+            put("clerestory", x, y, 9.4, 90)
+            put("shaft", x - side * 0.42, BAY * i, 5, 180 if side < 0 else 0)
+            put("aisle vault", x + side * AISLE / 2, y, 4.8)
+            put("aisle wall", x + side * AISLE, y, 0, 90)
+    for i in range(11):
+        for side in (-1, 1):
+            put("pew", side * 2.35, 5.2 + 1.35 * i, 0)
+    return scene_text(lines, "make_gallery_models.py")
+
+
+def church():
+    return {"church-vault": rib_vault(WIDTH, BAY, 5.4, 0.13), "church-aisle-vault": rib_vault(AISLE, BAY, 3.4, 0.1, 10),
+            "church-pier": pier(5, 0.52), "church-arcade": arcade_panel(BAY, 4.42, 1.8, 0.9),
+            "church-clerestory": window_panel(BAY, 7.4, 1.0, 0.9, 3.4, 0.5), "church-aisle-wall": window_panel(BAY, 8.6, 0.85, 1.9, 4.6, 0.7),
+            "church-shaft": wall_shaft(6), "church-pew": pew(3.5), "church-east": window_panel(3.0, 17, 0.95, 4.2, 8.6, 0.8),
+            "church-east-middle": window_panel(3.0, 17, 1.05, 4.2, 10.4, 0.8)}
 
 
 # A diamond ring, in millimetres: the ring about z; the stone about z, its girdle of radius 3.6 at z = 0
@@ -515,17 +704,93 @@ def air_bubbles():
     return scene_text(lines, "make_gallery_models.py")
 
 
+# A lens on a stand, a book, a stencil; in centimetres
+
+def lens(radius=4.4, curvature=9.4, edge=0.25):
+    """Biconvex, about z."""
+    half = math.degrees(math.asin(radius / curvature))
+    z = curvature * math.cos(math.radians(half)) - edge / 2
+    lower = [(r, -h) for r, h in reversed(arc((0, -z), curvature, 90 - half, 90, 20))]
+    upper = [(r, h) for r, h in arc((0, -z), curvature, 90 - half, 90, 20)]
+    lower[0], upper[-1] = (0, lower[0][1]), (0, upper[-1][1])
+    return lathe([lower, line(lower[-1], upper[0]), upper], 96)
+
+
+def lens_stand():
+    """A ring about x at the height of 9.5, on a pillar with a round foot."""
+    ring = lathe([spline([(4.3, -0.42), (4.75, -0.5), (5.0, 0), (4.75, 0.5), (4.3, 0.42)], 6), line((4.3, 0.42), (4.3, -0.42))], 96)
+    mesh = Mesh()
+    mesh.vertices = [((z, -y, x + 9.5), (nz, -ny, nx)) for (x, y, z), (nx, ny, nz) in ring.vertices]
+    mesh.triangles = list(ring.triangles)
+    return lathe([line((0, 0), (3.4, 0)), arc((3.4, 0.2), 0.2, -90, 90, 6),
+                  spline([(3.4, 0.4), (2.6, 0.55), (1.2, 0.75), (0.6, 1.2), (0.42, 1.9), (0.55, 2.3), (0.75, 2.6),
+                          (0.5, 2.9), (0.34, 3.3), (0.34, 4.4), (0.5, 4.7)], 6)], 48, mesh)
+
+
+def book(width, depth, thick):
+    """A closed book on z = 0, its back towards -y: the cover, the pages."""
+    cover = boxes((-width / 2, -depth / 2 + 0.3, 0, width / 2, depth / 2, 0.25),
+                  (-width / 2, -depth / 2 + 0.3, thick - 0.25, width / 2, depth / 2, thick))
+    turns = [(math.cos(math.radians(a)), math.sin(math.radians(a))) for a in range(0, 181, 15)]
+    back = [(-depth / 2 + 0.3 - 0.35 * s, thick / 2 - 0.5 * thick * c) for c, s in turns]
+    rows = [[cover.vertex((x, y, z), (0, -s, -c)) for (y, z), (c, s) in zip(back, turns)] for x in (-width / 2, width / 2)]
+    cover.strip(*rows[::-1])
+    for x, side in ((-width / 2, -1), (width / 2, 1)):
+        cover.polygon([(x, y, z) for y, z in back[::side]], (side, 0, 0))
+    return cover, boxes((-width / 2 + 0.35, -depth / 2 + 0.3, 0.25, width / 2 - 0.35, depth / 2 - 0.35, thick - 0.25))
+
+
+def star(x, y, radius, turn=0.0):
+    """Convex pieces of a star with five points, counter-clockwise."""
+    def point(r, k):
+        a = math.radians(90 + turn + 36 * k)
+        return (x + r * math.cos(a), y + r * math.sin(a))
+
+    return [[(x, y), point(0.45 * radius, k - 1), point(radius, k), point(0.45 * radius, k + 1)] for k in range(0, 10, 2)]
+
+
+def crescent(x, y, radius, steps=24):
+    """Convex pieces of a waning moon, counter-clockwise."""
+    outer = [(x + radius * math.cos(a), y + radius * math.sin(a)) for a in (math.radians(50 + 260 * i / steps) for i in range(steps + 1))]
+    hollow = 1.05 * radius * math.sin(math.radians(50))
+    middle = x + radius * math.cos(math.radians(50)) + math.sqrt(hollow ** 2 - (outer[0][1] - y) ** 2)
+    half = math.degrees(math.asin((outer[0][1] - y) / hollow))
+    inner = [(middle + hollow * math.cos(a), y + hollow * math.sin(a))
+             for a in (math.radians(180 - half + 2 * half * i / steps) for i in range(steps + 1))]
+    inner[0], inner[-1] = outer[0], outer[-1]
+    return [[outer[i], outer[i + 1], *([inner[i + 1]] if i < steps - 1 else []), *([inner[i]] if i else [])] for i in range(steps)]
+
+
+def stencil(radius=2.68):
+    """A disc about x with a moon and stars cut out, upside down as a lens turns them."""
+    pieces = [[(radius * math.cos(math.tau * i / 64), radius * math.sin(math.tau * i / 64)) for i in range(64)]]
+    holes = crescent(0.3, 0.1, 1.25)
+    for place in ((0.98, 0.12, 0.46, 8), (1.75, 0.7, 0.36, -12), (1.55, -0.75, 0.42, 20), (0.8, 1.95, 0.4, 4), (-0.75, 1.85, 0.3, 15),
+                  (-1.75, 0.95, 0.36, -8), (-1.9, -0.55, 0.28, 10), (-1.05, -1.75, 0.38, -15), (0.35, -1.85, 0.33, 5), (1.62, 1.5, 0.2, 0),
+                  (2.2, -0.15, 0.2, 10), (-1.5, 1.75, 0.18, 0), (-0.3, -2.3, 0.17, 0), (1.2, -1.75, 0.2, 12), (-1.9, 0.2, 0.17, 20)):
+        holes += star(*place)
+    for hole in holes:
+        pieces = [rest for piece in pieces for rest in without(piece, hole)]
+    mesh = Mesh()
+    for piece in pieces:
+        mesh.polygon([(0, x, -y) for x, y in piece], (1, 0, 0))
+    return mesh
+
+
 def files():
     """Name and content of every file, before compression."""
     meshes = {"cloth": cloth(), "bowl": bowl(),
               "leaves": leaves(700, 4, (0, 420, 60), (800, 120, 200), 11),
               "leaves-far": leaves(900, 5, (0, 520, 60), (1100, 120, 320), 16)}
-    meshes |= whisky() | aquarium() | {"diamond-band": band(), "diamond-head": head()}
+    meshes |= whisky() | church() | aquarium() | {"diamond-band": band(), "diamond-head": head()}
+    meshes |= {"lens": lens(), "lens-stand": lens_stand(), "stencil": stencil()}
+    for name, parts in (("book-a", book(21, 15, 3)), ("book-b", book(18, 13, 2.4))):
+        meshes |= {f"{name}-{part}": mesh for part, mesh in zip(("cover", "pages"), parts)}
     for name, parts in (("highball", highball()),):
         meshes |= {f"{name}-{part}": mesh for part, mesh in zip(("glass", "liquid-in-glass", "liquid-top"), parts)}
     # Multiples of 2^-12: short mantissas pack well.
     packed = {f"{name}.ply.gz": mesh.bytes(rounded=lambda x: round(4096 * x) / 4096) for name, mesh in meshes.items()}
-    return packed | {"bubbles.pbrt": bubbles()} | {"air-bubbles.pbrt": air_bubbles()} | small_stones()
+    return packed | {"bubbles.pbrt": bubbles(), "church.pbrt": church_placements()} | {"air-bubbles.pbrt": air_bubbles()} | small_stones()
 
 
 if __name__ == "__main__":
