@@ -201,12 +201,18 @@ void draw_ahead(const PathContext& path, int depth) {
   path.sampler.draw_ahead(is_eye_walk ? visitor_dimensions(depth) : walk_dimensions(depth));
 }
 
-/// The rest of a ray behind a surface that it passes through, with its footprint there.
-inline Ray beyond(const SurfacePoint& at, const Ray& ray) {
+/// Passes a ray through an interface between media, or an eye path that has not scattered through a shape that is
+/// hidden from the camera. Returns false if the surface stops the ray.
+template <Transport transport>
+bool pass_through(const SurfacePoint& at, WalkState& state, Ray& ray) {
+  const bool is_hidden = transport == Transport::radiance && at.is_hidden && state.depth == 0;
+  if (!is_hidden && !at.is_interface) return false;
+  if (at.is_interface) state.medium = medium_towards(at, ray.direction, state.medium);
   Ray rest = spawn_ray(at, ray.direction);
-  rest.width = ray.width + ray.spread * std::sqrt(distance_squared(at.position, ray.origin));
+  rest.width = ray.width + ray.spread * std::sqrt(distance_squared(at.position, ray.origin));  // its footprint goes on
   rest.spread = ray.spread;
-  return rest;
+  ray = rest;
+  return true;
 }
 
 /// How the crossing of a medium ends: the walk passes to the end of the ray, ends, or scatters.
@@ -270,15 +276,8 @@ void walk(const PathContext& path, Ray ray, WalkState& state, Visit&& visit) {
     } else {
       walk_detail::show(visit, state, ray, begin_normal, at);
     }
-    if (transport == Transport::radiance && at && at->is_hidden && state.depth == 0) {
+    if (at && walk_detail::pass_through<transport>(*at, state, ray)) {
       begin_normal = at->normal;
-      ray = walk_detail::beyond(*at, ray);
-      continue;
-    }
-    if (at && at->is_interface) {
-      begin_normal = at->normal;
-      state.medium = medium_towards(*at, ray.direction, state.medium);
-      ray = spawn_ray(*at, ray.direction);
       continue;
     }
     if (!at) {

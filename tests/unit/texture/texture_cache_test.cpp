@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "film/display.h"
+#include "lanthorn/image.h"
 #include "lanthorn/session.h"
 #include "lanthorn/threads.h"
 #include "math/hash.h"
@@ -298,6 +299,23 @@ TEST_F(TextureCaches, FootprintsAverageAFineCheckerboardFarAway) {
   EXPECT_NEAR(far.mean, .5, .003);
   // The footprint grows with distance.
   EXPECT_DOUBLE_EQ(seen(*scene, 4, 8.5f * .0122f / 40).variance, full.variance);
+}
+
+TEST_F(TextureCaches, FootprintsGoOnBehindTheBoundsOfMedia) {
+  const std::string image = write_checkerboard("c.ppm", 4096, 1024);
+  const auto albedo = [&](const std::string& more) {
+    RenderOptions options;
+    options.integrator = "path";
+    Session session(build_scene(described(image, 1024 * mebi, more)), options);
+    session.render({.passes = {0, 1}});
+    return select_layer(session.picture(), "albedo")->pixels;
+  };
+  const std::string air = "MakeNamedMedium \"air\" \"string type\" \"homogeneous\" \"float scale\" 1e-6\n";
+  const std::vector<float> direct = albedo("");
+  const std::vector<float> behind =
+      albedo(air + "MediumInterface \"air\" \"\"\nMaterial \"interface\"\nShape \"sphere\"\n");
+  ASSERT_EQ(behind.size(), direct.size());
+  for (std::size_t i = 0; i < direct.size(); ++i) EXPECT_NEAR(behind[i], direct[i], .01f) << i;
 }
 
 }  // namespace
