@@ -16,10 +16,11 @@ class LanthornPanel:
     bl_space_type = "PROPERTIES"
     bl_region_type = "WINDOW"
     COMPAT_ENGINES = {"LANTHORN"}
+    subject = "scene"  # the member of the context that the panel is about
 
     @classmethod
     def poll(cls, context):
-        return context.engine in cls.COMPAT_ENGINES
+        return context.engine in cls.COMPAT_ENGINES and getattr(context, cls.subject, None) is not None
 
 
 class LANTHORN_RENDER_PT_quality(LanthornPanel, bpy.types.Panel):
@@ -63,10 +64,7 @@ class LANTHORN_MATERIAL_PT_measured(LanthornPanel, bpy.types.Panel):
     bl_label = "Measured Glass and Metal"
     bl_context = "material"
     bl_options = {"DEFAULT_CLOSED"}
-
-    @classmethod
-    def poll(cls, context):
-        return context.material is not None and super().poll(context)
+    subject = "material"
 
     def draw(self, context):
         layout, own = self.layout, context.material.lanthorn
@@ -82,10 +80,7 @@ class LANTHORN_MATERIAL_PT_measured(LanthornPanel, bpy.types.Panel):
 class LANTHORN_LIGHT_PT_lamp(LanthornPanel, bpy.types.Panel):
     bl_label = "Light"
     bl_context = "data"
-
-    @classmethod
-    def poll(cls, context):
-        return context.light is not None and super().poll(context)
+    subject = "light"
 
     def draw(self, context):
         layout, light = self.layout, context.light
@@ -112,10 +107,11 @@ class LANTHORN_OBJECT_PT_visibility(LanthornPanel, bpy.types.Panel):
     bl_label = "Ray Visibility"
     bl_context = "object"
     bl_options = {"DEFAULT_CLOSED"}
+    subject = "object"
 
     @classmethod
     def poll(cls, context):
-        return context.object is not None and context.object.type in VISIBLE_TYPES and super().poll(context)
+        return super().poll(context) and context.object.type in VISIBLE_TYPES
 
     def draw(self, context):
         self.layout.use_property_split = True

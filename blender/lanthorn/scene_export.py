@@ -109,7 +109,7 @@ class SceneExport:
         self.settle(parts)
 
     def settle(self, parts):
-        """Replaces images that are missing by grey."""
+        """Replaces missing images with grey."""
         baked = parts["lights"].pop(world.BAKED, None)
         if baked is not None:
             parts["lights"].update(world.lights_of_bake(baked["path"]))

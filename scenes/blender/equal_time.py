@@ -3,7 +3,7 @@
 """Renders a .blend file of make_blends.py by a method for a given processor time: the pictures of docs/comparison.md.
 
 Usage: blender -b --factory-startup --python equal_time.py -- FOLDER NAME METHOD SECONDS WIDTH [SEED]
-METHOD: "cycles-default"; "cycles", without what darkens caustics; "cycles-mnee", also with shadow caustics;
+METHOD: "cycles-default"; "cycles", with no setting that darkens caustics; "cycles-mnee", also with shadow caustics;
 "cycles-mnee-point", and lamps without a size, since Cycles 3.4 misses others inside two surfaces; or a method of Lanthorn:
 "path", "bdpt", "auto".
 Reads FOLDER/NAME.blend; writes FOLDER/NAME-METHOD.exr (linear), .png (as Blender shows it) and .json (what was measured).
@@ -12,8 +12,7 @@ SECONDS of processor time.
 
 Usage: blender -b --factory-startup --python equal_time.py -- FOLDER NAME bare
 Renders the scene without its glass or metal by Cycles and by `path`, and prints the ratio of the means: 1 if both have the
-same lamps, cameras, fog and floors. The brightest 2 % of the picture's blocks do not count: there the camera may see a lamp,
-which Cycles hides.
+same lamps, cameras, fog and floors.
 """
 import json
 import os
@@ -43,7 +42,7 @@ def throws_caustics(thing):
 
 
 def set_cycles(scene, has_mnee):
-    """Without what darkens caustics."""
+    """Turns off all settings that darken caustics."""
     cycles = scene.cycles
     cycles.caustics_reflective = cycles.caustics_refractive = True
     cycles.blur_glossy, cycles.sample_clamp_direct, cycles.sample_clamp_indirect = 0, 0, 0
@@ -63,7 +62,7 @@ def choose(method, seed):
     if method.startswith("cycles"):
         cycles = scene.cycles
         scene.render.engine, cycles.device, cycles.seed, cycles.time_limit = "CYCLES", "CPU", seed, 0
-        # Adaptive sampling would take a pixel that no caustic has reached yet for finished.
+        # Adaptive sampling stops at pixels that no caustic path has reached yet.
         cycles.use_denoising = cycles.use_adaptive_sampling = False
         if method != "cycles-default":
             set_cycles(scene, has_mnee="mnee" in method)
@@ -89,7 +88,7 @@ def render():
 
 
 def count_for(seconds, set_count):
-    """The number of samples or passes that take so long, by two short renders that are not counted."""
+    """Returns how many samples or passes take this time, measured by two short renders."""
     counts, times = [LEAST], []
     for _ in range(2):
         set_count(counts[-1])
@@ -147,9 +146,7 @@ def compare_bare(name):
         if thing.type == "MESH" and throws_caustics(thing):
             thing.hide_render = True
     ours, cycles = blocks("path", 64), blocks("cycles", 64)
-    brightness = ours.sum(axis=2)
-    counts = brightness <= numpy.quantile(brightness, 0.98)
-    ratio = ours[counts].sum(axis=0) / cycles[counts].sum(axis=0)
+    ratio = ours.mean(axis=(0, 1)) / cycles.mean(axis=(0, 1))
     print(f"{name} without glass and metal, path / cycles in red, green and blue: " + " ".join(f"{r:.4f}" for r in ratio), flush=True)
 
 

@@ -82,7 +82,7 @@ def lathe(name, profile, made_of, steps=STEPS):
 
 
 def ball_profile(radius, steps=48):
-    """Of a sphere, from the bottom up; in reverse, its outside is inside."""
+    """Returns the profile of a sphere from the bottom up. Reversed, the sphere faces inwards."""
     return [(max(1e-5, radius * math.sin(math.pi * k / steps)), -radius * math.cos(math.pi * k / steps))
             for k in range(steps + 1)]
 
@@ -142,7 +142,7 @@ def pool():
     scene.world.color = (0.35, 0.5, 0.8)
     tiles = material("tiles", "Diffuse", Color=(0.55, 0.75, 0.8, 1))
     put("floor", plane(8, tiles, z=-1.2))
-    # Without walls, light would enter the water from the sides without being refracted, of which engines make what they like.
+    # Without walls, light would enter the water from the sides without refraction, which renderers treat differently.
     corners = [(-4, -4), (4, -4), (4, 4), (-4, 4)]
     put("walls", mesh("walls", [(x, y, z) for z in (-1.2, 0.05) for x, y in corners],
                       [(i, (i + 1) % 4, (i + 1) % 4 + 4, i + 4) for i in range(4)], tiles, is_smooth=False))
