@@ -5,12 +5,15 @@
 #include <OpenImageIO/imagecache.h>
 #include <OpenImageIO/imageio.h>
 
+#include <atomic>
 #include <cstddef>
 #include <cstring>
 #include <deque>
+#include <map>
 #include <mutex>
 #include <stdexcept>
 #include <string>
+#include <thread>
 
 namespace lanthorn {
 
@@ -58,11 +61,54 @@ struct CachedImage {
   std::size_t texel_bytes = 0;
 };
 
-struct TileCache {
-  std::unique_ptr<OIIO::ImageCache, void (*)(OIIO::ImageCache*)> tiles{
+using Perthread = OIIO::ImageCache::Perthread;
+
+// OpenImageIO keeps what a thread last used under the address of the cache. It forgets that of the destroying thread
+// alone, so a later cache at the same address would meet tiles and files that no longer exist. Hence each cache owns
+// the records of its threads, and no two caches use the same name for an image.
+class TileCache {
+ public:
+  TileCache() : number_(++count_) {}
+  TileCache(const TileCache&) = delete;
+  TileCache& operator=(const TileCache&) = delete;
+  ~TileCache() {
+    for (const auto& [id, thread] : threads_) tiles->destroy_thread_info(thread);
+  }
+
+  Perthread* this_thread() {
+    struct Last {
+      std::uint64_t cache = 0;
+      Perthread* thread = nullptr;
+    };
+    thread_local Last last;
+    if (last.cache != number_) {
+      const std::scoped_lock lock(mutex_);
+      Perthread*& thread = threads_[std::this_thread::get_id()];
+      if (thread == nullptr) thread = tiles->create_thread_info();
+      last = {number_, thread};
+    }
+    return last.thread;
+  }
+  void* add(const TiledImage& image) {
+    Perthread* const thread = this_thread();
+    const std::scoped_lock lock(mutex_);
+    const OIIO::ustring name("lanthorn-image-" + std::to_string(number_) + "-" + std::to_string(images_.size()));
+    OIIO::ImageSpec config;
+    const TiledImage* address = &image;
+    config.attribute(image_attribute, OIIO::TypeDesc::PTR, &address);
+    if (!tiles->add_file(name, TileInput::create, &config)) throw std::runtime_error(tiles->geterror());
+    return &images_.emplace_back(CachedImage{tiles->get_image_handle(name, thread), image.texel_bytes()});
+  }
+
+  const std::unique_ptr<OIIO::ImageCache, void (*)(OIIO::ImageCache*)> tiles{
       OIIO::ImageCache::create(false), [](OIIO::ImageCache* cache) { OIIO::ImageCache::destroy(cache); }};
-  std::mutex adding;
-  std::deque<CachedImage> images;  // a deque keeps addresses stable
+
+ private:
+  static inline std::atomic<std::uint64_t> count_{0};
+  const std::uint64_t number_;  // from 1
+  std::mutex mutex_;
+  std::map<std::thread::id, Perthread*> threads_;
+  std::deque<CachedImage> images_;  // a deque keeps addresses stable
 };
 
 TileCache& cache_of(void* cache) { return *static_cast<TileCache*>(cache); }
@@ -76,21 +122,13 @@ std::shared_ptr<void> make_tile_cache(std::uint64_t bytes) {
   return cache;
 }
 
-void* add_image(void* cache, const TiledImage& image) {
-  TileCache& all = cache_of(cache);
-  const std::scoped_lock lock(all.adding);
-  const OIIO::ustring name("lanthorn-image-" + std::to_string(all.images.size()));
-  OIIO::ImageSpec config;
-  const TiledImage* address = &image;
-  config.attribute(image_attribute, OIIO::TypeDesc::PTR, &address);
-  if (!all.tiles->add_file(name, TileInput::create, &config)) throw std::runtime_error(all.tiles->geterror());
-  return &all.images.emplace_back(CachedImage{all.tiles->get_image_handle(name), image.texel_bytes()});
-}
+void* add_image(void* cache, const TiledImage& image) { return cache_of(cache).add(image); }
 
 bool read_texels(void* cache, void* image, int level, std::span<const TexelPlace> places, void* texels) {
-  OIIO::ImageCache& tiles = *cache_of(cache).tiles;
+  TileCache& all = cache_of(cache);
+  OIIO::ImageCache& tiles = *all.tiles;
   const auto& [handle, texel_bytes] = *static_cast<const CachedImage*>(image);
-  OIIO::ImageCache::Perthread* const thread = tiles.get_perthread_info();
+  Perthread* const thread = all.this_thread();
   OIIO::ImageCache::Tile* tile = nullptr;
   const std::byte* in_tile = nullptr;
   TexelPlace of_tile{-1, -1};

@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <barrier>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -17,6 +18,7 @@
 #include <fstream>
 #include <memory>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "film/display.h"
@@ -173,6 +175,36 @@ TEST(TextureLevels, KeepTheMeanOfACheckerboard) {
     const double deviation = .003 * std::sqrt(4.0 / 3 / texels);
     EXPECT_NEAR(sums[static_cast<std::size_t>(level)] / texels, .5, 6 * deviation) << level;
   }
+}
+
+// OpenImageIO's records of a thread outlive its caches, and a new cache often has the address of the last.
+TEST_F(TextureCaches, AThreadOutlivesManyCaches) {
+  const std::string first = write("first.png", 200, 200, 3, OIIO::TypeDesc::UINT8);
+  const std::string second = write("second.png", 150, 250, 3, OIIO::TypeDesc::UINT16);
+  constexpr int turns = 40;
+  std::barrier step(2);
+  std::unique_ptr<TextureImage> image;
+  Rgb read{};
+  const auto texel = [](const TextureImage& of) { return of.rgb({.5f, .5f}, Wrap::repeat, ImageFilter::point); };
+  std::thread reader([&] {
+    for (int i = 0; i < turns; ++i) {
+      step.arrive_and_wait();
+      read = texel(*image);
+      step.arrive_and_wait();
+    }
+  });
+  for (int i = 0; i < turns; ++i) {
+    const std::string& file = i % 2 == 0 ? first : second;
+    const auto cache = std::make_shared<TextureCache>(i % 3 == 0 ? 0 : mebi);
+    image = std::make_unique<TextureImage>(file, access_, ImageWish{}, SourceLocation{}, cache);
+    step.arrive_and_wait();
+    step.arrive_and_wait();
+    const Rgb expected = texel(TextureImage(file, access_, {}, {}));
+    EXPECT_TRUE(read.r == expected.r && read.g == expected.g && read.b == expected.b) << i;
+    EXPECT_FALSE(cache->problem());
+    image.reset();
+  }
+  reader.join();
 }
 
 TEST_F(TextureCaches, ADamagedTileIsNamedAfterItsImage) {
