@@ -131,7 +131,7 @@ std::vector<std::string> limitations_of(const Renderer& renderer, const Scene& s
     for (std::string& limitation : technique.limitations(scene, &renderer.gpu_scene()))
       list.push_back(std::move(limitation));
   if (!technique.description.has_light_views) return list;
-  if (std::string lights = unsupported_lights(scene); !lights.empty()) list.push_back(std::move(lights));
+  for (std::string& limitation : light_limitations(scene)) list.push_back(std::move(limitation));
   // Narrow lobes mirror the sky in every frame: by the technique, or by eye paths, which draw other materials, too.
   const float least_alpha = technique.plan(frame).least_sky_alpha;
   const auto mirrors_sky = [&](const GpuMaterial& m) {

@@ -120,7 +120,7 @@ class FrameIntegrator final : public Integrator {
   std::string limitation(const Scene& scene) const override {
     std::vector<std::string> missing;
     if (technique_.limitations != nullptr) missing = technique_.limitations(scene, nullptr);
-    if (std::string lights = unsupported_lights(scene); !lights.empty()) missing.push_back(std::move(lights));
+    for (std::string& lights : light_limitations(scene)) missing.push_back(std::move(lights));
     if (scene.has_media()) missing.push_back(fmt::format("{} leaves out media", name()));
     return fmt::format("{}", fmt::join(missing, "; "));
   }

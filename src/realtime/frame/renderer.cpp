@@ -110,7 +110,7 @@ void Renderer::draw_gbuffer(const FrameContext& frame) {
   set_eye_paths(p, frame.eye_paths);
   p.set("frame", frame.settings.views.frame);
   glEnable(GL_DEPTH_TEST);
-  gpu_scene_.draw();
+  gpu_scene_.draw_for_camera();
   emission_target_.bind();
   gbuffer_.bind();
   const gl::Program& b = programs_.background;

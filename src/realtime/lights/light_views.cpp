@@ -177,7 +177,8 @@ void set_windows(LightView& view, const FarLight&, const BoundingSphere& sphere,
   if (const auto fine = window_around(focus, rays, size)) view.windows.insert(view.windows.begin(), *fine);
 }
 
-/// Colour, origin and axis of a view from a sample of the light's emission: flux = L |cos| / (p_A p_ω).
+/// Colour, origin and axis of a view from a sample of the light's emission: flux = L |cos| / (p_A p_ω). The view has
+/// the power of an area light with a spread, but is diffuse.
 void set_emission(LightView& view, const Light& light, const EmissionSample& s) {
   const Vec3 flux = vec(s.flux);
   view.origin = s.origin;
@@ -185,9 +186,9 @@ void set_emission(LightView& view, const Light& light, const EmissionSample& s) 
   if (is_far(light)) {
     view.axis = -s.direction;
     view.colour = flux * s.pdf_position;
-  } else if (std::holds_alternative<AreaLight>(light)) {
+  } else if (const auto* area = std::get_if<AreaLight>(&light)) {
     view.axis = s.normal;
-    view.colour = flux * (s.pdf_direction / s.cos_origin);
+    view.colour = flux * (s.pdf_direction / (s.cos_origin * area->spread.factor(s.cos_origin)));
   } else {
     const auto* spot = std::get_if<SpotLight>(&light);
     view.colour = spot != nullptr ? vec(spot->intensity.evaluate(rgb())) : flux * s.pdf_direction;
@@ -278,13 +279,24 @@ std::vector<std::uint32_t> share_photons(const std::vector<LightView>& views, st
   return counts;
 }
 
-std::string unsupported_lights(const Scene& scene) {
-  const auto count = static_cast<std::size_t>(
-      std::count_if(scene.lights().begin(), scene.lights().end(), [](const Light& l) { return !has_view(l); }));
-  if (count == 0) return {};
-  return fmt::format(
-      "{} light{} ignored: projected images, goniometric lights, portals and emissive media are not supported", count,
-      count == 1 ? " is" : "s are");
+std::vector<std::string> light_limitations(const Scene& scene) {
+  const auto count_of = [&](auto&& is_limited) {
+    return std::count_if(scene.lights().begin(), scene.lights().end(), is_limited);
+  };
+  std::vector<std::string> messages;
+  if (const auto count = count_of([](const Light& l) { return !has_view(l); }); count > 0)
+    messages.push_back(fmt::format(
+        "{} light{} ignored: projected images, goniometric lights, portals and emissive media are not supported", count,
+        count == 1 ? " is" : "s are"));
+  const auto has_spread = [](const Light& l) {
+    const auto* area = std::get_if<AreaLight>(&l);
+    return area != nullptr && !area->spread.is_diffuse();
+  };
+  if (const auto count = count_of(has_spread); count > 0)
+    messages.push_back(
+        fmt::format("the spread of {} area light{} is not supported: {} in all directions, with the same power", count,
+                    count == 1 ? "" : "s", count == 1 ? "it shines" : "they shine"));
+  return messages;
 }
 
 }  // namespace lanthorn

@@ -59,14 +59,14 @@ struct LightViewSettings {
 };
 
 /// Views of the frame. Lights have one each, lights all around `sky_views`; if there are too many, some are chosen at
-/// random in proportion to their power. `unsupported_lights` names the lights that have no views.
+/// random in proportion to their power. `light_limitations` names the lights that have no views.
 std::vector<LightView> light_views(const Scene& scene, const LightViewSettings& settings);
 
 /// Numbers of photons of the views, in proportion to their powers; their sum is `photons`, if any view has power.
 std::vector<std::uint32_t> share_photons(const std::vector<LightView>& views, std::uint32_t photons);
 
-/// A message on the lights that have no views (projected images, goniometric lights, portals, media); empty if there
-/// are none.
-std::string unsupported_lights(const Scene& scene);
+/// Messages on the lights that have no views (projected images, goniometric lights, portals, media) and on those whose
+/// views differ (area lights with a spread).
+std::vector<std::string> light_limitations(const Scene& scene);
 
 }  // namespace lanthorn

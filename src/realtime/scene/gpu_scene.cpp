@@ -254,18 +254,20 @@ void GpuScene::make_draws(const Scene& scene, std::vector<SurfaceLayer>& layers)
     for (std::size_t m = first; m < first + count; ++m) add_draw(shapes[m]->record, m, to_world, p.placed.first_light);
   }
   make_patterns(scene, shapes, layers);
-  upload_draws();
+  upload_draws(shapes);
 }
 
-void GpuScene::upload_draws() {
-  std::vector<DrawCommand> commands;
+void GpuScene::upload_draws(const std::vector<const ShapeStore*>& shapes) {
+  std::vector<DrawCommand> commands, camera_commands;
   std::vector<std::uint32_t> numbers;
   for (const GpuDraw& draw : draw_data_) {
     const auto number = static_cast<std::uint32_t>(numbers.size());
     commands.push_back({draw.index_count, 1, draw.first_index, draw.base_vertex, number});
+    if (!shapes[draw.mesh]->record.is_hidden) camera_commands.push_back(commands.back());
     numbers.push_back(number);
   }
   commands_ = gl::Buffer(commands);
+  camera_commands_ = gl::Buffer(camera_commands);
   draws_ = gl::Buffer(draw_data_);
   draw_numbers_ = gl::Buffer(numbers);
   // The number of a draw is an attribute of its only instance: OpenGL 4.5 has no gl_BaseInstance.
@@ -318,10 +320,11 @@ void GpuScene::bind() const {
   environment_.bind(gpu::unit_environment);
 }
 
-void GpuScene::draw() const {
+void GpuScene::draw(const gl::Buffer& commands) const {
   glBindVertexArray(vertex_array_.name());
-  glBindBuffer(GL_DRAW_INDIRECT_BUFFER, commands_.name());
-  glMultiDrawElementsIndirect(GL_TRIANGLES, GL_UNSIGNED_INT, nullptr, static_cast<GLsizei>(draw_data_.size()), 0);
+  glBindBuffer(GL_DRAW_INDIRECT_BUFFER, commands.name());
+  const auto count = static_cast<GLsizei>(commands.bytes() / sizeof(DrawCommand));
+  glMultiDrawElementsIndirect(GL_TRIANGLES, GL_UNSIGNED_INT, nullptr, count, 0);
 }
 
 }  // namespace lanthorn

@@ -59,7 +59,9 @@ class GpuScene {
   void update(const Scene& scene);
 
   /// Draws all triangles. A program with the vertex shader scene.vert.glsl, or one with its inputs, must be in use.
-  void draw() const;
+  void draw() const { draw(commands_); }
+  /// The same without the shapes that are hidden from the camera.
+  void draw_for_camera() const { draw(camera_commands_); }
   /// Binds what scene.glsl and bsdf.glsl name.
   void bind() const;
 
@@ -93,7 +95,8 @@ class GpuScene {
   void make_patterns(const Scene& scene, const std::vector<const ShapeStore*>& shapes,
                      std::vector<SurfaceLayer>& layers);
   void add_draw(const GeometryRecord& record, std::size_t mesh, const Transform& to_world, std::uint32_t first_light);
-  void upload_draws();
+  void upload_draws(const std::vector<const ShapeStore*>& shapes);
+  void draw(const gl::Buffer& commands) const;
   void make_vertex_array();
 
   std::vector<std::uint32_t> first_index_, base_vertex_, index_count_;  // by mesh
@@ -101,7 +104,7 @@ class GpuScene {
   std::vector<GpuDraw> draw_data_;
   std::vector<GpuMaterial> material_data_;
   std::vector<std::string> limitations_;
-  gl::Buffer vertices_, indices_, draws_, commands_, draw_numbers_, materials_;
+  gl::Buffer vertices_, indices_, draws_, commands_, camera_commands_, draw_numbers_, materials_;
   SurfaceTextures textures_;
   gl::Texture plastic_albedo_, environment_;
   std::vector<Vec3> environment_fingerprint_;

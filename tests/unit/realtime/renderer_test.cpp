@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "lanthorn/metrics.h"
+#include "realtime/lights/light_views.h"
 #include "support/opengl.h"
 #include "support/render_scene.h"
 
@@ -130,6 +131,61 @@ Translate 0 2 0
 Rotate 15 0 1 0
 Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [.02 0 -4  4 0 -4  4 0 4  .02 0 4]
 )";
+
+// Seen through the blade, the floor has its colour or its shadow.
+TEST_F(RendererTest, ShapesHiddenFromTheCameraHaveShadows) {
+  const std::string scene = floor_and_blade;
+  const std::string text = "LookAt 0 3 0  0 0 0  0 0 1\n" + scene.substr(scene.find("Camera"));
+  SceneDescription description = read_pbrt_string(text, ".", "test scene");
+  ASSERT_EQ(description.shapes.size(), 2u);
+  description.shapes[1].visible_to_camera = false;
+  const Scene hidden(description);
+  description.shapes.pop_back();
+  const Scene without(description);
+  const View view = make_view(hidden.description().view);
+  for (const ShadowKind shadows : {ShadowKind::maps, ShadowKind::traced}) {
+    FrameSettings settings;
+    settings.shadows = shadows;
+    const auto frame = [&](const Scene& drawn) {
+      Renderer renderer(drawn);
+      renderer.draw(view, settings);
+      return renderer.read_layers();
+    };
+    const Image shadowed = frame(hidden), lit = frame(without);
+    int dark = 0, bright = 0;
+    for (int y = 0; y < lit.height; ++y)
+      for (int x = 0; x < lit.width; ++x) {
+        const float seen = shadowed.at(x, y, 3);
+        if (lit.at(x, y, 3) == 0) continue;  // beyond the cone
+        ++(seen == 0 ? dark : bright);
+        ASSERT_TRUE(seen == 0 || std::fabs(seen / lit.at(x, y, 3) - 1) < 1e-5f) << x << ' ' << y;
+      }
+    EXPECT_GT(dark, 1000);
+    EXPECT_GT(bright, 1000);
+  }
+}
+
+// A view has no profile, but the light's power.
+TEST_F(RendererTest, AreaLightsWithASpreadKeepTheirPower) {
+  SceneDescription description =
+      read_pbrt_string(std::string(floor_and_blade) + "AreaLightSource \"diffuse\" \"rgb L\" [3 2 1] Shape \"disk\"\n",
+                       ".", "test scene");
+  description.lights.clear();
+  const auto views_of = [&] {
+    const Scene scene(description);
+    return light_views(scene, LightViewSettings{});
+  };
+  const std::vector<LightView> diffuse = views_of();
+  EXPECT_TRUE(light_limitations(Scene(description)).empty());
+  description.area_lights.back().spread = 40;
+  const std::vector<LightView> narrow = views_of();
+  ASSERT_EQ(diffuse.size(), 1u);
+  ASSERT_EQ(narrow.size(), 1u);
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(narrow[0].colour[c] / diffuse[0].colour[c], 1, 1e-3f) << c;
+  EXPECT_EQ(light_limitations(Scene(description)),
+            std::vector<std::string>{
+                "the spread of 1 area light is not supported: it shines in all directions, with the same power"});
+}
 
 // Jaggedness of a straight shadow edge: root mean square of its second differences from row to row, pixels.
 double roughness_of_edge(const Scene& scene, FrameSettings settings) {
