@@ -501,12 +501,15 @@ struct SpotLight {
   SpotFalloff falloff = SpotFalloff::smoothstep;
   std::optional<float> power;
 };
+/// Parallel light, or a round light infinitely far away that rays can meet, such as the sun (.53 degrees).
 struct DistantLight {
   static constexpr LightKind kind{.label = "Distant light", .has_place = false};
 
-  Emission radiance;
+  Emission radiance;  ///< pbrt's L: W/m² on a plane that faces the light
   Point from{0, 0, 0};
   Point to{0, 0, 1};
+  float angle = 0;                ///< under which the light's diameter is seen, degrees, in [0, 180); 0: parallel light
+  bool visible_to_camera = true;  ///< false: camera rays do not see the round light; all other rays do
   std::optional<float> illuminance;
 };
 /// Colours over the sphere, row by row from the top.

@@ -67,6 +67,7 @@ float texels_across_right_angle(const Light& light) {
   if (const auto* const image = std::get_if<ImageInfiniteLight>(&light)) return across(*image);
   if (const auto* const portal = std::get_if<PortalLight>(&light))
     if (const auto* const image = std::get_if<ImageInfiniteLight>(&portal->sky)) return across(*image);
+  if (const auto* const sun = std::get_if<SunLight>(&light)) return pi / sun->half_angle();
   return 0;
 }
 

@@ -21,6 +21,7 @@
 #include "light/projection_light.h"
 #include "light/sample.h"
 #include "light/spot_light.h"
+#include "light/sun_light.h"
 #include "light/volume_light.h"
 #include "spectrum/wavelengths.h"
 
@@ -63,7 +64,7 @@ concept LightSource = requires(const L l, const Point p, const Direction d, cons
 template <LightSource... Lights>
 using LightVariant = std::variant<Lights...>;
 
-using Light = LightVariant<AreaLight, PointLight, SpotLight, GoniometricLight, ProjectionLight, DistantLight,
+using Light = LightVariant<AreaLight, PointLight, SpotLight, GoniometricLight, ProjectionLight, DistantLight, SunLight,
                            UniformInfiniteLight, ImageInfiniteLight, PortalLight, VolumeLight>;
 
 /// Samples a direction from `from` towards the light for next-event estimation. Returns nullopt if no light can arrive
@@ -81,7 +82,7 @@ float pdf_direct_towards(const Light& light, const Point& from, const Direction&
 Spectrum emitted(const Light& light, const EmitterHit& hit, const Direction& direction, const Wavelengths& w);
 /// Radiance of an infinite light seen from `from` in the direction `towards`.
 Spectrum emitted_infinite(const Light& light, const Point& from, const Direction& towards, const Wavelengths& w);
-/// Texels of an infinite light's image across a right angle; 0 if it has none.
+/// Texels across a right angle of an image that shows an infinite light as sharply as it is; 0 if it is constant.
 float texels_across_right_angle(const Light& light);
 
 /// Samples a ray that carries one photon away. The sample includes the photon's flux (for one emitted photon of this
@@ -122,6 +123,11 @@ inline const char* name_of(const Light& light) { return light_detail::all_traits
 inline bool has_surface(const Light& light) { return light_detail::all_traits[light.index()].has_surface; }
 /// True if rays that leave the scene see the light.
 inline bool is_infinite(const Light& light) { return light_detail::all_traits[light.index()].is_infinite; }
+/// True if camera rays that leave the scene do not see an infinite light.
+inline bool is_hidden_from_camera(const Light& light) {
+  const auto* const sun = std::get_if<SunLight>(&light);
+  return sun != nullptr && !sun->visible_to_camera;
+}
 /// True if all its light comes from one point of the scene.
 inline bool is_point(const Light& light) {
   const LightTraits& traits = light_detail::all_traits[light.index()];

@@ -78,6 +78,12 @@ inline Vec3 sample_uniform_cone(const Vec2& u, float one_minus_cos) {
   const float phi = 2 * pi * u.y;
   return {r * std::cos(phi), r * std::sin(phi), 1.0f - h};
 }
+/// Inverse of `sample_uniform_cone`: the u in [0,1)² that maps to this direction.
+inline Vec2 invert_uniform_cone(const Vec3& d, float one_minus_cos) {
+  const float sin2 = d.x * d.x + d.y * d.y;
+  const float h = d.z > 0 ? sin2 / (1 + safe_sqrt(1 - sin2)) : 1 - d.z;  // 1 - cos, without cancellation
+  return {std::clamp(h / one_minus_cos, 0.0f, one_minus_epsilon), turn_around_z(d.x, d.y)};
+}
 inline float pdf_uniform_cone(float one_minus_cos) { return 1.0f / (2 * pi * one_minus_cos); }
 
 /// Barycentric coordinates (b0, b1) of a uniform point in a triangle, by a map of low distortion (Heitz 2019).

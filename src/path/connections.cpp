@@ -265,6 +265,7 @@ Spectrum hit_environment(const PathContext& path, const Bidirectional& pass, con
   Spectrum sum;
   for (const std::uint32_t index : path.scene.infinite_lights()) {
     const Light& light = path.scene.lights()[index];
+    if (v.state.depth == 0 && is_hidden_from_camera(light)) continue;
     const Spectrum radiance = emitted_infinite(light, v.state.previous, v.direction, path.w);
     if (radiance.is_black()) continue;
     const LightHit hit{index, {v.state.previous, Normal(0), Vec2(0)}, -v.direction, v.state.depth};

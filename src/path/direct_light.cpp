@@ -158,6 +158,7 @@ Spectrum hit_environment(const PathContext& path, const EscapeVertex& vertex) {
   if (state.sky_is_found) return sum;
   for (const std::uint32_t index : path.scene.infinite_lights()) {
     const Light& light = path.scene.lights()[index];
+    if (state.depth == 0 && is_hidden_from_camera(light)) continue;
     float pdf_light = 0;
     if (!state.last_delta)
       pdf_light = path.scene.light_bvh().pmf(state.previous, state.previous_normal, index) *

@@ -122,11 +122,13 @@ struct LightMaker {
   Light operator()(const description::DistantLight& l) {
     const Vec3 towards = to_world.vector(l.from - l.to);
     if (!(length_squared(towards) > 0)) throw Error(location, "a distant light needs \"from\" and \"to\" to differ");
-    DistantLight light;
-    light.towards = normalize(towards);
-    light.irradiance = emission(l.radiance);
-    if (l.illuminance) light.irradiance = light.irradiance.scaled(*l.illuminance);
-    light.scene = scene;
+    if (!(l.angle >= 0 && l.angle < 180))
+      throw Error(location, "the angle of a distant light must be in [0, 180) degrees");
+    SpectrumCurve irradiance = emission(l.radiance);
+    if (l.illuminance) irradiance = irradiance.scaled(*l.illuminance);
+    if (l.angle == 0) return DistantLight{normalize(towards), irradiance, scene};
+    SunLight light(normalize(towards), 0.5 * static_cast<double>(to_radians(l.angle)), irradiance, scene);
+    light.visible_to_camera = l.visible_to_camera;
     return light;
   }
   Light operator()(const description::InfiniteLight& l) {

@@ -226,6 +226,8 @@ inline std::vector<NamedLight> test_lights() {
   all.push_back({"sharp spot", SpotLight({0.3f, 0.2f, -0.1f}, axis, test_colour(), 0.5f, 0.5f)});
   all.push_back({"wide spot", SpotLight({0.3f, 0.2f, -0.1f}, axis, test_colour(), 0, 2.5f)});
   all.push_back({"distant", DistantLight{axis, test_colour(), scene}});
+  all.push_back({"sun", SunLight(axis, 0.3, test_colour(), scene)});
+  all.push_back({"small sun", SunLight(axis, 0.0046, test_colour(), scene)});
   all.push_back({"uniform infinite", UniformInfiniteLight{test_colour(), scene}});
   const Transform turned = rotate(70, {1, 1, 0});
   const auto infinite = [&](const SphericalImage& image, const Transform& t) {

@@ -521,6 +521,7 @@ struct Fields<description::DistantLight> {
   using T = description::DistantLight;
   static constexpr const char* type = "distant";
   static constexpr auto list = std::tuple(field("radiance", &T::radiance), field("from", &T::from), field("to", &T::to),
+                                          field("angle", &T::angle), field("visible_to_camera", &T::visible_to_camera),
                                           field("illuminance", &T::illuminance));
 };
 template <>

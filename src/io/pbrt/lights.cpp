@@ -63,6 +63,8 @@ DistantLight distant_light(const ParameterList& list, Context& context) {
   light.from = list.get("from", light.from);
   light.to = list.get("to", light.to);
   check_aim(list, light.from, light.to);
+  light.angle = list.get("angle", light.angle);
+  if (!(light.angle >= 0 && light.angle < 180)) throw list.error("angle", "must be in [0, 180) degrees");
   light.illuminance = find_positive(list, "illuminance");
   return light;
 }

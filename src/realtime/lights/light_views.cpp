@@ -38,11 +38,13 @@ bool has_view(const Light& light) {
       [](const auto& l) {
         using L = std::decay_t<decltype(l)>;
         return std::is_same_v<L, AreaLight> || std::is_same_v<L, PointLight> || std::is_same_v<L, SpotLight> ||
-               std::is_same_v<L, DistantLight> || std::is_same_v<L, UniformInfiniteLight> ||
-               std::is_same_v<L, ImageInfiniteLight>;
+               std::is_same_v<L, DistantLight> || std::is_same_v<L, SunLight> ||
+               std::is_same_v<L, UniformInfiniteLight> || std::is_same_v<L, ImageInfiniteLight>;
       },
       light);
 }
+
+bool is_all_around(const Light& light) { return is_infinite(light) && !std::holds_alternative<SunLight>(light); }
 
 std::vector<Group> groups_of(const Scene& scene) {
   const std::vector<Light>& lights = scene.lights();
@@ -208,7 +210,7 @@ std::optional<LightView> view_of(const Scene& scene, const Group& group, Sampler
   if (!sample || sample->flux.is_black()) return {};
   LightView view;
   view.light = chosen.light;
-  view.is_all_around = is_infinite(light);
+  view.is_all_around = is_all_around(light);
   view.power = group.power;
   set_emission(view, light, *sample);
   view.colour /= chosen.probability;
@@ -220,7 +222,7 @@ std::optional<LightView> view_of(const Scene& scene, const Group& group, Sampler
 }
 
 int views_wanted(const Scene& scene, const Group& group, const LightViewSettings& settings) {
-  return is_infinite(scene.lights()[group.first]) ? settings.sky_views : 1;
+  return is_all_around(scene.lights()[group.first]) ? settings.sky_views : 1;
 }
 
 }  // namespace

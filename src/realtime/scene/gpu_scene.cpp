@@ -67,24 +67,27 @@ bool has_picture(const Scene& scene, std::uint32_t light) {
 
 bool is_cut_out(const ShapeStore& shape) { return shape.alpha.node || shape.alpha.value < 1; }
 
-/// All infinite lights as one equirectangular image around +y, W/(m² sr).
+/// The infinite lights that the camera sees as one equirectangular image around +y, W/(m² sr).
 gl::Texture make_environment(const Scene& scene) {
   float across = 64;
-  for (const std::uint32_t light : scene.infinite_lights())
+  std::vector<std::uint32_t> seen;
+  for (const std::uint32_t light : scene.infinite_lights()) {
+    if (is_hidden_from_camera(scene.lights()[light])) continue;
+    seen.push_back(light);
     across = std::max(across, texels_across_right_angle(scene.lights()[light]));
-  const int width = scene.infinite_lights().empty() ? 1 : 4 * std::min(static_cast<int>(across), 1024);
+  }
+  const int width = seen.empty() ? 1 : 4 * std::min(static_cast<int>(across), 1024);
   const int height = std::max(1, width / 2);
   std::vector<glm::vec4> texels(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), glm::vec4(0));
   const Wavelengths w = Wavelengths::rgb(0.5f);
   const Point from = scene.bounding_sphere().centre;
-  parallel_for(0, scene.infinite_lights().empty() ? 0 : height, [&](int y) {
+  parallel_for(0, seen.empty() ? 0 : height, [&](int y) {
     const float polar = pi * (static_cast<float>(y) + 0.5f) / static_cast<float>(height);
     for (int x = 0; x < width; ++x) {
       const float azimuth = 2 * pi * (static_cast<float>(x) + 0.5f) / static_cast<float>(width) - pi;
       const Direction d(std::sin(polar) * std::cos(azimuth), std::cos(polar), std::sin(polar) * std::sin(azimuth));
       Spectrum sum;
-      for (const std::uint32_t light : scene.infinite_lights())
-        sum += emitted_infinite(scene.lights()[light], from, d, w);
+      for (const std::uint32_t light : seen) sum += emitted_infinite(scene.lights()[light], from, d, w);
       texels[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)] = {
           sum[0], sum[1], sum[2], 1};
     }

@@ -447,7 +447,7 @@ TEST(PbrtLights, DefaultsAndParameters) {
       "LightSource \"point\" \"blackbody I\" 3000 \"float scale\" 2 \"float power\" 100 \"point3 from\" [1 2 3]\n"
       "LightSource \"spot\" \"float coneangle\" 20 \"float conedeltaangle\" 3 \"float power\" -1\n"
       "LightSource \"distant\" \"rgb L\" [1 2 3] \"point3 from\" [0 1 0] \"point3 to\" [0 0 0] \"float illuminance\" "
-      "5\n"
+      "5 \"float angle\" .53\n"
       "Rotate -90 1 0 0 LightSource \"infinite\" \"string filename\" \"sky.pfm\" \"float illuminance\" 7");
   expect_warnings(scene, {});
   const auto& point = std::get<PointLight>(scene.lights[0].node);
@@ -470,7 +470,9 @@ TEST(PbrtLights, DefaultsAndParameters) {
   EXPECT_EQ(std::get<SpotLight>(scene.lights[5].node).cone_angle, 20);
   EXPECT_EQ(std::get<SpotLight>(scene.lights[5].node).cone_delta_angle, 3);
   EXPECT_FALSE(std::get<SpotLight>(scene.lights[5].node).power.has_value());
+  EXPECT_EQ(distant.angle, 0);
   EXPECT_EQ(std::get<DistantLight>(scene.lights[6].node).illuminance, 5);
+  EXPECT_EQ(std::get<DistantLight>(scene.lights[6].node).angle, .53f);
   const auto& sky = std::get<InfiniteLight>(scene.lights[7].node);
   EXPECT_EQ(sky.image, "scenes/sky.pfm");
   EXPECT_EQ(sky.illuminance, 7);
@@ -551,6 +553,8 @@ TEST(PbrtLights, Errors) {
             "t.pbrt:1:12: parameter \"from\" of LightSource \"spot\" is the same point as \"to\"");
   EXPECT_EQ(error_of("WorldBegin LightSource \"spot\" \"float coneangle\" 0"),
             "t.pbrt:1:31: parameter \"coneangle\" of LightSource \"spot\" must be in (0, 180] degrees");
+  EXPECT_EQ(error_of("WorldBegin LightSource \"distant\" \"float angle\" 180"),
+            "t.pbrt:1:34: parameter \"angle\" of LightSource \"distant\" must be in [0, 180) degrees");
   EXPECT_EQ(error_of("WorldBegin LightSource \"projection\""),
             "t.pbrt:1:12: parameter \"filename\" of LightSource \"projection\" is missing");
   EXPECT_EQ(error_of("WorldBegin LightSource \"goniometric\""),

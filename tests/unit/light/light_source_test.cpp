@@ -118,6 +118,7 @@ TEST(LightSource, TraitsOfLights) {
   expect(GoniometricLight{}, false, false, false, true);
   expect(ProjectionLight{}, false, false, false, true);
   expect(DistantLight{}, false, false, true, true);
+  expect(SunLight{}, false, true, true, false);
   expect(UniformInfiniteLight{}, false, true, true, false);
   expect(ImageInfiniteLight{}, false, true, true, false);
   expect(PortalLight{}, false, true, true, false);

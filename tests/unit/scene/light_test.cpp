@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "support/error_text.h"
+#include "support/render_scene.h"
 #include "support/scene_text.h"
 #include "support/temporary_dir.h"
 
@@ -360,6 +361,27 @@ TEST(SceneLights, ScalesFollowPbrt) {
       "radius\" 2\n");
   EXPECT_NEAR(power(lamp.lights()[0]), 7, 0.01f);
   EXPECT_NEAR(lamp.largest_radiance(), 7 / (2 * pi * 16 * pi), 0.02f);
+}
+
+// The camera is at the origin. Towards +z it sees the sun, towards -z the sun's mirror image.
+TEST(SceneLights, OnlyTheCameraDoesNotSeeAHiddenSun) {
+  const auto seen = [](int towards, bool is_visible, const std::string& method) {
+    SceneDescription description = read_pbrt_string(
+        "LookAt 0 0 0  0 0 " + std::to_string(towards) +
+            "  0 1 0\nCamera \"perspective\" \"float fov\" 5\nFilm \"rgb\" \"integer xresolution\" 4 \"integer "
+            "yresolution\" 4\nWorldBegin\nLightSource \"distant\" \"point3 from\" [0 0 1] \"point3 to\" [0 0 0] "
+            "\"float angle\" 30 \"rgb L\" [3 3 3]\nMaterial \"conductor\" \"rgb reflectance\" [.5 .5 .5] "
+            "\"float roughness\" 0\nTranslate 0 0 -1\nShape \"disk\" \"float radius\" 2\n",
+        ".", "sun");
+    std::get<description::DistantLight>(description.lights[0].node).visible_to_camera = is_visible;
+    return test::render_image(Scene(description), test::options_for(method, 1)).at(2, 2, 1);
+  };
+  const float radiance = 3 / (pi * sqr(std::sin(to_radians(15.0f))));
+  for (const std::string method : {"path", "vcm"}) {
+    EXPECT_NEAR(seen(1, true, method), radiance, 1e-3f * radiance) << method;
+    EXPECT_EQ(seen(1, false, method), 0) << method;
+    EXPECT_NEAR(seen(-1, false, method), 0.5f * radiance, 1e-2f * radiance) << method;
+  }
 }
 
 // The film's range depends on the distance of surfaces to point-like lights, not on the size of the world.
