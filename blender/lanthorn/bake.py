@@ -112,9 +112,9 @@ class Bakes:
                 if image.packed_file is None and (image.is_dirty or image.source == "GENERATED")}
 
     def world(self, world, signature):
-        """Returns the path of an .npz file with the world's `texels` and `sun` (the direction to it and its irradiance, or
+        """Returns the path of an .npz file with the world's `texels` and `sun` (its direction, irradiance and angle, or
         nothing)."""
-        path = self._path(f"{world.name_full} {signature} {self.size}", "npz")
+        path = self._path(f"{world.name_full} {signature} {self.size} sun with angle", "npz")
         if not os.path.exists(path) and path not in self._failed:
             self._jobs[path] = {"kind": "world", "world": world.original, "size": self.size, "path": path}
         return path

@@ -180,7 +180,8 @@ def sun_nodes(tree):
 
 
 def sun_of(world, camera, folder):
-    """Returns the direction to the sun of a sky texture and its irradiance, and removes the sun's disk from the sky."""
+    """Returns the direction to the sun of a sky texture, its irradiance, and the angle of its diameter. Removes the sun's
+    disk from the sky."""
     nodes = list(sun_nodes(world.node_tree)) if world.use_nodes else []
     if len(nodes) != 1:
         return []
@@ -198,7 +199,7 @@ def sun_of(world, camera, folder):
     node.sun_disc = False
     without = rendered(folder, TEXELS_OF_SUN, TEXELS_OF_SUN, 4)
     irradiance = (with_sun - without).sum(axis=(0, 1)) * texel
-    return [*direction, *irradiance]
+    return [*direction, *irradiance, node.sun_size]
 
 
 def bake_world(job):

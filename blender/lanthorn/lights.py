@@ -8,8 +8,7 @@ from .textures import Textures
 # Smaller point and spot lights become lights without a size.
 SMALLEST_RADIUS = 1e-4
 POINTS_OF_SPOT = 32  # lights without a size that approximate a spot light with a radius
-SMALLEST_SUN = math.radians(0.1)  # a smaller sun becomes a single direction
-WIDE_SUN, SUNS, WIDE_SUNS = math.radians(2), 16, 64  # number of directions of a sun, and of a wide one
+SMALLEST_SUN = math.radians(0.01)  # a smaller sun becomes parallel light
 GOLDEN_ANGLE = math.pi * (3 - 5**0.5)
 SMALLEST_SPREAD = 1  # degrees, as in Cycles
 WIDE_SPOT = 0.85  # cosine of half the cone; wider spots get a warning
@@ -78,17 +77,21 @@ def _spot(light, matrix, report):
     return {"lights": made}
 
 
+def sun(direction, irradiance, angle):
+    """Returns a sun. `direction`: to its centre. `irradiance`: on a plane that faces it, W/m². `angle`: of its
+    diameter, radians."""
+    return {"type": "distant", "from": list(direction), "to": [0, 0, 0], "radiance": {"spectrum": list(irradiance)},
+            "angle": math.degrees(angle) if angle >= SMALLEST_SUN else 0.0}
+
+
 def _sun(light, matrix, report):
-    # Cycles samples a disk at distance 1 uniformly by area; away from its centre, the solid angle falls by cos^3.
-    axes, irradiance = matrix.to_3x3().normalized(), _strength(light, light.energy, report)
-    directions = [(0, 0)] if light.angle < SMALLEST_SUN else _disk(SUNS if light.angle < WIDE_SUN else WIDE_SUNS)
-    radius, made = math.tan(min(light.angle, math.radians(179)) / 2), []
-    for x, y in directions:
-        direction = axes.col[2] + radius * (x * axes.col[0] + y * axes.col[1])
-        share = direction.length**-3 / len(directions)
-        made.append({"type": "distant", "from": list(direction.normalized()), "to": [0, 0, 0],
-                     "radiance": {"spectrum": [share * e for e in irradiance]}})
-    return {"lights": made}
+    # Cycles draws points of a disk at distance 1, each of which gives P to a plane that faces it. So a plane that faces
+    # the disk's centre receives P times the mean cosine over the disk, 2 c / (1 + c) with c at the edge.
+    angle = min(light.angle, math.radians(179))
+    cosine = math.cos(angle / 2)
+    irradiance = [2 * cosine / (1 + cosine) * e for e in _strength(light, light.energy, report)]
+    towards = matrix.to_3x3().normalized().col[2]
+    return {"lights": [sun(towards, irradiance, angle)]}
 
 
 def _rectangle(width, height):
@@ -115,7 +118,7 @@ def _area(light, matrix, report):
             "radiance": [p / (4 * max(area, 1e-12)) for p in power]}
 
 
-NAMES = {"POINT": "point lights", "SPOT": "spot lights", "SUN": "suns"}
+NAMES = {"POINT": "point lights", "SPOT": "spot lights"}
 KINDS = {"POINT": _point, "SPOT": _spot, "SUN": _sun, "AREA": _area}
 
 
@@ -124,8 +127,9 @@ def add_light(parts, name, object, matrix, report):
     light = object.data
     made = KINDS[light.type](light, matrix, report)
     if "lights" in made:
-        size = light.angle if light.type == "SUN" else light.shadow_soft_size
-        if object.visible_camera and size > 0:
+        if light.type == "SUN":
+            made["lights"][0]["visible_to_camera"] = object.visible_camera
+        elif object.visible_camera and light.shadow_soft_size > 0:
             report.note(object.name, f"{NAMES[light.type]} are never visible to the camera")
         for number, part in enumerate(made["lights"]):
             parts["lights"][f"{name}/{number}" if number else name] = part

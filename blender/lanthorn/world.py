@@ -3,7 +3,7 @@
 """Translates the world to an environment light and a medium."""
 import numpy
 
-from . import media
+from . import lights as lamps, media
 from .bake import signature_of
 from .textures import Textures
 
@@ -105,9 +105,8 @@ def lights_of_bake(path):
     height, width = texels.shape[:2]
     lights = {"world": {"type": "infinite",
                         "texels": numpy.ascontiguousarray(numpy.roll(texels[:, ::-1], width // 2, axis=1))}}
-    if len(sun) and sun[3:].max() > 0:
-        lights["world's sun"] = {"type": "distant", "from": sun[:3].tolist(), "to": [0, 0, 0],
-                                 "radiance": {"spectrum": sun[3:].tolist()}}
+    if len(sun) and sun[3:6].max() > 0:
+        lights["world's sun"] = lamps.sun(sun[:3].tolist(), sun[3:6].tolist(), sun[6])
     return lights
 
 

@@ -60,6 +60,29 @@ class LightTest(unittest.TestCase):
         stage.add_light("SUN", 3, rotation=(0.5, 0.3, 0), angle=0)
         self.compare("sun")
 
+    def test_sun_in_a_mirror(self):
+        stage.add_light("SUN", 3, rotation=(0.4, 0.2, 0), angle=math.radians(20))
+        stage.add_ball(material=stage.node_material("mirror", "ShaderNodeBsdfGlossy", Roughness=0.0))
+        cycles = stage.render("CYCLES", samples=256)
+        ours = stage.render("LANTHORN", method="auto", noise=0, seconds=0, passes=128)
+        theirs, means = block_means(cycles, 12), block_means(ours, 12)
+        print(f"sun in a mirror: brightest block {means.max() / theirs.max():.4f}")
+        self.assertGreater(theirs.max(), 5 * cycles[:, :, :3].mean())
+        self.assertLess(abs(means - theirs).max() / theirs.max(), 2 * TOLERANCE)
+
+    def test_sun_in_the_picture(self):
+        stage.add_camera((0, 0, 1), (math.pi, 0, 0), angle=math.radians(40))
+        sun = stage.add_light("SUN", 3, rotation=(0.1, 0, 0), angle=math.radians(12))
+        for is_seen in (False, True):
+            with self.subTest(is_seen):
+                sun.visible_camera = is_seen
+                cycles, ours = (stage.render(engine, **settings) for engine, settings in (
+                    ("CYCLES", {"samples": 64}),
+                    ("LANTHORN", {"method": "path", "noise": 0, "seconds": 0, "passes": 64})))
+                self.assertEqual(cycles[:, :, :3].max() > 1, is_seen)
+                difference = abs(block_means(ours, 12) - block_means(cycles, 12)).max()
+                self.assertLess(difference, 0.02 * max(1, cycles[:, :, :3].max()))
+
     def test_spot(self):
         stage.add_light("SPOT", 100, (0.3, 0, 2), (0.2, 0, 0), shadow_soft_size=0, spot_size=math.radians(40),
                         spot_blend=0.3)
