@@ -29,7 +29,7 @@ void append(std::string& out, const std::array<float, n>& values) {
   out.append(reinterpret_cast<const char*>(values.data()), sizeof(values));
 }
 
-// Scaled so that its largest channel is full: viewers do not know the scale of powers.
+// The colour of a power, scaled to full brightness, because viewers do not know the scale of powers.
 std::array<unsigned char, 3> hue_of(const Rgb& power) {
   const float largest = std::max({power.r, power.g, power.b, 1e-30f});
   const Rgb shown = to_display((1 / largest) * power, {});

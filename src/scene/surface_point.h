@@ -34,8 +34,8 @@ struct SurfacePoint {
   PointBsdf bsdf;
 };
 
-/// |cos| factor of flux through the surface along a direction: to the geometric normal or, for a hair, to the plane
-/// across it, because its width faces all directions.
+/// |cos| factor of the flux through the surface along a direction. The angle is measured from the geometric normal; for
+/// a hair, whose width faces all directions, from the plane perpendicular to the hair.
 inline float geometric_cosine(const SurfacePoint& at, const Direction& w) {
   return at.is_hair ? safe_sqrt(1 - sqr(dot(w, at.shading.s))) : std::fabs(dot(w, at.normal));
 }
@@ -94,7 +94,8 @@ inline Ray spawn_ray(const SurfacePoint& at, const Direction& direction) {
   return ray;
 }
 
-/// The end of a segment: a point of a surface, which the segment does not meet, or a point in space.
+/// The end of a segment: a point in space, or a point on a surface. In the latter case, `segment_to` stops short of the
+/// surface.
 struct SegmentEnd {
   Point position{0};
   Normal normal{0};  ///< geometric, unit, of either side; 0 in space

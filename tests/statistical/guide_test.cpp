@@ -84,8 +84,8 @@ TEST(GuidedWalk, DirectionsFollowTheMixture) {
   }
 }
 
-// A mirror-like coat over a diffuse base: samples are of a delta lobe or of the base, stochastic with an approximate
-// density. Lit by a sky that is brighter on one side.
+// A mirror-like coat over a diffuse base, under a sky that is brighter on one side. A sample belongs to the delta lobe
+// or to the base, whose weight is stochastic and whose density is approximate.
 TEST(GuidedWalk, BringsTheLightOfTheClosureAlone) {
   const Bsdf lacquer = CoatedDiffuse{.base = {Spectrum(0.7f)}};
   const TestVertex test(lacquer, at_angles(30, -60));

@@ -96,7 +96,7 @@ TEST_P(Estimates, OfVarianceAreThoseOfRendersWithinAFifth) {
   }
   EXPECT_NEAR(expected / variance_of(scene, c.method, static_cast<double>(c.light_paths)), 1, 0.2);
 }
-// In the first scene, rare bright contributions dominate the noise; in the others, sums of many.
+// In the first scene, rare bright contributions dominate the noise; in the others, many contributions share it.
 INSTANTIATE_TEST_SUITE_P(
     Cases, Estimates,
     testing::Values(Case{"cornell-caustics.pbrt", "vcm", 1, true}, Case{"cornell-caustics.pbrt", "vcm", 0.25f, true},

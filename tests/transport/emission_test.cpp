@@ -164,9 +164,9 @@ TEST(LearnedEmission, FindsWhatIsSmall) {
   }
 }
 
-// Eye paths find the lamp through the ball, too, but in none of these renders. Merging must contribute the light, and
-// the weights must know how dense the guide makes the photons: without that, six sevenths of it are missing. The mean
-// is that of 60 passes with a million light paths each.
+// In principle, eye paths find the lamp through the ball, too, but this happens in none of these renders. Merging must
+// contribute the light, and the weights must know how dense the guide makes the photons: without that, six sevenths of
+// it are missing. The mean is that of 60 passes with a million light paths each.
 TEST(LearnedEmission, IsKnownToWeights) {
   const Scene scene = test::scene_from_text(view_of_the_ball + corner_of_a_plain(far_lamp));
   EXPECT_TRUE(test::runs_agree(test::mean_of_means(caustics_of(scene, "vcm", true, 24)), 0.01496, 0.05, 0.6));

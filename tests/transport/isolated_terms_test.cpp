@@ -78,7 +78,7 @@ const std::string rough_metal_under_light =
     test::quad("-2 -2 0  2 -2 0  2 2 0  -2 2 0");
 
 // A lamp near the floor of a white box: photons are 20 times as dense below it as at the camera's left, and the radii
-// of pixels differ as much. Between half and all of the light has been scattered before.
+// of pixels differ accordingly. At least half of the light is indirect.
 const std::string lamp_near_floor =
     "LookAt 0 0.9 0.9  0 0 -0.2  0 1 0\nCamera \"perspective\" \"float fov\" [70]\n" + film +
     "Material \"diffuse\" \"rgb reflectance\" [0.8 0.8 0.8]\n"

@@ -314,7 +314,7 @@ struct LightInFog {
         "LightSource \"point\" \"rgb I\" [1 1 1]\nMediumInterface \"fog\" \"fog\"\n"
         "Material \"dielectric\" \"float eta\" 1 Shape \"sphere\" \"float radius\" 0.01\n");
   }
-  // Position `i` of `count` in all directions; all have the same bias.
+  // Position `i` of `count`, which are spread over all directions. By symmetry, the bias is the same at each.
   static Direction place(std::uint32_t i, std::uint32_t count) {
     const float turn = static_cast<float>(i) * std::numbers::phi_v<float>;
     return sample_uniform_sphere({(static_cast<float>(i) + 0.5f) / static_cast<float>(count), turn - std::floor(turn)});

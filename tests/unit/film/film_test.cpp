@@ -278,7 +278,7 @@ TEST(Film, TechniquesAddUpToColor) {
   EXPECT_EQ(select_layer(copy.resolve(4), "technique.splat")->pixels, layer("technique.splat").pixels);
 }
 
-// Light of wavelengths outside the gamut may have negative luminance, which is not a share.
+// Light of wavelengths outside the gamut may have negative luminance. It counts as a share of 0.
 TEST(Film, SharesAreOfPositiveLight) {
   Film film(1, 1, 4, {.light = layers, .decomposition = techniques});
   PixelSample s;
