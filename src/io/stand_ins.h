@@ -12,7 +12,7 @@ namespace lanthorn {
 
 /// True if the emissive surfaces of these area lights illuminate the rest of the scene. Only emitters with a radiance
 /// above 1 count, since dimmer ones merely look bright: their light, spread evenly over all other surfaces, must be at
-/// least a twentieth of what a sky of radiance 1 would give.
+/// least a twentieth of the light of a sky of radiance 1.
 bool is_lit_by(const SceneDescription& scene, std::span<const description::Index> lamps);
 
 /// What a scene lacks.

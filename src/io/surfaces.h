@@ -20,7 +20,7 @@ namespace lanthorn {
 Bounds bounds_of(const SceneDescription& scene, const Transform& from_world = {});
 /// Bounding box of each shape, in the space that shapes are placed in; empty for other kinds of shapes.
 std::vector<Bounds> bounds_of(const std::vector<description::Shape>& shapes);
-/// As the first function, for several spaces.
+/// Like the first function, for several spaces.
 std::vector<Bounds> bounds_of(const SceneDescription& scene, std::span<const Transform> from_world);
 
 /// All triangle meshes of a scene, positioned as when the shutter opens. Refers to the description.

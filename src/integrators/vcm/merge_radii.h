@@ -45,9 +45,9 @@ float merge_radius_shrink(double alpha, std::uint32_t pass, double light_paths);
 /// each.
 ///
 /// A wide disc has little noise, and no bias where the density of photons is uniform. There radii hardly need to
-/// shrink: after each test that a pixel passes, they follow the schedule with α = .9. After each test that it fails,
-/// the area is halved, until it is that of the schedule with `alpha`, α < .9. After the last test all radii shrink by
-/// the schedule with α = 2/3, so that all bias vanishes, at the rate with the least mean squared error.
+/// shrink: after each test that a pixel passes, they follow the schedule with α = .9. After each failed test the area
+/// is halved, down to the area of the schedule with `alpha`, α < .9. After the last test all radii shrink by the
+/// schedule with α = 2/3, so that all bias vanishes, at the rate with the least mean squared error.
 class MergeShrinks {
  public:
   /// One factor for all pixels.
