@@ -35,8 +35,8 @@ const std::string tilted_panel =
     "  \"normal N\" [0.766 -0.643 0  0.766 -0.643 0  0.766 -0.643 0  0.766 -0.643 0]\n";
 
 // The same with a mirroring panel, and a lamp behind a screen, so that the floor gets only the panel's reflection. By
-// the shading normal alone, part of what the floor would see via the panel lies below the panel's surface: the
-// surface's plane reflects that part once more.
+// the shading normal alone, some of the reflected directions lead below the panel's surface; the surface's plane
+// reflects these once more.
 std::string tilted(const std::string& material) {
   return "LookAt 0 1.3 2.2  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [24]\n" + film +
          "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [20 20 20]\n" +

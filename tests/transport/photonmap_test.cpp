@@ -158,7 +158,7 @@ TEST(NightlyPhotonMap, SharesOfNarrowLobesAddUp) {
         << layer;
 }
 
-// So many rays that the map is hardly used. Under a sky, which continued rays would hit, too.
+// So many gather rays that the map is hardly used, under a sky that continued rays would hit, too.
 TEST(PhotonMap, ShortRaysFindWhatTheMapWouldTell) {
   const Scene scene = test::scene_from_text(camera + "LightSource \"infinite\" \"rgb L\" [1 1 1]\n" + box);
   const std::vector<Image> expected = runs(scene, "path", 4, "indirect", 100, 32);
@@ -320,7 +320,7 @@ TEST(PhotonMap, ShadowPhotonsSpareShadowRays) {
     const std::string shadows = "photonmap:gather=1:shadows=photons:max-radius=0.25";
     const std::vector<Image> by_rays = runs(scene, "photonmap:gather=1", 1, "term.A", 100, 8),
                              by_photons = runs(scene, shadows, 1, "term.A", 100, 8);
-    // With equal samples: the difference is what the search radius removes from thin shadows.
+    // Both renders use the same samples: the difference is the part of thin shadows that the search radius removes.
     EXPECT_TRUE(test::runs_agree(test::paired_ratio(by_photons, by_rays), 1, 0.004, 0.03)) << light;
 
     RenderPlan plan = test::plan_render(scene, options_of(shadows, 1));

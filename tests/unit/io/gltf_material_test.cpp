@@ -302,7 +302,7 @@ TEST(GltfMaterial, TransmittedLightHasTheBaseColour) {
                  {{"KHR_materials_transmission", {{"transmissionFactor", 1}}},
                   {"KHR_materials_volume", {{"thicknessFactor", thickness}}}}}};
   };
-  // For a volume, the tint is that of passing both interfaces; for a sheet, that of passing the sheet.
+  // For a volume, the tint applies to passing both interfaces; for a sheet, to passing the sheet.
   const auto solid = closure_of<Dielectric>(with_material(glass(0.5, 1)));
   EXPECT_NEAR(solid.tint[0], 0.5f, 1e-6f);
   EXPECT_NEAR(solid.tint[2], std::sqrt(0.5f), 1e-6f);
