@@ -105,7 +105,8 @@ class Integrator {
   virtual std::string findings() const { return {}; }
   /// The film's layers for this scene and whether the method splats. Default: the layers of the path classes.
   virtual FilmContents film_contents(const Scene& scene) const { return path_layers(scene); }
-  /// False if the method has an error that passes leave and its film does not estimate (FilmContents::bias).
+  /// False if the method has an error that does not vanish with more passes and that its film does not estimate
+  /// (FilmContents::bias).
   virtual bool knows_bias() const { return true; }
   /// True if all light of a pass, or of its part, has the wavelengths of `draw_for_pass`.
   virtual bool passes_share_wavelengths() const { return false; }
@@ -113,7 +114,7 @@ class Integrator {
   virtual bool passes_may_overlap() const { return false; }
   /// False if a pass depends on earlier ones. Such a render can be resumed but not sharded.
   virtual bool passes_are_independent() const { return true; }
-  /// False if a pixel may change with the part of the film that is rendered, beyond the part that is shown.
+  /// False if a pixel may depend on which part of the film is rendered. Such methods render no margin around a crop.
   virtual bool crops_are_exact() const { return true; }
   /// Peak memory with these settings. Zero for methods that do not store light paths.
   virtual MemoryUse memory_use(const RenderSettings& /*settings*/) const { return {}; }

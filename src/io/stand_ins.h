@@ -29,8 +29,8 @@ struct ModelFile {
   StandIns lacking;
 };
 
-/// Adds what the scene lacks, with a single warning. The user's environment replaces only the studio; it does not
-/// affect the camera.
+/// Adds the camera and the lights that the scene lacks, with a single warning. The user's environment replaces only the
+/// studio; it does not affect the camera.
 ///
 /// The camera has a field of view of 40 degrees and +y up. It frames all triangle meshes except grounds from the best
 /// side, whatever the film's aspect ratio (see `Grounds` and `stand_in_view`). In a closed room it is inside, with 60
