@@ -6,7 +6,7 @@ Usage: blender -b --factory-startup --python equal_time.py -- FOLDER NAME METHOD
 METHOD: "cycles-default"; "cycles", with no setting that darkens caustics; "cycles-mnee", also with shadow caustics;
 "cycles-mnee-point", the same with lamps of size 0, since Cycles 3.4 finds no lamp with a size inside two surfaces;
 or a method of Lanthorn: "path", "bdpt", "auto".
-Reads FOLDER/NAME.blend; writes FOLDER/NAME-METHOD.exr (linear), .png (as Blender shows it) and .json (the measurements).
+Reads FOLDER/NAME.blend; writes FOLDER/NAME-METHOD.exr (linear), .png (as Blender shows it) and .json (measurements).
 A seed other than 0 is part of these names. Two short renders, whose time does not count, determine how many samples or
 passes take SECONDS of processor time.
 

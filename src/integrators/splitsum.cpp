@@ -115,7 +115,8 @@ class SplitSumShader final : public Integrator {
   std::set<std::string> missing_;
 };
 
-// Collected along one eye path per point of a grid in the window.
+// Follows one eye path for each point of a grid in the window, and collects the features along it that split-sum
+// shading leaves out.
 std::set<std::string> SplitSumShader::missing_of(const RenderJob& job) {
   constexpr int grid = 64;
   const PixelWindow& window = job.view.window;

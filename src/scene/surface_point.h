@@ -60,8 +60,9 @@ inline float rounded_away(float x, float offset) {
   return std::bit_cast<float>(std::bit_cast<std::uint32_t>(x) + step);
 }
 
-/// Bound of the rounding error of a hit across the surface, per metre of the ray's way: a test of a triangle in single
-/// precision rounds its corners relative to the ray's origin, its normal and the distance, each a few times.
+/// Upper bound of the rounding error of a hit perpendicular to the surface, per metre of the ray's length. In single
+/// precision, the test of a triangle rounds three things a few times each: the corners relative to the ray's origin,
+/// the normal and the distance.
 inline constexpr float tracing_error = 0x1p-20f;
 
 }  // namespace detail

@@ -4,10 +4,10 @@
 """Renders random mutations of scenes of all formats with random methods, best with a build with sanitizers.
 
 Three passes of each. Every tenth mutation changes a saved state instead, which is then inspected, resumed or merged. A
-run must end within its time and memory: either with exit code 0, a picture without NaN and only finite samples, or with exit code 2, one
-line that names the scene or one of its files, and no picture. A run must leave no other files behind, and no control
-character of a file may reach the terminal. Prints the failing runs, keeps their files and commands, and ends with exit
-code 1 if there are any. Mutation N of a seed is always the same. Run it by hand: it takes hours.
+run must end within its time and memory: either with exit code 0, a picture without NaN and only finite samples, or with
+exit code 2, one line that names the scene or one of its files, and no picture. A run must leave no other files behind,
+and no control character of a file may reach the terminal. Prints the failing runs, keeps their files and commands, and
+ends with exit code 1 if there are any. Mutation N of a seed is always the same. Run it by hand: it takes hours.
 """
 import argparse
 import gzip
