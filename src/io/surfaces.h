@@ -27,7 +27,7 @@ std::vector<Bounds> bounds_of(const SceneDescription& scene, std::span<const Tra
 class Surfaces {
  public:
   explicit Surfaces(const SceneDescription& scene) : Surfaces(scene, nullptr) {}
-  /// Only the meshes that emit as one of these area lights.
+  /// Includes only the meshes that emit as one of these area lights.
   Surfaces(const SceneDescription& scene, const std::set<description::Index>& area_lights)
       : Surfaces(scene, &area_lights) {}
 

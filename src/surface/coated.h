@@ -71,7 +71,7 @@ template <class Base>
 bool is_dispersive(const Coated<Base>& c) {
   return is_dispersive(c.coat);
 }
-/// Over metal, the lobe belongs to the metal.
+/// Over metal, the split terms hold the metal's lobe.
 template <class Base>
 SplitTerms split_terms(const Coated<Base>& c, const Vec3& wi) {
   const Spectrum all = albedo(c, wi);

@@ -28,7 +28,7 @@ namespace {
 
 const std::filesystem::path test_scenes = std::filesystem::path(LANTHORN_SOURCE_DIR) / "tests/scenes";
 const std::string overview = "LookAt 0 1 4.4  0 1 0  0 1 0\n";
-// So close to the ball that its facets cover tiles.
+// A view so close to the ball that its facets cover whole tiles.
 const std::string close_up = "LookAt 0.1 0.6 1.7  0.1 0.6 0  0 1 0\n";
 const std::string film =
     "Camera \"perspective\" \"float fov\" [36]\n"
@@ -107,7 +107,7 @@ std::string large_texture() {
          test::patch("-1 0 -1  1 0 -1  -1 0 1  1 0 1") + test::patch("-1 0 -1  1 0 -1  -1 2 -1  1 2 -1");
 }
 
-// With a radius as small as that of the others.
+// The radius is as small as the other methods' radii.
 const char* const photonmap = "photonmap:nearest=0:caustic-nearest=0:max-radius=0.012:gather=4:irradiance=estimated";
 const char* const reversephotonmap = "reversephotonmap:caustic-nearest=0:max-radius=0.012:gather=4";
 
@@ -175,7 +175,7 @@ const std::string own_caustics = std::string(photonmap) + ":caustic-photons=6000
 // Tests each method with every closure, kind of light and technique for which it has its own code. Methods share the
 // code of closures and lights, so not every combination is tested.
 const std::vector<Case> cases{
-    // Photons, and light paths to the lens, with a single technique each, so that errors are fully visible.
+    // Photons alone, and connections of light paths to the lens alone, so that no other technique hides an error.
     {"shading_normals", "light", rgb, 1, 12},
     {"small_lights", "light", rgb, 1, 12},
     {"rough_glass", "light", spectral, 1, 12},

@@ -76,7 +76,8 @@ TEST(PhotonMap, LightOfTheSkyIsDirect) {
   EXPECT_EQ(mean_of(render_with(scene, "photonmap", 1, "term.B")), 0);
 }
 
-// With equal photons, up to the difference between the record at the nearest photon and an estimate in place.
+// With the same photons, the means agree up to the difference between the record at the nearest photon and an estimate
+// in place.
 TEST(PhotonMap, PrecomputedIrradianceLeavesTheMean) {
   const Scene scene = test::scene_from_text(camera + box);
   const std::vector<Image> estimated = runs(scene, "photonmap:irradiance=estimated", 1, "term.D");
@@ -226,7 +227,7 @@ TEST(PhotonMap, CachedGathersLeaveTheMean) {
             render_with(scene, cached + ":gather=64", 1, "term.A").pixels);
 }
 
-// In mirrors and in motion, in both colour modes and at a depth at which gather rays end.
+// Tests cached gathers in mirrors and in motion, in both colour modes, and at a depth at which gather rays end.
 TEST(PhotonMap, CachedGathersBehindMirrors) {
   const Scene scene = test::scene_from_text(
       camera + box +

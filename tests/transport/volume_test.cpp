@@ -563,7 +563,7 @@ TEST(VolumeMethods, WeightsAreFiniteAtTheLens) {
   }
 }
 
-// Forward-scattering fog: merging counts in part all along eye paths and light paths.
+// Forward-scattering fog: merging has part of its weight at all vertices of eye paths and light paths.
 TEST(VolumeMethods, WeightsInForwardFogSumToOne) {
   const Scene scene = test::scene_from_text(
       "LookAt 0 0 4  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [24]\n" + film +

@@ -465,7 +465,7 @@ TEST(GltfMaterial, BasisTexturesAreNamedAndHaveFallbacks) {
   EXPECT_EQ(warnings(other).size(), 1u);  // of the stand-ins
 }
 
-// As Blender writes a Glass BSDF, and a Principled BSDF with Transmission and an index.
+// Materials as Blender writes them for a Glass BSDF, and for a Principled BSDF with Transmission and an index.
 TEST(GltfMaterial, GlassThatAnExporterLost) {
   const auto messages = [](const json& material) {
     GltfWriter file;
