@@ -54,7 +54,7 @@ struct EyeRay {
         begin_normal(along(flight.begin_normal)),
         end_normal(along(flight.end_normal)) {}
 
-  /// The part of the line from which points at most `aside` (m) away may lie between the planes of the end surfaces.
+  /// The part of the line that may be within `aside` (m) of a point between the planes of the end surfaces.
   RaySegment between_planes(float aside) const {
     return {ray.origin, ray.direction, ray.begin - beyond(begin_normal, aside), ray.end + beyond(end_normal, aside)};
   }

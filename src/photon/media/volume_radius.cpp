@@ -196,7 +196,7 @@ class VolumePilot {
     return light_paths * static_cast<double>(share_of_beams(paths_)) / static_cast<double>(share_of_beams(photons));
   }
 
-  // Number of photons that an eye path can meet in the time of all other work that a pass does for it.
+  // Number of photons that an eye path can meet in the time that a pass needs for all other work per eye path.
   double most_work() const {
     const PixelWindow film = job_.view.film();
     const double eye_paths = static_cast<double>(film.width()) * film.height();
