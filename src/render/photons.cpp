@@ -42,7 +42,7 @@ PhotonClass class_of(const PhotonFlags& flags) {
   return flags.caustic ? PhotonClass::caustic : PhotonClass::indirect;
 }
 
-// `share`: number of these paths, divided by the number of all paths. `max_depth`: of the tracer's rule.
+// `share`: weight of these paths, 1 / the number of parts of the pass. `max_depth`: of the tracer's rule.
 void append_photons(Photons& photons, const PhotonTracer& tracer, const Wavelengths& w, float share, int max_depth,
                     const Vec3& origin) {
   const std::size_t count = photons.positions.size() + tracer.stored();
