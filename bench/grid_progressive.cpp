@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// What one pass of progressive photon mapping asks of the hash grid: 500 k photons on surfaces, one query for each of
-// the 512² eye points of an image in scan order, 1 - 10 photons in the ball.
+// The queries of one pass of progressive photon mapping to the hash grid: 500 k photons on surfaces, one query for each
+// of the 512² eye points of an image in scan order, 1 - 10 photons in the ball.
 #include <benchmark/benchmark.h>
 
 #include "base/parallel.h"

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Frames of image-space photon mapping, stage by stage: bench_realtime SCENE [WIDTH HEIGHT [PHOTONS...]]
-// A line for each radius and number of photons, by splats and by tiles: wall-clock time, and processor time, which
-// other programs disturb less. Says so where OpenGL draws in software, and counts what the shaders of a frame run, from
-// which its time on a GPU can be estimated (docs/lab/realtime.md).
+// Frames of image-space photon mapping, stage by stage: bench_realtime SCENE [WIDTH HEIGHT [PHOTONS...]] A line for
+// each radius and number of photons, by splats and by tiles: wall-clock time, and processor time, which other programs
+// disturb less. Reports when OpenGL draws in software, and counts the shader invocations of a frame, from which its
+// time on a GPU can be estimated (docs/lab/realtime.md).
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -2,9 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Hooks of MkDocs (mkdocs.yml).
 
-Links in our Markdown are paths in the repository, as GitHub follows them. The site has docs/ and some pages from elsewhere; links to
-other files of the repository become their paths in text. Anchors are those of GitHub. After the build, all internal links of the pages
-are followed, anchors included. What is wrong is a warning, which --strict makes an error.
+Links in our Markdown are paths in the repository, as GitHub follows them. The site has docs/ and some pages from
+elsewhere; links to other files of the repository become their paths in text. Anchors are named as on GitHub. After the
+build, all internal links of the pages are followed, anchors included. A broken link is a warning, which --strict turns
+into an error.
 """
 import logging
 import posixpath

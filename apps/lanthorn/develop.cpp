@@ -24,7 +24,7 @@ struct DevelopCommand {
   OutputSettings settings;
 };
 
-// For the layer color, reads all layers, which measuring the exposure needs.
+// For the layer color, reads all layers, because the exposure is measured from them.
 Image picture_of(const DevelopCommand& a) {
   if (a.layer == "color") return read_image(a.picture, ColorEncoding::automatic, a.max_pixels);
   return as_color(read_layer(a.picture, a.layer, a.max_pixels));

@@ -48,7 +48,7 @@ std::optional<Identity> identity(const fs::path& path) {
   return Identity{0, 0, folder / target.filename()};
 }
 
-// True for a device name: even if standard output is redirected to a file, it means what is printed.
+// True for a device name: it means the printed output, even if standard output is redirected to a file.
 bool is_stream(const fs::path& path) {
   const std::string name = fs::absolute(path).lexically_normal().string();
   return name == "/dev/stdout" || name == "/dev/stderr" || name.starts_with("/dev/fd/") ||

@@ -189,7 +189,7 @@ void plan_gathering(const Onlookers& onlookers, const RenderCommand& a, Team& te
   if (onlookers.previews || onlookers.tev) team.preview_seconds = a.preview_seconds.value_or(automatic_interval);
 }
 
-// For a process that leaves files and messages to another one.
+// Renders in a process of a team that leaves files and messages to rank 0.
 void help_to_render(Session& session, Team& team) {
   StopRule stop = session.plan();
   stop.team = &team;

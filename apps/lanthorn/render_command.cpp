@@ -49,7 +49,7 @@ OptionTable render_command_options(RenderCommand& a) {
            "The program estimates noise and bias while rendering. When it stops, the error is below the bound with a "
            "probability of 90 %. The error is the root mean square of the relative errors of all values; the "
            "denominator is at least a tenth of the picture's mean. With --denoise, the bound is for the denoised "
-           "picture. -p and -t remain limits."},
+           "picture. -p and -t still apply."},
       {.names = "--pass-range",
        .value = into(a.options.pass_range, pass_range_type()),
        .brief = "Render passes FIRST to END - 1 alone: a shard to merge with others",

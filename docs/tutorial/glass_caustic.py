@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The Lanthorn authors
 # SPDX-License-Identifier: Apache-2.0
-"""The caustic of a glass ball: path tracing cannot find it, because no path hits a spot light; photons can.
+"""The caustic of a glass ball: path tracing cannot find it, because no path hits a spot light, but photons can.
 
     python3 glass_caustic.py          # writes caustic_path.png, caustic_probppm.png
 """

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Optimises a lens for its caustic: scipy finds the radius of curvature that focuses sunlight on a point of the floor.
 
-The paraxial answer is the lensmaker's: f = R / (n - 1). A thick lens with a wide aperture wants a larger radius: its
-light starts to bend above the flat face, and its rim bends it too much.
+The paraxial answer is the lensmaker's: f = R / (n - 1). A thick lens with a wide aperture needs a larger radius: light
+starts to bend above the flat face, and the rim bends it too much.
 
     python3 lens.py                   # writes lens.png: the floor under the best lens
 """

@@ -24,7 +24,7 @@ struct Rgb {
 /// Primaries and white point of the RGB values in a scene file.
 enum class ColorSpace : std::uint8_t { srgb, dci_p3, rec2020, aces2065_1 };
 
-/// What a path carries: RGB, or radiance at a few randomly sampled wavelengths.
+/// The quantity that a path carries: RGB, or radiance at a few randomly sampled wavelengths.
 enum class ColorMode : std::uint8_t { rgb, spectral };
 
 inline constexpr float lambda_min = 360;  ///< nm

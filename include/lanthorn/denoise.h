@@ -53,8 +53,8 @@ class DenoisedLooks {
 
   explicit DenoisedLooks(double limit) : limit_(limit) {}
 
-  /// While the noisy picture's error is more than 8 times the limit, which denoising cannot make up for, returns that
-  /// instead.
+  /// Returns the noisy picture's error, without denoising, while that is more than 8 times the limit: denoising cannot
+  /// make up for so much.
   ErrorEstimate operator()(const RenderState& state);
   /// The last look's picture, if its error is below the limit. Can be taken once.
   std::optional<Found> take() { return std::exchange(found_, std::nullopt); }

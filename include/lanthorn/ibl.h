@@ -72,8 +72,8 @@ using ShCoefficients = std::array<Rgb, bands * bands>;
 
 struct ShMaps {
   ShCoefficients<4> radiance{};  ///< projection of the environment, order 3
-  /// Projection of the irradiance divided by pi, order 3; the first nine are those of order 2. Band 3 is 0 for every
-  /// environment.
+  /// Projection of the irradiance divided by pi, order 3; the first nine are equal to those for order 2. Band 3 is 0
+  /// for every environment.
   ShCoefficients<4> irradiance{};
   double window = 0;  ///< lambda of the window 1 / (1 + lambda l² (l + 1)²) in `irradiance`; 0 for none
 };

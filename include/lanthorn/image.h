@@ -24,7 +24,7 @@ struct ImageWindow {
 ///
 /// A layer is a group of channels in OpenEXR's naming: `color` is R, G, B; another layer NAME is NAME.R, NAME.G, NAME.B
 /// (colours), NAME.X, NAME.Y, NAME.Z (vectors), or NAME.Z or NAME alone (one channel). Each spectral channel
-/// (S0.550,5nm), which spectral films write, is a layer of its own.
+/// (S0.550,5nm), which spectral films write, is a separate layer.
 struct Image {
   int width = 0;
   int height = 0;
@@ -49,7 +49,7 @@ struct Image {
   std::optional<std::size_t> find_channel(std::string_view name) const;
 };
 
-/// Appends the channels of `layers` to those of `picture`. Both have the same size.
+/// `picture` with the channels of `layers` appended. Both have the same size.
 Image with_layers(const Image& picture, const Image& layers);
 
 /// The channels of the layer `name` (see `Image`), in the order of the layer's components; nullopt if the image has no

@@ -58,7 +58,7 @@ float measured_exposure(const Image& image);
 /// "lanthorn:NAME" (numbers and strings as such, all other types as JSON text). Equal input gives equal bytes.
 std::vector<unsigned char> encode_exr(const Image& image, const std::string& metadata = {});
 
-/// A PNG file of what `displayed` returns as 8-bit sRGB; all metadata is stored as text. Throws Error as `displayed`
+/// A PNG file of the result of `displayed` as 8-bit sRGB; all metadata is stored as text. Throws Error as `displayed`
 /// does.
 std::vector<unsigned char> encode_png(const Image& image, const DisplaySettings& display = {},
                                       const std::string& metadata = {});

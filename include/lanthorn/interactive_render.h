@@ -20,8 +20,8 @@
 
 namespace lanthorn {
 
-/// A change to what an `InteractiveRender` shows. Empty members leave their part unchanged. A new view or new options
-/// only replace the film; nothing of the scene is rebuilt. A new scene costs what its function costs: `edit_scene`
+/// A change to the picture of an `InteractiveRender`. Empty members leave their part unchanged. A new view or new
+/// options only replace the film; the scene is not rebuilt. A new scene takes as long as its function: `edit_scene`
 /// replaces lights, materials and transforms in a fraction of a millisecond; `build_scene` rebuilds all geometry.
 struct RenderEdit {
   /// Makes the scene, on the render's thread. If it throws, the next edit calls it again, unless that edit brings
@@ -71,7 +71,7 @@ struct InteractivePicture {
   /// render.
   std::optional<double> seconds_left{};
   std::string limitation{};  ///< light that the method cannot render; empty: none
-  /// What the method has measured and chosen for this picture, see `Observer::remark`; empty: nothing, or coarse.
+  /// The method's measurements and choices for this picture, see `Observer::remark`; empty: none, or a coarse picture.
   std::string remark{};
 };
 
@@ -136,14 +136,14 @@ class InteractiveRender {
   /// Waits for a snapshot whose number differs from `number`; returns the current one after `patience` or `stop`.
   InteractiveSnapshot wait(std::uint64_t number, std::chrono::milliseconds patience) const;
 
-  /// What the first scene and view request but do not get, and light that the first method cannot render.
+  /// Unsupported features of the first scene and view, and light that the first method cannot render.
   const std::vector<description::Warning>& warnings() const;
 
   /// Abandons the current pass within milliseconds (but a scene's function runs to its end) and ends the thread. Later
   /// edits have no effect.
   void stop();
-  /// The film's sums for the last edit, to be saved. Null before `stop`, without `keeps_sums`, and before the first
-  /// full pass of the last edit.
+  /// The film's sums for the last edit, ready to be saved. Null before `stop`, without `keeps_sums`, or if the last
+  /// edit has no full pass yet.
   const RenderState* state() const;
 
  private:

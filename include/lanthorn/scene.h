@@ -39,9 +39,9 @@ struct ReadOptions {
 };
 
 /// Reads a scene file, chosen by its extension: .pbrt (pbrt-v4 and v3), .gltf and .glb (glTF 2.0), .obj (Wavefront),
-/// each also gzipped (.gz). The description's `warnings` list what is ignored or replaced; `hash` and `files` identify
-/// the files read. Throws Error with its location (file, line and column; in glTF files file and JSON pointer) if the
-/// file, or one that it names, is invalid.
+/// each also gzipped (.gz). The description's `warnings` list the features that are ignored or replaced; `hash` and
+/// `files` identify the files read. Throws Error with its location (file, line and column; in glTF files file and JSON
+/// pointer) if the file, or one that it names, is invalid.
 SceneDescription read_scene(const std::filesystem::path& path, const ReadOptions& options = {});
 
 /// A scene file that is read once and yields the scene at several times of its animation.
@@ -124,7 +124,7 @@ struct SceneEdits {
   std::map<description::Index, description::AreaLight> area_lights{};
   std::map<description::Index, description::Light> lights{};
   std::map<description::Index, AnimatedTransform> instances{};  ///< object to world
-  /// As by `replace_environment`; `lights` then indexes the lights after the replacement.
+  /// A replacement as by `replace_environment`; `lights` then indexes the lights after it.
   std::optional<EnvironmentChoice> environment{};
   /// A number of your choice that identifies these edits of this scene; needed only to resume states of the edited
   /// scene in another process.
@@ -139,8 +139,8 @@ void scale_light(description::Light& light, float factor);
 void scale_light(description::AreaLight& light, float factor);
 
 /// The scene with replacements. It shares geometry, acceleration structures, images and media with the old scene, which
-/// does not change: the time depends on the numbers of materials, lights and instances, not on that of triangles. The
-/// first edit of an instance also builds an acceleration structure for the shapes that are not instanced.
+/// does not change: the time depends on the numbers of materials, lights and instances, not on the number of triangles.
+/// The first edit of an instance also builds an acceleration structure for the shapes that are not instanced.
 ///
 /// Throws Error for indices out of range, and for edits that require the scene to be rebuilt: a material that becomes
 /// or was an interface or hair, or gets another interior medium; a new transform for an instance that emits or was not
@@ -182,7 +182,7 @@ SceneModel model_of(const Scene& scene);
 std::optional<float> depth_at(const Scene& scene, const ViewDescription& view, const ViewOptions& options = {},
                               const std::optional<Vec2>& pixel = {});
 
-/// What a scene with this view requests but does not get: warnings of reading and building, and media that are
+/// Warnings about a scene with this view: unsupported features found while reading and building, and media that are
 /// inconsistent along rays from the camera and to the lights.
 std::vector<description::Warning> warnings_of(const Scene& scene, const ViewDescription& view);
 

@@ -22,7 +22,7 @@ namespace lanthorn {
 
 struct Team;
 
-/// Backup that allows abandoning running passes.
+/// Which backup of the film a render keeps, so that it can abandon running passes.
 enum class Undo : std::uint8_t {
   /// A copy of the film, if the passes take at least a second and 50 times as long as the copy, and if the copy fits
   /// into a quarter of the free memory.
@@ -38,8 +38,8 @@ struct StopRule {
   /// Bound of the picture's error (`ErrorEstimate::is_below`). Checked only at predetermined numbers of passes, so that
   /// the picture does not depend on the machine's speed.
   std::optional<double> noise{};
-  /// The error that `noise` bounds; empty: that of the noisy picture. `DenoisedLooks` makes it that of the denoised
-  /// one. Called after every third of the predetermined numbers of passes.
+  /// Estimates the error that `noise` bounds; empty: the error of the noisy picture is used. `DenoisedLooks` estimates
+  /// the error of the denoised picture. Called after every third of the predetermined numbers of passes.
   std::function<ErrorEstimate(const RenderState&)> error_of{};
   /// Stops after the running passes; at least one pass is rendered.
   const std::atomic<bool>* interrupted = nullptr;
@@ -100,14 +100,14 @@ class Session {
 
   /// The stop rule that follows from options and scene.
   const StopRule& plan() const;
-  /// What the scene requests but does not get, and light that the method cannot render.
+  /// Unsupported features of the scene, and light that the method cannot render.
   std::vector<description::Warning> warnings() const;
 
   /// Renders those passes of `stop.passes` that are not done yet.
   RenderStatistics render(const StopRule& stop, const Observer& observer = {});
   /// Renders according to `plan`.
   RenderStatistics render(const Observer& observer = {}) { return render(plan(), observer); }
-  /// Renders the next pass. Returns false if `stop` ended it: the picture is then that of the earlier passes.
+  /// Renders the next pass. Returns false if `stop` ended it: the picture then contains only the earlier passes.
   bool render_pass();
   /// Abandons the running pass of `render_pass` within milliseconds, or the next one if none is running.
   void stop();

@@ -65,7 +65,7 @@ StateSummary summarize(const RenderState& state);
 /// color; `bias` is the estimated error of photon methods that averaging passes does not reduce.
 Image picture_of(const RenderState& state);
 
-/// As `picture_of`, without the layers `error` and `bias`, which cost about as much as all the others.
+/// Like `picture_of`, without the layers `error` and `bias`, which cost about as much as all other layers.
 Image picture_without_error(const RenderState& state);
 
 /// A picture of this state, extended by what `denoise` needs: for each layer of light and of features a layer
@@ -73,7 +73,7 @@ Image picture_without_error(const RenderState& state);
 /// that belongs to this half.
 Image with_noise(const RenderState& state, const Image& picture);
 
-/// As `with_noise` of the picture and all pixels around it that were rendered for `denoise` (ViewOptions::margin);
+/// Like `with_noise`, for the picture with all pixels around it that were rendered for `denoise` (ViewOptions::margin);
 /// nullopt if there are none.
 std::optional<Image> with_margin(const RenderState& state);
 
@@ -101,13 +101,14 @@ class SavedState {
 
   /// Sorted and disjoint.
   const std::vector<PassRange>& passes() const;
-  /// As `lanthorn::identity_difference`.
+  /// Like `lanthorn::identity_difference`.
   std::optional<std::string> identity_difference(const RenderState& other) const;
 
   /// Loads the whole state.
   std::shared_ptr<RenderState> load() const;
-  /// As `lanthorn::merge_into`. The sums of `sum` are invalid, although its passes stay the same, if Error says that
-  /// the file is damaged or unreadable; the constructor misses this only for a forged checksum or a failing disk.
+  /// Like `lanthorn::merge_into`. If Error says that the file is damaged or unreadable, the sums of `sum` are invalid,
+  /// although its passes stay the same. The constructor misses such damage only if the checksum is forged or the disk
+  /// is failing.
   void merge_into(RenderState& sum) const;
 
  private:

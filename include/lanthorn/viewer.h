@@ -27,7 +27,7 @@ class ViewerUnavailable : public Error {
   using Error::Error;
 };
 
-/// The offline render that corresponds to what the window shows.
+/// The offline render that corresponds to the picture in the window.
 struct ShownRender {
   std::filesystem::path scene;                 ///< its file
   RenderOptions options;                       ///< method and parameters, resolution, photons, seed, depth

@@ -58,7 +58,7 @@ from ._lanthorn import (
 def render(scene, *, denoise=False, **options):
     """Renders the scene and returns the Picture.
 
-    denoise: returns the denoised picture. options: as of Session, such as noise=0.02, passes=64, seconds=10,
+    denoise: returns the denoised picture. options: the options of Session, such as noise=0.02, passes=64, seconds=10,
     integrator="vcm", resolution=(640, 360). Ctrl-C raises KeyboardInterrupt after the current pass; its attribute
     `picture` holds the Picture up to then, or None before the end of the first pass.
     """

@@ -4,15 +4,15 @@
 
 Usage: blender -b --factory-startup --python equal_time.py -- FOLDER NAME METHOD SECONDS WIDTH [SEED]
 METHOD: "cycles-default"; "cycles", with no setting that darkens caustics; "cycles-mnee", also with shadow caustics;
-"cycles-mnee-point", and lamps without a size, since Cycles 3.4 misses others inside two surfaces; or a method of Lanthorn:
-"path", "bdpt", "auto".
-Reads FOLDER/NAME.blend; writes FOLDER/NAME-METHOD.exr (linear), .png (as Blender shows it) and .json (what was measured).
-A seed other than 0 is part of these names. Two short renders, which are not counted, tell how many samples or passes take
-SECONDS of processor time.
+"cycles-mnee-point", the same with lamps of size 0, since Cycles 3.4 finds no lamp with a size inside two surfaces;
+or a method of Lanthorn: "path", "bdpt", "auto".
+Reads FOLDER/NAME.blend; writes FOLDER/NAME-METHOD.exr (linear), .png (as Blender shows it) and .json (measurements).
+A seed other than 0 is part of these names. Two short renders, whose time does not count, determine how many samples or
+passes take SECONDS of processor time.
 
 Usage: blender -b --factory-startup --python equal_time.py -- FOLDER NAME bare
-Renders the scene without its glass or metal by Cycles and by `path`, and prints the ratio of the means: 1 if both have the
-same lamps, cameras, fog and floors.
+Renders the scene without its glass or metal by Cycles and by `path`, and prints the ratio of the means: 1 if both
+render lamps, cameras, fog and floors alike.
 """
 import json
 import os

@@ -199,7 +199,7 @@ def lens(radius, curvature, made_of, steps=24):
 
 
 def beams():
-    """Fog below a board with three holes: light passes the first freely, the others through a ball and a lens."""
+    """Fog below a board with three holes: light passes freely through one, through a ball and a lens in the others."""
     scene = start()
     scene.world.color = (0.004, 0.005, 0.007)
     put("floor", plane(8, material("floor", "Diffuse", Color=(0.5, 0.5, 0.5, 1))))

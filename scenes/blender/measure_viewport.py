@@ -3,8 +3,8 @@
 """Measures how long the first picture of the viewport takes, by phases, for meshes of several sizes.
 
 Usage: blender -b --factory-startup --python measure_viewport.py -- [TRIANGLES...]
-Prints a line for each phase: seconds on the clock, and processor seconds of Blender and of the program. It does what
-viewport.py does, without a window.
+Prints a line for each phase: seconds on the clock, and processor seconds of Blender and of the program. It works like
+viewport.py, but without a window.
 """
 import os
 import sys

@@ -6,7 +6,8 @@
 Usage: scenes/gallery/make_gallery_meshes.py [--check] [FOLDER]
 
 Writes into FOLDER, by default meshes/ beside this script; with --check writes nothing and exits 1 if a file's content
-differs (compressed bytes may: they depend on zlib). Lengths are in centimetres, z is up. It needs Python 3 alone.
+differs (compressed bytes may differ, because they depend on zlib). Lengths are in centimetres, z is up. It needs only
+Python 3.
 """
 import math
 import sys

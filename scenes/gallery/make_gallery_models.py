@@ -7,7 +7,7 @@ with a stencil and a lens, an aquarium.
 Usage: scenes/gallery/make_gallery_models.py [--check] [FOLDER]
 
 Writes into FOLDER, by default meshes/ beside this script; with --check writes nothing and exits 1 if a file's content
-differs (compressed bytes may: they depend on zlib). z is up. It needs Python 3 alone.
+differs (compressed bytes may differ, because they depend on zlib). z is up. It needs Python 3 alone.
 """
 import math
 import random

@@ -6,7 +6,7 @@
 Usage: scenes/lectures/make_models.py [--check] [FOLDER]
 
 Writes into FOLDER, by default meshes/ beside this script; with --check writes nothing and exits 1 if a file's content
-differs (compressed bytes may: they depend on zlib). Things are in metres unless said otherwise, z is up.
+differs (compressed bytes may differ, because they depend on zlib). Lengths are in metres unless noted; z is up.
 """
 import math
 import random

@@ -54,8 +54,8 @@ std::string unescaped(std::string_view text) {
   return plain;
 }
 
-// The path of this process's group in the hierarchy that has `controller`, or in that of version 2 if `controller` is
-// empty. Parses lines "4:cpu,cpuacct:/path" and "0::/path".
+// The path of this process's group in the hierarchy that has `controller`, or in the hierarchy of version 2 if
+// `controller` is empty. Parses lines "4:cpu,cpuacct:/path" and "0::/path".
 std::optional<std::string> group_path(const fs::path& root, std::string_view controller) {
   std::ifstream in(root / "proc/self/cgroup");
   for (std::string line; std::getline(in, line);) {

@@ -161,7 +161,7 @@ OpenFile create_temporary(const fs::path& target, mode_t mode, const fs::path& p
 }
 
 // Gives the new file the old one's owner, group and mode. If the group cannot be kept, the new group gets only the
-// permissions of others.
+// permissions that all other users have.
 void keep_permissions(int descriptor, const struct stat& old) {
   struct stat now {};
   if (::fstat(descriptor, &now) != 0) return;

@@ -12,7 +12,7 @@
 
 namespace lanthorn {
 
-/// Bytes that this process can still allocate: the minimum of what the machine, its control groups
+/// Bytes that this process can still allocate: the minimum of the memory that the machine, its control groups
 /// (base/control_group.h) and its address-space limit (ulimit -v) leave; nullopt if none of them is known.
 std::optional<std::uint64_t> available_memory();
 

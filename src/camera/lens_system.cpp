@@ -86,7 +86,7 @@ LensSystem::Cardinal LensSystem::cardinal_points() const {
 }
 
 // Solves 1/x + 1/(L - x) = 1/f, with x the film's distance from the film-side principal plane and L - x the object's
-// distance from the other plane. Of the two positions in focus, takes the one near the lens, as cameras do.
+// distance from the other plane. There are two positions in focus; takes the one near the lens, as cameras do.
 void LensSystem::focus(double distance, const SourceLocation& location) {
   const Cardinal lens = cardinal_points();
   focal_length_ = lens.focal_length;

@@ -96,7 +96,7 @@ class PixelPlane {
     });
     return out;
   }
-  /// Of the four such squares with this pixel in a corner, the one with the least `value`.
+  /// Among the four such squares with this pixel in a corner, the one with the least `value`.
   template <class Value>
   std::size_t choose_corner(std::size_t x, std::size_t y, Value&& value) const {
     const std::size_t left = x - std::min(x, window_radius), up = y - std::min(y, window_radius);

@@ -29,7 +29,7 @@ struct Features {
   bool is_hit() const { return depth.has_value(); }
 
   /// Calls `visit(name, value)` for each layer, in their order in films. Numbers are averaged over the samples that hit
-  /// a surface, all others over all samples.
+  /// a surface, all other features over all samples.
   template <class Visit>
   constexpr void for_each(Visit&& visit) const {
     visit("albedo", albedo);

@@ -20,7 +20,7 @@ namespace {
 constexpr int largest_radiance_bits = 40;
 constexpr double number_steps = 0x1p28;  // also for positions: coarser but larger range, from millimetres to kilometres
 
-// Slot of the hit count among a pixel's sample sums, after those of its light.
+// Slot of the hit count, counted from the end of the light's sums among a pixel's sample sums.
 constexpr std::size_t hit_slot = feature_channels;
 template <class Value>
 constexpr double steps_of = is_number<Value> || std::is_same_v<Value, Position> ? number_steps : unit_steps;

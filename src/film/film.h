@@ -60,7 +60,7 @@ struct PixelSample {
 struct FilmContents {
   /// Names of the light layers, 1 to most_light_layers. `color` is their exact sum, by definition.
   std::vector<std::string> light{"light"};
-  /// Names of further layers, which hold a part of the same light again. `color` excludes them.
+  /// Names of further layers. They repeat a part of the light of the layers above, so `color` excludes them.
   std::vector<std::string> repeated{};
   Decomposition decomposition{};
   bool splats = false;  ///< `splat` will be called

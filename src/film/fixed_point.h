@@ -21,7 +21,7 @@ inline void saturating_add(std::int64_t& sum, std::int64_t steps) {
   sum = std::clamp(sum + steps, -sum_limit, sum_limit);
 }
 
-/// As `saturating_add`, for a sum shared by threads.
+/// Like `saturating_add`, for a sum shared by threads.
 inline void saturating_add_shared(std::int64_t& shared, std::int64_t steps) {
   const std::atomic_ref<std::int64_t> sum(shared);
   if (std::abs(sum.load(std::memory_order_relaxed)) >= sum_limit) return;

@@ -250,7 +250,7 @@ Exposures exposures(const Plane<Vec3>& reference) {
   for (const Vec3& c : reference.values)
     if (const float y = luminance({c.x, c.y, c.z}); y > 0) luminances.push_back(y);
   if (luminances.empty()) return {};
-  // Black pixels would require infinite exposure. If most pixels are black, the median is taken over the others.
+  // Black pixels would require infinite exposure. If most pixels are black, the median is taken over the other pixels.
   const std::size_t black = reference.values.size() - luminances.size();
   std::sort(luminances.begin(), luminances.end());
   const auto at_rank = [&](std::size_t rank) {

@@ -9,7 +9,7 @@
 
 namespace lanthorn::gl {
 
-/// OpenGL is not usable here; the message says what was found.
+/// OpenGL is not usable here; the message lists the devices and why each is unusable.
 class Unavailable : public Error {
  public:
   using Error::Error;

@@ -28,7 +28,7 @@ class StageTimer {
   void begin_frame();
   /// Begins a stage, ending the one before it.
   void begin(std::string stage);
-  /// Ends a stage; what follows belongs to no stage until the next begins.
+  /// Ends a stage; commands belong to no stage until the next one begins.
   void end();
   /// Times of the stages of the last completed frame, in order; waits for the GPU. Empties the timer.
   std::vector<StageTime> collect();

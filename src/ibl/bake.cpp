@@ -36,7 +36,7 @@ void check_settings(const IblSettings& settings) {
                             settings.smallest_size, settings.specular_size));
 }
 
-// As fine as the image, but no finer than twice the requested size.
+// The source is as fine as the image, but no finer than twice the requested size.
 int source_size(const Environment& environment, const IblSettings& settings) {
   const int asked = settings.specular ? settings.specular_size : size_for_irradiance;
   int size = least_source_size;

@@ -24,11 +24,11 @@
 //
 // Both depend only on n·v and alpha: the table.
 //
-// Visible normals are sampled as by Dupuy & Benyoub 2023. Scaling x and y by alpha turns the distribution into that of
-// a hemisphere's normals, and v into v'. A parallel beam from v' hits points of the hemisphere in proportion to their
-// projected areas, that is, to their visibility. A sphere mirrors a parallel beam uniformly into all directions; the
-// upper hemisphere mirrors it into the cap z > -v'_z. So sample the mirrored ray u uniformly in that cap. The normal is
-// half way between u and v':
+// Visible normals are sampled as by Dupuy & Benyoub 2023. Scaling x and y by alpha turns the distribution into the
+// distribution of a hemisphere's normals, and v into v'. A parallel beam from v' hits points of the hemisphere in
+// proportion to their projected areas, that is, to their visibility. A sphere mirrors a parallel beam uniformly into
+// all directions; the upper hemisphere mirrors it into the cap z > -v'_z. So sample the mirrored ray u uniformly in
+// that cap. The normal is half way between u and v':
 //
 //   h' = u + v',     h = (alpha h'_x, alpha h'_y, h'_z) / its length.
 //

@@ -11,7 +11,7 @@
 namespace lanthorn {
 
 /// The texels to check in a cube map of this size: first the one that faces the brightest texel of the environment,
-/// then others spread over the map.
+/// then texels spread over the map.
 std::vector<CubeTexel> checked_texels(const Environment& environment, int size, int count);
 
 /// Cosine-weighted sums over the environment, normalised.

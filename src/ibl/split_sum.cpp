@@ -19,7 +19,7 @@ constexpr RoughnessMapping mapping = RoughnessMapping::square;
 
 IblSettings split_sum_settings(const Image& environment) {
   IblSettings settings;
-  // As fine as the environment, within bounds of memory and time.
+  // The map is as fine as the environment, within these bounds of memory and time.
   constexpr unsigned least_size = 256, most_size = 1024;
   const auto texels_per_face = static_cast<unsigned>(environment.width) / 4;
   settings.specular_size = static_cast<int>(std::clamp(std::bit_ceil(texels_per_face), least_size, most_size));

@@ -88,7 +88,7 @@ struct TileCacheCounts {
 struct ImageCodec {
   /// `bytes` must outlive the result.
   OpenImage (*open)(std::string_view bytes, const char* format);
-  /// As `open`, for a file on disk.
+  /// Like `open`, for a file on disk.
   OpenImage (*open_file)(std::shared_ptr<std::FILE> file, const char* format);
   /// Encodes a file with `text` as its attribute ImageDescription.
   std::vector<unsigned char> (*encode)(const char* format, const CodecColors& colors, const std::string& text);

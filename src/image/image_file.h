@@ -24,8 +24,8 @@ class ImageFile {
   /// Error with `where` if the format is unknown, if the file is damaged, deep or a volume, if it has more than
   /// `max_pixels`, or if it announces more data than 256 MiB plus 4096 times its size.
   ImageFile(std::string_view bytes, std::string what, SourceLocation where, std::uint64_t max_pixels);
-  /// As the first constructor for a file on disk, positioned at its start, which is not read into memory as a whole
-  /// (except Radiance pictures).
+  /// Like the first constructor, for a file on disk, positioned at its start. The file is not read into memory as a
+  /// whole (except Radiance pictures).
   ImageFile(const std::shared_ptr<std::FILE>& file, std::string what, SourceLocation where, std::uint64_t max_pixels);
 
   const ImageHeader& header() const { return image_.header; }

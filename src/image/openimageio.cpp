@@ -28,7 +28,8 @@ namespace {
 
 std::atomic<PngMessage> take_png_error{nullptr};
 
-// libpng prints a line of its own if OpenImageIO's function returns; this one does not return (png_error(3)).
+// libpng prints its own line if the error function returns, as OpenImageIO's does; this one does not return
+// (png_error(3)).
 void take_error_and_leave(png_struct_def* png, const char* message) {
   if (const PngMessage take = take_png_error) take(png, message);
   static const auto jump = reinterpret_cast<PngJump>(dlsym(RTLD_NEXT, "png_longjmp"));

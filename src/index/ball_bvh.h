@@ -22,9 +22,9 @@
 
 namespace lanthorn {
 
-/// A bounding volume hierarchy of balls. Boxes and a single-precision test exclude what is clearly outside; double
-/// precision decides. The result is the set of balls that satisfy the conditions below, up to rounding of doubles.
-/// Balls exactly on the boundary are included.
+/// A bounding volume hierarchy of balls. Boxes and a single-precision test exclude balls that are clearly outside;
+/// double precision decides about the rest. The result is the set of balls that satisfy the conditions below, up to
+/// rounding of doubles. Balls exactly on the boundary are included.
 class BallBvh {
  public:
   /// Balls must be finite, with radii >= 0, fewer than 2^32.

@@ -51,10 +51,10 @@ inline std::optional<LineCrossing> crossing_of(const RaySegment& ray, const Beam
 /// leaf, and a node bounds its pieces by the convex hull of two boxes, one around their starts and one around their
 /// ends. This gives tight bounds for bundles of long thin beams in any direction, whose boxes would overlap nearly
 /// everything (compare the oriented boxes for hair of Woop et al. 2014). Bounds and pieces are rounded to lattices,
-/// because searches are limited by memory. Bounds and a single-precision test exclude what is clearly outside; double
-/// precision decides, and assigns each point to one piece. The result is the set of beams that satisfy the conditions
-/// below, up to rounding of doubles. Beams have flat ends, so that a kernel across a beam has the same integral at each
-/// of its points. Beams exactly on the boundary are included.
+/// because searches are limited by memory. Bounds and a single-precision test exclude pieces that are clearly outside.
+/// Double precision decides about the rest, and assigns each point to one piece. The result is the set of beams that
+/// satisfy the conditions below, up to rounding of doubles. Beams have flat ends, so that a kernel across a beam has
+/// the same integral at each of its points. Beams exactly on the boundary are included.
 class BeamBvh {
  public:
   /// Beams must be finite, with lengths and radii >= 0 and directions of unit length up to rounding; fewer than 2^28.

@@ -79,7 +79,7 @@ class HashGrid {
   static constexpr std::size_t max_ranges = 3 * 3 * 2;
 
   /// Cell coordinate, clamped to the grid. Monotonic in x, because a difference followed by a product cannot be fused.
-  /// A point between two bounds therefore always lies in a cell between those of the bounds.
+  /// A point between two bounds therefore always lies in a cell between the cells of the bounds.
   std::uint32_t cell(int axis, float x) const {
     const float c = (x - origin_[axis]) * per_cell_[axis];
     return c > 0 ? static_cast<std::uint32_t>(std::min(c, last_cell_[axis])) : 0;
@@ -110,7 +110,7 @@ class HashGrid {
   struct KeyedPoint {
     std::uint32_t key, number;
   };
-  /// The points sorted by groups of 2^shift consecutive blocks; those of group g begin at start[g].
+  /// The points sorted by groups of 2^shift consecutive blocks; group g begins at start[g].
   struct Groups {
     int shift;
     std::vector<std::uint32_t> start;

@@ -36,8 +36,8 @@ std::unique_ptr<NumberedPoint[]> numbered(std::span<const Point> points);
 /// The axis (0, 1, 2) along which to split `points`; at least one point.
 unsigned split_axis(std::span<const NumberedPoint> points, SplitRule rule);
 
-/// Reorders the points so that those before `rank` have coordinates along `axis` <= that of the point at `rank`, and
-/// those behind it >= that.
+/// Reorders the points by their coordinate along `axis`: points before `rank` have coordinates <= the one of the point
+/// at `rank`, points behind it >=.
 void split_at(std::span<NumberedPoint> points, std::size_t rank, unsigned axis);
 
 }  // namespace lanthorn

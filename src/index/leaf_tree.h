@@ -43,7 +43,8 @@ std::size_t widest_dimension(std::span<const Item> items) {
     std::memcpy(values.data(), static_cast<const void*>(&items[i]), sizeof(values));
     return Lanes(values);
   };
-  // With an odd number of items, the last ones may be read twice. There are more items than lanes.
+  // Starts with the last items; if the number of items is odd, one of them is read again below, which does no harm.
+  // There are more items than lanes.
   Lanes low = load(items.size() - together), high = low;
   for (std::size_t i = 0; i + together <= items.size(); i += together) {
     const Lanes values = load(i);

@@ -23,8 +23,8 @@ class SphereOctree {
 
   void insert(std::uint32_t id, const Point& centre, float radius) { insert(0, {centre_, half_}, id, centre, radius); }
 
-  /// Calls `visit(id)` for every sphere that contains the point, and possibly others, in an order that depends only on
-  /// the insertions.
+  /// Calls `visit(id)` for every sphere that contains the point, and possibly for other spheres, in an order that
+  /// depends only on the insertions.
   template <class Visit>
   void for_each_around(const Point& p, Visit&& visit) const {
     Cube cube{centre_, half_};

@@ -98,22 +98,23 @@ class Integrator {
                                  const PhaseObserver& begin) = 0;
   /// Message for the user about light of this scene that the method does not find. Empty if it finds all light.
   virtual std::string limitation(const Scene& /*scene*/) const { return {}; }
-  /// Message about what the preparation has found in this job, for the user. Empty if there is nothing to say.
+  /// Message for the user about the results of the preparation for this job. Empty if there is nothing to say.
   virtual std::string remark() const { return {}; }
-  /// What the preparation has measured in this job: the text of a JSON object, for reports. Empty if there is nothing
-  /// to report.
+  /// Measurements of the preparation for this job: the text of a JSON object, for reports. Empty if there is nothing to
+  /// report.
   virtual std::string findings() const { return {}; }
   /// The film's layers for this scene and whether the method splats. Default: the layers of the path classes.
   virtual FilmContents film_contents(const Scene& scene) const { return path_layers(scene); }
-  /// False if the method has an error that passes leave and its film does not estimate (FilmContents::bias).
+  /// False if the method has an error that does not vanish with more passes and that its film does not estimate
+  /// (FilmContents::bias).
   virtual bool knows_bias() const { return true; }
   /// True if all light of a pass, or of its part, has the wavelengths of `draw_for_pass`.
   virtual bool passes_share_wavelengths() const { return false; }
-  /// True if `render_pass` may run for several passes at once, each called by a thread of its own.
+  /// True if `render_pass` may run for several passes at once, each on its own thread.
   virtual bool passes_may_overlap() const { return false; }
   /// False if a pass depends on earlier ones. Such a render can be resumed but not sharded.
   virtual bool passes_are_independent() const { return true; }
-  /// False if a pixel may change with the part of the film that is rendered, beyond the part that is shown.
+  /// False if a pixel may depend on which part of the film is rendered. Such methods render no margin around a crop.
   virtual bool crops_are_exact() const { return true; }
   /// Peak memory with these settings. Zero for methods that do not store light paths.
   virtual MemoryUse memory_use(const RenderSettings& /*settings*/) const { return {}; }

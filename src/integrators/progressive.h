@@ -86,8 +86,8 @@ class PassPhotonSource {
   Pool<PhotonTracer> tracers_;
 };
 
-/// The eye path. At each vertex, next-event estimation finds direct light. Photons give the indirect light of wide
-/// lobes, and the walk goes on for that of narrow ones, direction by direction (`LobeSplit`).
+/// The eye path. At each vertex, next-event estimation finds direct light. Photons provide the indirect light of wide
+/// lobes, and the walk continues for the light of narrow lobes, direction by direction (`LobeSplit`).
 ///
 /// `gather(vertex, split)` returns the GatheredLight.
 template <class Gather>
@@ -95,7 +95,7 @@ struct GatherVisitor : PathVisitor {
   Gather gather;
   bool adds_all = true;  ///< false: the light of photons alone, along the same eye path
 
-  // Without photons in media, the walk continues there as that of a path tracer.
+  // Without photons in media, the walk continues there like a path tracer's.
   Continuation operator()(const MediumVertex& vertex) {
     if (adds_all) return PathVisitor::operator()(vertex);
     return vertex.may_scatter ? Continuation::go_on() : Continuation::stop();

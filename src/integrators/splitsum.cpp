@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Split-sum shading (Karis 2013), as in real-time engines: the first surface under the maps of the environment. Beside
-// `path`, it shows the error of the approximation. The surface sees nothing but the environment: no shadows, no other
-// lights, no second scattering.
+// Split-sum shading (Karis 2013), as in real-time engines: shades the first surface with the prefiltered maps of the
+// environment. Comparing it with `path` shows the error of the approximation. The surface sees nothing but the
+// environment: no shadows, no other lights, no second scattering.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -115,7 +115,8 @@ class SplitSumShader final : public Integrator {
   std::set<std::string> missing_;
 };
 
-// Collected along one eye path per point of a grid in the window.
+// Follows one eye path for each point of a grid in the window, and collects the features along it that split-sum
+// shading leaves out.
 std::set<std::string> SplitSumShader::missing_of(const RenderJob& job) {
   constexpr int grid = 64;
   const PixelWindow& window = job.view.window;

@@ -21,7 +21,7 @@ struct HitPoints {
   bool fixed = false;  // the same in every pass
   std::uint32_t count = 1;
 
-  // Number of the eye path among those of its pixel.
+  // Number of the eye path among all eye paths of its pixel.
   std::uint32_t path(std::uint32_t pass, std::uint32_t hit) const { return fixed ? hit : pass; }
 };
 

@@ -26,7 +26,7 @@ struct Part {
 
 float size_of(const Bounds& box) { return box.empty() ? 0 : std::sqrt(length_squared(box.extent())); }
 
-// The axis along which a box is thin, if it is wide along both others.
+// The axis along which a box is thin, if the box is wide along both other axes.
 std::optional<int> thin_axis(const Bounds& box) {
   constexpr float thin = 0.05f, wide = 0.1f;
   const Vec3 extent = box.extent();

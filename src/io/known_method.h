@@ -12,8 +12,8 @@
 
 namespace lanthorn {
 
-/// What a reader needs of a rendering method to check its parameters in a scene file. Readers themselves do not depend
-/// on any method.
+/// The facts about a rendering method that a reader needs to check the method's parameters in a scene file. Readers
+/// themselves do not depend on any method.
 struct KnownMethod {
   std::vector<ParameterInfo> parameters;
   /// Throws Error for values that the method does not accept.

@@ -45,8 +45,8 @@ struct ModelSamples {
 
   bool is_back(std::size_t i, const Point& eye) const;
   bool is_lit(std::size_t i, const Point& eye) const;
-  /// Weight of the sample in a sum over what an eye sees. Surfaces seen at grazing angles, backs of one-sided surfaces
-  /// and unlit sides count less.
+  /// Weight of the sample in a sum over the surfaces that an eye sees. Surfaces seen at grazing angles, backs of
+  /// one-sided surfaces and unlit sides count less.
   double weight(std::size_t i, const Point& eye) const;
   /// True if the sample lies on a face of the bounding box, within this fraction of the box's extent.
   bool is_on_box(std::size_t i, float tolerance) const;

@@ -453,7 +453,7 @@ class BodyReader {
     const std::uint32_t first = corner(p.type), second = corner(p.type);
     std::uint32_t last = corner(p.type);
     if (count == 4) {
-      // The file lists corners around the face, a bilinear patch by rows.
+      // The file lists the corners in order around the face; a bilinear patch stores them row by row.
       faces.quads.push_back({first, second, corner(p.type), last});
       return;
     }

@@ -20,7 +20,7 @@ namespace gltf {
 class File;
 }  // namespace gltf
 
-/// As `SceneFile`, but ignores `ReadOptions::window_glass` and the environment.
+/// Like `SceneFile`, but ignores `ReadOptions::window_glass` and the environment.
 class SceneSource {
  public:
   SceneSource(const std::filesystem::path& path, const ReadOptions& options, FindMethod methods);

@@ -90,8 +90,8 @@ std::string extension_of(const SceneDescription& scene) {
   return lower_extension(lower_extension(path) == ".gz" ? path.stem() : path);
 }
 
-// glTF and OBJ worlds are right-handed, and may not have a camera yet. For others, the camera's transform tells, since
-// camera space is left-handed.
+// glTF and OBJ worlds are right-handed, and may not have a camera yet. For other formats, the camera's transform tells,
+// since camera space is left-handed.
 bool is_left_handed(const SceneDescription& scene) {
   const std::string extension = extension_of(scene);
   const bool is_model = extension == ".gltf" || extension == ".glb" || extension == ".obj";
@@ -110,7 +110,7 @@ Transform placement(const SceneDescription& scene, const EnvironmentChoice& choi
 
 bool is_environment(const Light& light) { return std::holds_alternative<InfiniteLight>(light.node); }
 
-// Replaces the first environment in the list of lights, so that the names of the others do not change.
+// Replaces the first environment in the list of lights, so that the names of the other lights do not change.
 void replace_lights(std::vector<Light>& lights, Light light) {
   const auto first = std::find_if(lights.begin(), lights.end(), is_environment);
   if (first == lights.end()) {

@@ -101,7 +101,7 @@ class Walls {
     constexpr float most = 0.5f;
     return share_[static_cast<std::size_t>(axis)][static_cast<std::size_t>(side)] < most;
   }
-  /// True for a box with one to three open faces and all others closed.
+  /// True for a box with one to three open faces whose other faces are closed.
   bool make_an_open_room() const {
     constexpr float least = 0.8f;
     int closed = 0, open = 0;
@@ -277,7 +277,7 @@ StandInView::Inside with_lamp(const ModelSamples& model, const std::vector<Panor
   return {eye.eye(), best->eye(), std::min(best->clearance() / 3, largest * model.radius), model.radius / 2};
 }
 
-// True if the walls around these positions are those of the whole model, not of a figure or a lamp in it.
+// True if the walls around these positions belong to the whole model, not to a figure or a lamp in it.
 bool enclose_the_model(const ModelSamples& model, const std::vector<Panorama>& places) {
   constexpr float least = 0.8f;
   Bounds walls;

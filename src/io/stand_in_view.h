@@ -28,8 +28,8 @@ struct StandInView {
 };
 
 /// The view that shows most of the scene's triangle meshes. Backs of materials in `one_sided` should not be shown; if
-/// the scene has lights of its own, sides that they do not illuminate count little. Outside views are from the front,
-/// +z, and 15 degrees above, unless another of a few directions shows much more.
+/// the scene has its own lights, sides that they do not illuminate count little. Outside views are from the front, +z,
+/// and 15 degrees above, unless another of a few directions shows much more.
 ///
 /// A room that is open on some side, with at least three walls, including floor and ceiling, is viewed from the
 /// direction that shows the most separate meshes, if these are many more than from the front: through an open side,

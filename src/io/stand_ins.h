@@ -12,7 +12,7 @@ namespace lanthorn {
 
 /// True if the emissive surfaces of these area lights illuminate the rest of the scene. Only emitters with a radiance
 /// above 1 count, since dimmer ones merely look bright: their light, spread evenly over all other surfaces, must be at
-/// least a twentieth of what a sky of radiance 1 would give.
+/// least a twentieth of the light of a sky of radiance 1.
 bool is_lit_by(const SceneDescription& scene, std::span<const description::Index> lamps);
 
 /// What a scene lacks.
@@ -29,8 +29,8 @@ struct ModelFile {
   StandIns lacking;
 };
 
-/// Adds what the scene lacks, with a single warning. The user's environment replaces only the studio; it does not
-/// affect the camera.
+/// Adds the camera and the lights that the scene lacks, with a single warning. The user's environment replaces only the
+/// studio; it does not affect the camera.
 ///
 /// The camera has a field of view of 40 degrees and +y up. It frames all triangle meshes except grounds from the best
 /// side, whatever the film's aspect ratio (see `Grounds` and `stand_in_view`). In a closed room it is inside, with 60

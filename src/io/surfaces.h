@@ -20,14 +20,14 @@ namespace lanthorn {
 Bounds bounds_of(const SceneDescription& scene, const Transform& from_world = {});
 /// Bounding box of each shape, in the space that shapes are placed in; empty for other kinds of shapes.
 std::vector<Bounds> bounds_of(const std::vector<description::Shape>& shapes);
-/// As the first function, for several spaces.
+/// Like the first function, for several spaces.
 std::vector<Bounds> bounds_of(const SceneDescription& scene, std::span<const Transform> from_world);
 
 /// All triangle meshes of a scene, positioned as when the shutter opens. Refers to the description.
 class Surfaces {
  public:
   explicit Surfaces(const SceneDescription& scene) : Surfaces(scene, nullptr) {}
-  /// Only the meshes that emit as one of these area lights.
+  /// Includes only the meshes that emit as one of these area lights.
   Surfaces(const SceneDescription& scene, const std::set<description::Index>& area_lights)
       : Surfaces(scene, &area_lights) {}
 

@@ -30,9 +30,9 @@ struct LeavingRay {
 };
 
 /// A ray that leaves a round sphere of radius R on the side given by `outward`: first its direction, then its position
-/// on the disk that the sphere projects along it. The density, 1 / 4π times cos / πR², equals that of a uniform point
-/// and a cosine-distributed direction, 1 / 4πR² times cos / π. Here the direction depends on two of the numbers only,
-/// which guides can therefore learn.
+/// on the disk that the sphere projects along it. The density, 1 / 4π times cos / πR², equals the density of a uniform
+/// point and a cosine-distributed direction, 1 / 4πR² times cos / π. Here the direction depends on two of the numbers
+/// only, which guides can therefore learn.
 LeavingRay sample_leaving_ray(const SphereEmitter& sphere, bool outward, const Vec2& u_position,
                               const Vec2& u_direction) {
   const Direction direction = sample_uniform_sphere(u_direction);

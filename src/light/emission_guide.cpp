@@ -32,7 +32,7 @@ struct DisksAcross {
   Vec2 centre(int disk) const { return disk == AimedDisks::count - 1 ? Vec2(0) : aim; }
 };
 
-// Photons of far lights start on the disks, except those of a portal light, which start at the portal.
+// Photons of far lights start on the disks, except photons of a portal light, which start at the portal.
 bool starts_on_disks(const Light& light) { return is_far(light) && !std::holds_alternative<PortalLight>(light); }
 
 TreeDistribution::SomeNumbers numbers_of(const EmissionNumbers& u) {

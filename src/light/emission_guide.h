@@ -29,9 +29,9 @@ struct AimedDisks {
   /// Moves the photon's origin to the point of the disks for `u` in [0,1)² and scales its flux, which becomes black if
   /// the point lies outside the disk that covers the scene. Does not change `pdf_position`.
   void move(EmissionSample& emission, const Vec2& u) const;
-  /// Ratio of the density of photons along the ray through `p` to that of photons that start uniformly on the disk
-  /// covering the scene. `numbers`: density of the photons' four random numbers. `u_direction`: the two numbers of the
-  /// ray's direction, if the light has an inverse for them. `enough`: see `guided_density`.
+  /// Ratio of the density of photons along the ray through `p` to the density of photons that start uniformly on the
+  /// disk covering the scene. `numbers`: density of the photons' four random numbers. `u_direction`: the two numbers of
+  /// the ray's direction, if the light has an inverse for them. `enough`: see `guided_density`.
   float density(const Point& p, const Direction& direction, const TreeDistribution& numbers,
                 const std::optional<Vec2>& u_direction, float enough) const;
   /// Radius (m) of a disk, from 0 to count - 1.
@@ -63,8 +63,8 @@ struct EmissionGuide {
 float guided_density(const EmissionGuide& guide, const Light& light, std::uint32_t index, const EmitterHit& origin,
                      const Direction& direction, float enough = infinity);
 
-/// Samples the emission of a photon from four numbers. The densities in the sample are those of the light alone.
-/// `disks` may be null.
+/// Samples the emission of a photon from four numbers. The densities in the sample are the light's own, without the
+/// guide. `disks` may be null.
 std::optional<EmissionSample> sample_emission(const Light& light, const AimedDisks* disks,
                                               const TreeDistribution::Numbers& u, const Wavelengths& w);
 

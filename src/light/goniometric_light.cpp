@@ -38,7 +38,8 @@ EmissionNumbers GoniometricLight::invert_emission(const EmitterHit& /*one point*
   return {.direction = image->invert(map.light_from_world(direction).direction)};
 }
 
-// Exact for transforms that preserve angles; for others the distribution of photons among lights is slightly off.
+// Exact for transforms that preserve angles; for other transforms the distribution of photons among lights is slightly
+// off.
 float GoniometricLight::power() const { return luminance(intensity.rgb) * image->mean_luminance * 4 * pi; }
 
 float GoniometricLight::largest_radiance(float far2) const {

@@ -98,8 +98,8 @@ EmissionNumbers ImageInfiniteLight::invert_emission(const EmitterHit& origin, co
           image->invert(map.light_from_world(-direction).direction)};
 }
 
-// Exact for transforms that preserve angles, as scenes use; for others the distribution of photons among lights is
-// slightly off.
+// Exact for transforms that preserve angles, as scenes use; for other transforms the distribution of photons among
+// lights is slightly off.
 float ImageInfiniteLight::power() const { return scale * image->mean_luminance * 4 * pi * covering_disk_area(scene); }
 
 float ImageInfiniteLight::largest_radiance(float /*has extent*/) const { return scale * largest_value(image->texels); }

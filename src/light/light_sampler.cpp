@@ -97,7 +97,7 @@ float importance(const LightBounds& light, const Point& p, const Normal& normal)
 NormalCone unite(NormalCone a, NormalCone b) {
   if (a.cos > b.cos) std::swap(a, b);
   if (a.cos <= -1) return a;
-  // Usually b lies in a. This test finds out without trigonometry, except in borderline cases.
+  // Usually cone b lies inside cone a. This test detects that without trigonometry, except in borderline cases.
   constexpr float play = 1e-5f;
   if (dot(a.axis, b.axis) > excess(angle_of(a.cos), angle_of(b.cos)).cos + play) return a;
   const float angle_a = std::acos(std::clamp(a.cos, -1.0f, 1.0f)), angle_b = std::acos(std::clamp(b.cos, -1.0f, 1.0f));

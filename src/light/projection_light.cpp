@@ -106,7 +106,8 @@ EmissionNumbers ProjectionLight::invert_emission(const EmitterHit& /*one point*/
   return {.direction = image->invert(map.light_from_world(direction).direction)};
 }
 
-// Exact for transforms that preserve angles; for others the distribution of photons among lights is slightly off.
+// Exact for transforms that preserve angles; for other transforms the distribution of photons among lights is slightly
+// off.
 float ProjectionLight::power() const { return scale * image->integral; }
 
 float ProjectionLight::largest_radiance(float far2) const { return scale * largest_value(image->texels) / (pi * far2); }

@@ -14,7 +14,7 @@ namespace lanthorn {
 /// The factor of a diffuse emitter's radiance at the angle θ to the normal: the slats leave 1 - tan θ / tan h of it, up
 /// to the half angle h. The factor's mean over the emitter's directions is 1,
 ///   ∫ (1 - tan θ / tan h) 2 cos θ sin θ dθ = 1 - h / tan h  over [0, h],
-/// so that the power is that of the diffuse emitter.
+/// so that the power is the same as for the diffuse emitter.
 class Spread {
  public:
   /// A diffuse emitter.

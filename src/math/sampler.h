@@ -61,14 +61,14 @@ class Sampler {
                                 std::uint32_t index);
   /// Values shared by a whole pass: stratified over passes.
   static Sampler for_pass(std::uint64_t seed, std::uint32_t pass);
-  /// Path of a Markov chain: its numbers are those of `samples`, which must outlive the sampler and not change before
-  /// its end.
+  /// Path of a Markov chain: its numbers come from `samples`, which must outlive the sampler and not change before its
+  /// end.
   explicit Sampler(PrimarySamples& samples) : samples_(&samples) {}
 
   /// Moves to the first of the four dimensions of `group`.
   void seek(std::uint32_t group) { position_ = group_size * group; }
-  /// Like `seek`, but draws the group's numbers now (for an odd group also those of the group before it). Beside a long
-  /// computation that does not depend on them, they are nearly free.
+  /// Like `seek`, but draws the group's numbers now (for an odd group also the numbers of the group before it). Beside
+  /// a long computation that does not depend on them, they are nearly free.
   void draw_ahead(std::uint32_t group) {
     seek(group);
     if (samples_ == nullptr && !is_drawn()) draw();

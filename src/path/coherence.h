@@ -9,7 +9,8 @@
 namespace lanthorn {
 
 /// Share of Henyey & Greenstein's phase function that counts as wide, in analogy to `spread_of_lobe`: 1 / alpha² is the
-/// ratio of its second moment to that of isotropic scattering, (1 + g²) / (1 - g²)². 1 for isotropic scattering.
+/// ratio of its second moment to the second moment of isotropic scattering, (1 + g²) / (1 - g²)². 1 for isotropic
+/// scattering.
 inline float spread_of_phase(const HenyeyGreenstein& hg) {
   const float g2 = sqr(hg.g), alpha2 = sqr(1 - g2) / (1 + g2);
   return alpha2 / (alpha2 + sqr(half_spread_alpha) * (1 - alpha2));

@@ -83,7 +83,7 @@ class LightLayers {
   /// For light that is scattered along the flight.
   void see(const FlownSegment& flight) { come_from(true, flight.state); }
 
-  /// The film sample. `weight` is that of the reconstruction filter.
+  /// The film sample. `weight`: of the reconstruction filter.
   PixelSample sample(float weight, const Sensor& sensor) {
     limit(sensor);
     PixelSample result{.features = features_};

@@ -17,7 +17,7 @@ namespace lanthorn {
 /// Light paths per chunk of work. Fixed, so that chunks do not depend on the number of threads.
 inline constexpr std::size_t light_path_chunk = 2048;
 
-/// Consecutive light paths of a pass that are traced, and whose photons are kept, before those of the next block.
+/// Consecutive light paths of a pass. Their photons are traced and kept together, before the next block begins.
 struct LightPathBlock {
   std::uint64_t begin = 0;
   std::uint64_t end = std::numeric_limits<std::uint64_t>::max();  ///< the last block has all the rest

@@ -15,7 +15,7 @@
 namespace lanthorn {
 
 /// Time and wavelengths, shared by all vertices of a path. Methods that cache light paths draw the wavelengths once per
-/// pass (`PassDraw`), the others once per path.
+/// pass (`PassDraw`), other methods once per path.
 struct PathDraw {
   float time = 0;
   Wavelengths w;
@@ -57,8 +57,8 @@ class OwnPathDraw {
   std::optional<PathDraw> same_for_all_;
 };
 
-/// Where a pass, or a part of it, stands in the random sequences of its half of the film. Each half has sequences of
-/// its own: the halves are independent, and each is stratified over its passes.
+/// Where a pass, or a part of it, stands in the random sequences of its half of the film. Each half has its own
+/// sequences: the halves are independent, and each is stratified over its passes.
 struct PlaceInHalf {
   FilmHalf half = FilmHalf::first;
   std::uint32_t number = 0;

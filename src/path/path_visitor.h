@@ -67,7 +67,7 @@ struct UnlitEmissionVisitor {
 };
 
 /// Adds the light of infinite lights, times `factor`, that comes straight to a vertex from a direction that the closure
-/// samples: the second technique beside next-event estimation where the walk does not go on (`branches_to_sky`).
+/// samples: the second technique beside next-event estimation where the walk ends (`branches_to_sky`).
 inline void add_sky(const PathContext& path, const SurfaceVertex& vertex, LightLayers& layers, float factor = 1) {
   if (path.scene.infinite_lights().empty()) return;
   const std::uint32_t dimensions = walk_dimensions(vertex.state.depth);

@@ -16,7 +16,7 @@ struct RenderSettings {
   std::uint64_t seed = 0;
   ColorMode color = ColorMode::rgb;
   int max_depth = 64;  ///< scattering events of a whole path, from light to eye
-  /// Parts of a pass, which the method renders one after the other. Each has wavelengths of its own, its share of the
+  /// Parts of a pass, which the method renders one after the other. Each part has its own wavelengths, its share of the
   /// light paths, and an eye path in every pixel. 1 for RGB colour and for methods whose paths draw their wavelengths.
   std::uint32_t parts = 1;
   std::uint64_t photons = 0;  ///< light paths per part of a pass

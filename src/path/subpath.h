@@ -77,8 +77,8 @@ class Subpath {
 
   void arrive(const PathContext& path, const SurfaceVertex& v);
   void arrive(const PathContext& path, const MediumVertex& v);
-  /// The walk leaves the last vertex, and the scene: densities are then those of light that comes along the ray.
-  /// `flies` is false for light that a medium on the way emits: the flight then has no density in MIS weights.
+  /// The walk leaves the last vertex, and the scene: densities then refer to light that comes along the ray. `flies` is
+  /// false for light that a medium on the way emits: the flight then has no density in MIS weights.
   void escape(const WalkState& state, const Direction& direction, bool flies = true);
 
   /// The beginning of a flight: how the subpath left its last vertex.
@@ -96,7 +96,7 @@ class Subpath {
   const FlightDensity& flight() const { return flight_; }
   /// For an eye path: share of merging in media that counts at the last vertex, or on the flight after `depart`.
   float coherence() const { return coherence_; }
-  /// Coherence beyond the last vertex, if the path goes on from it by a non-delta lobe.
+  /// Coherence beyond the last vertex, if the path continues from it by a non-delta lobe.
   float coherence_beyond() const { return coherence_ * previous_.coherence; }
 
  private:
@@ -110,7 +110,7 @@ class Subpath {
   };
   void arrive_at(const Scene& scene, const WalkState& state, const Position& at, const Direction& wi);
   void depart(const WalkState& state, const Direction& direction);
-  /// Density per solid angle with which the other kind of walk, coming from `direction`, would go on to the vertex
+  /// Density per solid angle with which the other kind of walk, coming from `direction`, would continue to the vertex
   /// before the last one.
   float reverse_density(const WalkState& state, const Direction& direction) const;
 

@@ -79,7 +79,7 @@ Ray ray_to_light(const Vertex& v, const LightSample& l) {
   return ray_to(v, l.wi, SegmentEnd{l.position, l.normal, l.position_error});
 }
 /// The medium in which such a ray starts. A ray that stays on the side from which the walk came stays in the walk's
-/// medium, even if the shape declares another medium there, as opaque shapes that are inside out do.
+/// medium. This holds even if the shape declares another medium there, as opaque shapes do that are inside out.
 inline MediumId medium_towards(const SurfaceVertex& v, const Direction& direction) {
   if (!v.at.media.is_transition() || (dot(direction, v.at.normal) > 0) == (dot(v.wi, v.at.normal) > 0))
     return v.state.medium;
@@ -163,7 +163,7 @@ struct NarrowContinuation : Continuation {
   static NarrowContinuation of(const LobeSplit& split, float eagerness = 1) {
     return {{!split.is_all_wide()}, split, eagerness};
   }
-  /// The same at a vertex from which the visitor looks for the sky, unless the walk does so in all directions.
+  /// The same, with a branch that looks for the sky unless the walk continues in all directions.
   static NarrowContinuation with_sky_branch(const LobeSplit& split, float eagerness = 1) {
     return {{!split.is_all_wide()}, split, eagerness, !split.is_all_narrow()};
   }

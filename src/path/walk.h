@@ -61,7 +61,7 @@ constexpr float closure_ratio(const GuidedSample& s) { return s.closure_ratio; }
 /// Spread of a ray in a direction that was drawn with density `pdf` per solid angle: as if the vertex had sent 256
 /// rays, each with its own cone (path footprints, Bekaert et al. 2003, "A custom designed density estimator for light
 /// transport"). At most that of a diffuse surface, 1/16. Delta lobes have spread 0, because curved mirrors and lenses
-/// may magnify what lies behind them. So do light paths, because the camera may see their vertices.
+/// may magnify the surfaces seen in them. So do light paths, because the camera may see their vertices.
 inline float spread_of(float pdf) {
   constexpr float rays = 256, most = 1.0f / 16;
   return std::fmin(most, 1 / std::sqrt(rays * pi * pdf));
@@ -174,8 +174,8 @@ inline bool scatter(const PathContext& path, const MediumVertex& v, const Spectr
   return true;
 }
 
-/// Passes a flight to visitors that declare FlownSegment; for others it compiles to nothing.
-/// `begin_normal`: as in FlownSegment.
+/// Passes a flight to visitors that declare FlownSegment; for other visitors it compiles to nothing. `begin_normal`: as
+/// in FlownSegment.
 template <class Visit>
 void show(Visit& visit, const WalkState& state, const Ray& ray, const Normal& begin_normal,
           const std::optional<SurfacePoint>& at, const Flight& flight = {}) {
@@ -397,8 +397,7 @@ inline TreeDistribution::Sample emission_numbers(const LightPath& path, Sampler&
   return path.guide ? path.guide->lights[path.index].numbers.sample(u) : TreeDistribution::Sample{u, 1};
 }
 
-/// Samples the emission. Its densities are those of the light alone; MIS weights take the guide's into account by
-/// `EmissionDensities`.
+/// Samples the emission. Its densities are the light's own; MIS weights account for the guide by `EmissionDensities`.
 inline std::optional<EmissionSample> sample_emission_of(const LightPath& path, Sampler& sampler, const Wavelengths& w) {
   const auto [u, pdf] = emission_numbers(path, sampler);
   const AimedDisks* disks = path.guide && path.guide->disks ? &*path.guide->disks : nullptr;

@@ -35,7 +35,7 @@ struct FluxClasses {
     const float ratio = std::min(flux / reference, large);
     return ratio > 1 ? std::min(most - 1, (std::ilogb(ratio) + 2) / 4) : 0;
   }
-  /// Radius of a photon of this class over that of class 0.
+  /// Radius of a photon of this class, divided by the radius of class 0.
   static float radius_factor(int flux_class) { return static_cast<float>(1 << flux_class); }
   /// Squared radius of class 0, relative to the squared radius that serves all photons alike. `flux`: mean flux of
   /// these photons, as in `of`.

@@ -6,9 +6,9 @@
 // The number of photons of a beam along ω that land on a surface is proportional to the geometric cosine; their light
 // is scattered in proportion to the shading cosine. A density estimate uses photons from neighbouring facets. If its
 // own facet is nearly parallel to ω and a neighbouring one is not, the quotient is unbounded for photons that are not
-// rare, and it has no finite mean. Therefore the division is split: a photon at grazing incidence carries κ / cos_g of
-// its own facet, and the gather point divides by the larger of its own cos_g and κ. If both facets have the same
-// cosine, which is the limit of a shrinking radius, the product is cos_s / cos_g.
+// rare, and it has no finite mean. Therefore the division is split: the power of a photon at grazing incidence is
+// multiplied by κ / cos_g of its facet, and the gather point divides by the larger of its own cos_g and κ. If both
+// facets have the same cosine, which is the limit of a shrinking radius, the product is cos_s / cos_g.
 #pragma once
 
 #include <algorithm>

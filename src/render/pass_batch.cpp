@@ -87,8 +87,8 @@ BatchReport render_batch(const RenderJob& job, RenderPlan& plan, const std::vect
   BatchReport report;
   report.passes.resize(passes.size());
   std::vector<PhaseSeconds> seconds(passes.size());
-  // Exceptions wait until all passes have ended: TBB would cut the loops of the other passes short, and these would go
-  // on with half of their photons.
+  // Exceptions wait until all passes have ended: TBB would cut the loops of the other passes short, and they would
+  // continue with half of their photons.
   std::vector<std::exception_ptr> thrown(passes.size());
   parallel_for(std::size_t{0}, passes.size(), [&](std::size_t i) {
     try {

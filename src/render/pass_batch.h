@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Passes that are rendered at once, so that threads that find no more work in one pass go on with another.
+// Renders several passes at once, so that threads that run out of work in one pass continue with another.
 #pragma once
 
 #include <array>
@@ -38,7 +38,7 @@ struct BatchReport {
   std::array<double, phase_count> phase_seconds{};  ///< of the clock: what passes share is divided among them
 };
 
-/// Renders `passes` into the film of the plan, all at once. If a pass throws, the others come to their end first.
+/// Renders `passes` into the film of the plan, all at once. If a pass throws, the other passes are completed first.
 BatchReport render_batch(const RenderJob& job, RenderPlan& plan, const std::vector<std::uint64_t>& passes);
 
 }  // namespace lanthorn

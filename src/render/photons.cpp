@@ -29,7 +29,7 @@ void append(std::string& out, const std::array<float, n>& values) {
   out.append(reinterpret_cast<const char*>(values.data()), sizeof(values));
 }
 
-// Scaled so that its largest channel is full: viewers do not know the scale of powers.
+// The colour of a power, scaled to full brightness, because viewers do not know the scale of powers.
 std::array<unsigned char, 3> hue_of(const Rgb& power) {
   const float largest = std::max({power.r, power.g, power.b, 1e-30f});
   const Rgb shown = to_display((1 / largest) * power, {});
@@ -42,7 +42,7 @@ PhotonClass class_of(const PhotonFlags& flags) {
   return flags.caustic ? PhotonClass::caustic : PhotonClass::indirect;
 }
 
-// `share`: part of these paths in the light of all paths. `max_depth`: of the tracer's rule.
+// `share`: weight of these paths, 1 / the number of parts of the pass. `max_depth`: of the tracer's rule.
 void append_photons(Photons& photons, const PhotonTracer& tracer, const Wavelengths& w, float share, int max_depth,
                     const Vec3& origin) {
   const std::size_t count = photons.positions.size() + tracer.stored();

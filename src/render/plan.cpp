@@ -72,7 +72,8 @@ void check_limits(const RenderOptions& options) {
   if (options.noise) check_error_bound(*options.noise);
 }
 
-// `auto` finds its own number from `automatic`. A file's number of photons for another method does not apply to it.
+// The option if given, else the file's number of photons, else `automatic`. `auto` ignores a number that the file gives
+// for another method.
 std::uint64_t choose_light_paths(const description::RenderHints& hints, const RenderOptions& options,
                                  const std::string& method, std::uint64_t automatic) {
   if (options.photons) return *options.photons;

@@ -156,8 +156,8 @@ void add(RenderState& state, const std::vector<std::uint64_t>& passes, const Bat
   }
 }
 
-// Batches of passes, one after the other. In a team, a batch is one pass; the plan's state has what this process has
-// rendered and not handed over, and rank 0 has the sums of all besides.
+// Batches of passes, one after the other. In a team, a batch is one pass. The plan's state holds the passes that this
+// process has rendered and not yet handed over; rank 0 also holds the sums of all processes.
 class PassLoop {
  public:
   PassLoop(RenderPlan& plan, const RenderJob& job, const StopRule& stop, const Observer& observer,

@@ -46,8 +46,8 @@ struct ShownPart {
 /// A state without these settings shows its whole film.
 ShownPart shown_part(const RenderState& state);
 
-/// Throws `lanthorn::Error` if the state's identity differs from that of these settings; the message names the first
-/// difference and `file`.
+/// Throws `lanthorn::Error` if the state's identity differs from the identity of these settings; the message names the
+/// first difference and `file`.
 void require_same_identity(const RenderState& state, const std::string& settings, const std::string& file);
 
 /// The inverse of `encode_state`. Throws `lanthorn::Error` at `file` unless the bytes are a complete, undamaged state

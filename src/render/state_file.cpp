@@ -5,7 +5,7 @@
 //   per block of pixels, then for the integrator's state:  u64 compressed bytes, Zstandard frame
 //   u32 CRC-32 of everything before it
 // A block has the planes of its pixels one after the other: 64-bit sums with their bytes transposed (all lowest bytes
-// first), which halves the compressed size. Version 6 has planes of the whole film in place of blocks, and zlib
+// first), which halves the compressed size. Version 6 has planes of the whole film instead of blocks, and zlib
 // streams.
 #include "render/state_file.h"
 

@@ -36,8 +36,8 @@ struct StateHeader {
 
 class StateReader {
  public:
-  /// Reads all but the sums. Throws Error at `file` unless the checksum is right and the header is that of a state of a
-  /// version that this program reads.
+  /// Reads all but the sums. Throws Error at `file` unless the checksum is right and the header belongs to a version of
+  /// states that this program reads.
   StateReader(ByteSource source, std::string file);
 
   /// All but the film, which is empty.

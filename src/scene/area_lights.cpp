@@ -279,7 +279,7 @@ std::vector<Light> make_area_lights(const EmittingShape& emitter, const descript
   });
   for (std::size_t i = 0; i < tables.size(); ++i)
     if (tables[i]) lights[i].brightness = &store.brightnesses.emplace_back(std::move(*tables[i]));
-  // The power of a mesh is that of each of its triangles or patches.
+  // The power of a mesh applies to each of its triangles or patches.
   const bool pairs_of_triangles = shape.record.lit_in_pairs && !shape.record.quads && !source.shares_power;
   if (light.power) set_power(lights, *light.power * (pairs_of_triangles ? 2.0f : 1.0f), source.shares_power);
   return {lights.begin(), lights.end()};

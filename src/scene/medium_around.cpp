@@ -27,7 +27,7 @@ std::optional<MediumId> medium_before(const Scene& scene, Ray ray) {
   return {};
 }
 
-// The medium around the origins of the camera's rays; nullopt as for a point.
+// The medium around the origins of the camera's rays; nullopt if it is unknown at one of them or differs between them.
 std::optional<MediumId> medium_around_camera(const Scene& scene, const Camera& camera) {
   const Vec2 film(static_cast<float>(camera.width()), static_cast<float>(camera.height()));
   const float time = camera.time(0.5f);

@@ -12,7 +12,7 @@ namespace lanthorn {
 
 namespace {
 
-// Limits for one shape and for the whole scene, and for all placed groups before those of the scene are grouped.
+// Limits for one shape, for the whole scene, and for all placed groups before the scene's groups are merged.
 constexpr std::size_t fewest_in_parallel = std::size_t{1} << 14;
 constexpr std::size_t most_of_shape = 64, most_of_scene = 4096, most_of_placements = std::size_t{1} << 18;
 

@@ -65,8 +65,8 @@ class Scene {
   /// Largest radiance of any light, in any channel; for a light without extent, the radiance of surfaces that it
   /// illuminates. Scales the film's exact sums.
   float largest_radiance() const;
-  /// True if some material has a wavelength-dependent index of refraction or a tabulated (measured) spectrum, other
-  /// than those of metals, whose reflectance in RGB is that of their spectra. The default colour mode is then spectral.
+  /// True if some material has a wavelength-dependent index of refraction or a tabulated (measured) spectrum. Spectra
+  /// of metals do not count, because RGB mode reproduces their reflectance. The default colour mode is then spectral.
   bool has_measured_spectra() const;
   bool has_dispersion() const;
   /// True if anything moves while the shutter is open.

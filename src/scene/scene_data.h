@@ -90,8 +90,8 @@ void check_power(const Light& light, const SourceLocation& location);
 void check_radiance(float radiance, const SourceLocation& location);
 /// A sphere around all surfaces; the unit sphere if there are none.
 BoundingSphere bounding_sphere(const Bounds& box);
-/// Largest radiance of any light, in any channel. For lights without extent, that of a white surface where they first
-/// meet one. Depends on lights and geometry. Throws Error as `check_radiance` does.
+/// Largest radiance of any light, in any channel. For lights without extent, the radiance of a white surface at the
+/// nearest place that they illuminate. Depends on lights and geometry. Throws Error as `check_radiance` does.
 float find_largest_radiance(const SceneData& data);
 /// Like `make_light`, for an environment that differs from one of `scene` in its transformation and scale only: shares
 /// the image, which takes long to make. Nullopt for all other lights.

@@ -17,8 +17,8 @@ struct SceneMemory {
   double building = 0;          ///< bytes needed in addition while the largest tree is built
 };
 
-/// Counts meshes and curves as they are described: what displacement and subdivision add is not known before they are
-/// made. An object counts once, however many instances it has.
+/// Counts meshes and curves as they are described: the memory that displacement and subdivision add is not known before
+/// they are applied. An object counts once, however many instances it has.
 SceneMemory expected_memory(const SceneDescription& scene);
 
 /// Bytes of the images of all textures, by the headers of their files. Images that cannot be read count nothing.

@@ -34,8 +34,8 @@ struct SurfacePoint {
   PointBsdf bsdf;
 };
 
-/// |cos| factor of flux through the surface along a direction: to the geometric normal or, for a hair, to the plane
-/// across it, because its width faces all directions.
+/// |cos| factor of the flux through the surface along a direction. The angle is measured from the geometric normal; for
+/// a hair, whose width faces all directions, from the plane perpendicular to the hair.
 inline float geometric_cosine(const SurfacePoint& at, const Direction& w) {
   return at.is_hair ? safe_sqrt(1 - sqr(dot(w, at.shading.s))) : std::fabs(dot(w, at.normal));
 }
@@ -60,8 +60,9 @@ inline float rounded_away(float x, float offset) {
   return std::bit_cast<float>(std::bit_cast<std::uint32_t>(x) + step);
 }
 
-/// Bound of the rounding error of a hit across the surface, per metre of the ray's way: a test of a triangle in single
-/// precision rounds its corners relative to the ray's origin, its normal and the distance, each a few times.
+/// Upper bound of the rounding error of a hit perpendicular to the surface, per metre of the ray's length. In single
+/// precision, the test of a triangle rounds three things a few times each: the corners relative to the ray's origin,
+/// the normal and the distance.
 inline constexpr float tracing_error = 0x1p-20f;
 
 }  // namespace detail
@@ -94,7 +95,8 @@ inline Ray spawn_ray(const SurfacePoint& at, const Direction& direction) {
   return ray;
 }
 
-/// The end of a segment: a point of a surface, which the segment does not meet, or a point in space.
+/// The end of a segment: a point in space, or a point on a surface. In the latter case, `segment_to` stops short of the
+/// surface.
 struct SegmentEnd {
   Point position{0};
   Normal normal{0};  ///< geometric, unit, of either side; 0 in space

@@ -27,8 +27,8 @@ std::optional<MediumBox> place_of(const SceneData& scene, MediumId medium);
 /// True if the medium is around the ray's origin: asks the first surface along the ray that bounds media.
 bool lies_in(const SceneData& scene, MediumId medium, const Ray& ray);
 
-/// Finds the unbounded media, makes a light of each emissive medium, and appends these lights to the others, in place
-/// of earlier ones. Unbounded media, and media that no surface bounds, do not become lights: only eye paths find their
+/// Finds the unbounded media, makes a light of each emissive medium, and appends these lights to the list, replacing
+/// earlier ones. Unbounded media, and media that no surface bounds, do not become lights: only eye paths find their
 /// emission (`has_unlit_emission`). `time`: when moving surfaces bound the media.
 void make_volume_lights(SceneData& scene, float time);
 

@@ -129,7 +129,8 @@ std::vector<std::optional<description::Pane>> find_panes(const std::vector<descr
     else if (!triangles.empty() && !shapes[i].object_to_world.is_moving())
       faces.emplace_back(i, pane->eta, std::move(triangles));
   }
-  // In order of their centres, so that many shapes of glass do not take the time of all pairs.
+  // Sorted by centre, so that only neighbours are compared: testing all pairs would take too long with many glass
+  // shapes.
   std::sort(faces.begin(), faces.end(), [](const Face& a, const Face& b) { return a.centre.x < b.centre.x; });
   for (std::size_t a = 0; a < faces.size(); ++a)
     for (std::size_t b = a + 1; b < faces.size() && sqr(faces[b].centre.x - faces[a].centre.x) <= faces[a].reach2();

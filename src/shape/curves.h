@@ -43,7 +43,7 @@ description::TriangleMesh triangulated(const description::Curves& curves);
 struct CurvePoint {
   DVec3 position{0.0};
   /// Distance along the normal at which a ray must start so as not to hit the curve again, metres: the radius for flat
-  /// curves, which face every ray; a small fraction of it for the others.
+  /// curves, which face every ray; a small fraction of it for other curves.
   double error = 0;
   DVec3 normal{0.0};  ///< unit; flat: towards the ray's origin; cylinder: away from the axis; ribbon: on its given side
   DVec3 dpdu{0.0};    ///< along the curve, not normalised

@@ -144,7 +144,7 @@ struct RimEdge {
   auto operator<=>(const RimEdge&) const = default;  // NOLINT(modernize-use-nullptr)
 };
 
-// The rim edges around every vertex; those of vertex v are [first[v], first[v + 1]).
+// The rim edges around every vertex; vertex v has [first[v], first[v + 1]).
 struct Rims {
   std::vector<Index> first;
   std::vector<RimEdge> edges;

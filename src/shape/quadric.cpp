@@ -158,7 +158,7 @@ QuadricRoots intersect_mapped(const Quadric& q, const Vec3& origin, const Vec3& 
 
 namespace {
 
-// pbrt's v: the polar angle, from that of z_min to that of z_max. Texture coordinates are single precision.
+// pbrt's v: the polar angle, from its value at z_min to its value at z_max. Texture coordinates are single precision.
 float sphere_v(const Quadric& q, float z) {
   const auto theta = [](float cos) { return std::acos(std::clamp(cos, -1.0f, 1.0f)); };
   if (q.is_whole_sphere()) return 1 - theta(z) * inv_pi;

@@ -20,7 +20,7 @@ constexpr double tree_bytes_per_curve = 116, tree_bytes_per_ribbon_piece = 47, b
 constexpr std::uint32_t ribbon_pieces = 4;
 
 /// Bytes of a mesh as rays use it, without its tree. Meshes without normals and uvs keep positions and the triangles
-/// themselves, others keep vertices with all attributes.
+/// themselves; other meshes keep vertices with all attributes.
 constexpr double mesh_bytes(double vertices, double triangles, bool has_attributes) {
   constexpr double corners = 3 * sizeof(std::uint32_t);
   return has_attributes ? vertices * sizeof(Vertex) + triangles * corners

@@ -62,7 +62,7 @@ inline float cosine_ratio(const Vec3& image_of_l, const Vec3& l) {
 
 }  // namespace bent_detail
 
-// The functions of every closure have the meanings, units and conventions of those of `Bsdf` in bsdf.h.
+// Functions of every closure: meanings, units and conventions as for `Bsdf` (bsdf.h).
 
 template <class C>
 Spectrum eval(const Bent<C>& b, const Vec3& wi, const Vec3& wo, Transport transport) {

@@ -25,7 +25,7 @@ float pdf_reverse_by(const C& closure, const Vec3& wi, const Vec3& wo, Transport
 // Facets whose shading normal equals the geometric one up to rounding are not bent.
 constexpr float least_bent_cosine = 1 - 1e-6f;
 
-// Rough coats cannot tell their lobes apart, and rough plastic as a whole scatters as matte surfaces do.
+// Rough coats cannot tell which lobe light belongs to, and rough plastic as a whole scatters like a matte surface.
 bool has_lobes_to_mirror(const Conductor&) { return true; }
 bool has_lobes_to_mirror(const Plastic& p) { return is_smooth(p); }
 bool has_lobes_to_mirror(const ClearCoated& c) { return is_smooth(c.passage->coat()); }

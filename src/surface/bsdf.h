@@ -47,14 +47,14 @@ Spectrum eval(const Bsdf& bsdf, const Vec3& wi, const Vec3& wo, Transport transp
 
 /// Density with which `sample` chooses the non-delta direction `wo` from `wi`, per solid angle, including the
 /// probability of the lobe. For layered closures it may be an approximation: normalised, and positive wherever `eval`
-/// is (see `pdf_is_exact`). `transport` is that of the walk that chooses; it matters for bent closures only.
+/// is (see `pdf_is_exact`). `transport`: of the walk that chooses; it matters only for bent closures.
 float pdf(const Bsdf& bsdf, const Vec3& wi, const Vec3& wo, Transport transport = Transport::radiance);
 
-/// `eval` and `pdf` together: closures share what both need. The pdf is not computed if f is black.
+/// `eval` and `pdf` together: closures share the terms that both need. The pdf is not computed if f is black.
 BsdfValue eval_and_pdf(const Bsdf& bsdf, const Vec3& wi, const Vec3& wo, Transport transport);
 
 /// `pdf` in the reverse direction: the density with which a walk that arrives from `wo` along the same path chooses
-/// `wi`. `transport` is that of the walk that has arrived from `wi`.
+/// `wi`. `transport`: of the walk that has arrived from `wi`.
 float pdf_reverse(const Bsdf& bsdf, const Vec3& wi, const Vec3& wo, Transport transport);
 
 /// `eval_and_pdf` and `pdf_reverse` together, for weights of paths that walks from both ends could make.

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 // A clear dielectric coat over a Lambertian base in closed form. The base forgets where light came from, so that all
-// walks between coat and base together are a product of three factors: what reaches the base, the reflections back and
-// forth, what leaves.
+// walks between coat and base together are a product of three factors: the light that reaches the base, the reflections
+// back and forth, and the light that leaves.
 //   Saunderson 1942: Calculation of the Color of Pigmented Plastics [S42]
 //   Guo, Hasan, Zhao 2018: Position-Free Monte Carlo Simulation for Arbitrary Layered BSDFs [G18]
 #pragma once
@@ -43,7 +43,7 @@ class CoatPassage {
 };
 
 /// The coat's reflection, and the light of the base below it, which reaches the base up to `arrivals` times: the mean
-/// of what `Coated<Diffuse>` estimates by walks of up to 2 `arrivals` segments, if its layer does not scatter. With T
+/// of the estimate of `Coated<Diffuse>` by walks of up to 2 `arrivals` segments, if its layer does not scatter. With T
 /// the fraction of light that reaches the base and K the fraction that comes back to it [S42],
 ///   f = coat's reflection + reflectance / pi T(wi) T(wo) / eta^2 (1 + K reflectance + (K reflectance)^2 + ...).
 /// Symmetric, the same from both sides.
@@ -55,7 +55,7 @@ struct ClearCoated {
   int arrivals = 5;                      ///< how often light may reach the base
 };
 
-// The functions of every closure have the meanings, units and conventions of those of `Bsdf` in bsdf.h.
+// Functions of every closure: meanings, units and conventions as for `Bsdf` (bsdf.h).
 
 Spectrum eval(const ClearCoated& c, const Vec3& wi, const Vec3& wo, Transport transport);
 float pdf(const ClearCoated& c, const Vec3& wi, const Vec3& wo);

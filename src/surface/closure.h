@@ -13,9 +13,9 @@
 
 namespace lanthorn {
 
-/// Functions that every closure must have, with the meanings, units and conventions of those of `Bsdf` in bsdf.h. A
-/// type that lacks one cannot be an alternative of `Bsdf`. Without this check, a call would find the function of `Bsdf`
-/// itself, to which closures convert, and never return.
+/// Functions that every closure must have; for meanings, units and conventions see `Bsdf` in bsdf.h. A type that lacks
+/// one cannot be an alternative of `Bsdf`. Without this check, a call would find the function of `Bsdf` itself, to
+/// which closures convert, and never return.
 template <class C>
 concept Closure = requires(const C c, const Vec3 w, float u_lobe, const Vec2 u, Transport transport) {
   { C::traits } -> std::convertible_to<ClosureTraits>;

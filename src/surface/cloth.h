@@ -28,7 +28,7 @@ struct Cloth {
 /// Albedo of white fibres, at a cosine in [0,1]; somewhat less at grazing angles, see above.
 float sheen_albedo(float alpha, float cos);
 
-// The functions of every closure have the meanings, units and conventions of those of `Bsdf` in bsdf.h.
+// Functions of every closure: meanings, units and conventions as for `Bsdf` (bsdf.h).
 
 Spectrum eval(const Cloth& c, const Vec3& wi, const Vec3& wo, Transport transport);
 float pdf(const Cloth& c, const Vec3& wi, const Vec3& wo);

@@ -88,7 +88,7 @@ class LayerWalk {
 /// Fraction of light from direction w that a smooth base reflects as a mirror.
 template <class Base>
 Spectrum mirror_reflectance(const Base& base, const Vec3& w) {
-  // Reflection is the first lobe of a base that has others.
+  // Reflection is the first lobe of a base with several lobes.
   const auto bounce = sample(base, w, 0.0f, Vec2(0.5f), Transport::importance);
   return bounce && bounce->delta ? bounce->weight * bounce->pdf : Spectrum();
 }

@@ -18,8 +18,8 @@ namespace lanthorn {
 
 /// A coat over `Base`, the same from both sides (light always meets the coat first). `eval` is an unbiased estimate by
 /// `n_samples` walks, seeded by the two directions: a pure function, exactly symmetric in wi and wo. `sample` follows
-/// one walk. The pdf of its result is that of `pdf`, a deterministic approximation (`pdf_is_exact` is false for
-/// non-delta samples), so the sample's weight is not eval * cos / pdf but has the same mean.
+/// one walk. The pdf of its result comes from `pdf`, a deterministic approximation (`pdf_is_exact` is false for
+/// non-delta samples). The sample's weight is therefore not eval * cos / pdf, but has the same mean.
 template <class Base>
 struct Coated {
   static constexpr ClosureTraits traits{.is_fibre = false, .transmits = false};
@@ -45,7 +45,7 @@ inline Conductor under_coat(Conductor c, float coat_eta) {
   return c;
 }
 
-// The functions of every closure have the meanings, units and conventions of those of `Bsdf` in bsdf.h.
+// Functions of every closure: meanings, units and conventions as for `Bsdf` (bsdf.h).
 
 template <class Base>
 Spectrum eval(const Coated<Base>& c, const Vec3& wi, const Vec3& wo, Transport transport);
@@ -71,7 +71,7 @@ template <class Base>
 bool is_dispersive(const Coated<Base>& c) {
   return is_dispersive(c.coat);
 }
-/// Over metal the lobe is that of the metal.
+/// Over metal, the split terms hold the metal's lobe.
 template <class Base>
 SplitTerms split_terms(const Coated<Base>& c, const Vec3& wi) {
   const Spectrum all = albedo(c, wi);

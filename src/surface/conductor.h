@@ -26,7 +26,7 @@ Conductor conductor_from_reflectance(const Spectrum& reflectance, float alpha_x,
 
 inline bool is_smooth(const Conductor& c) { return effectively_smooth(c.alpha_x, c.alpha_y); }
 
-// The functions of every closure have the meanings, units and conventions of those of `Bsdf` in bsdf.h.
+// Functions of every closure: meanings, units and conventions as for `Bsdf` (bsdf.h).
 
 Spectrum eval(const Conductor& c, const Vec3& wi, const Vec3& wo, Transport transport);
 float pdf(const Conductor& c, const Vec3& wi, const Vec3& wo);

@@ -26,7 +26,7 @@ struct Dielectric {
 
 inline bool is_smooth(const Dielectric& d) { return d.eta == 1.0f || effectively_smooth(d.alpha_x, d.alpha_y); }
 
-// The functions of every closure have the meanings, units and conventions of those of `Bsdf` in bsdf.h.
+// Functions of every closure: meanings, units and conventions as for `Bsdf` (bsdf.h).
 
 Spectrum eval(const Dielectric& d, const Vec3& wi, const Vec3& wo, Transport transport);
 float pdf(const Dielectric& d, const Vec3& wi, const Vec3& wo);

@@ -29,7 +29,7 @@ struct DiffuseTransmission {
 
 inline bool is_smooth(const Diffuse& /*any*/) { return false; }
 
-// The functions of every closure have the meanings, units and conventions of those of `Bsdf` in bsdf.h.
+// Functions of every closure: meanings, units and conventions as for `Bsdf` (bsdf.h).
 
 inline Spectrum eval(const Diffuse& d, const Vec3& wi, const Vec3& wo, Transport /*both are equal*/) {
   return same_hemisphere(wi, wo) ? d.reflectance * inv_pi : Spectrum();

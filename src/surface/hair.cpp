@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Equation numbers are those of Chiang et al. 2016. The longitudinal function is from d'Eon et al. 2011, "An
+// Equation numbers refer to Chiang et al. 2016. The longitudinal function is from d'Eon et al. 2011, "An
 // Energy-Conserving Hair Reflectance Model". Lobe p: light that has crossed the inside of the hair p times; the last
 // lobe includes all higher ones.
 #include "surface/hair.h"

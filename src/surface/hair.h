@@ -30,7 +30,7 @@ struct Hair {
 /// eq. 9).
 float hair_absorption(float reflectance, float beta_n);
 
-// The functions of every closure have the meanings, units and conventions of those of `Bsdf` in bsdf.h.
+// Functions of every closure: meanings, units and conventions as for `Bsdf` (bsdf.h).
 
 Spectrum eval(const Hair& hair, const Vec3& wi, const Vec3& wo, Transport transport);
 float pdf(const Hair& hair, const Vec3& wi, const Vec3& wo);

@@ -63,7 +63,7 @@ struct Measured {
   Wavelengths wavelengths;  ///< of the path
 };
 
-// The functions of every closure have the meanings, units and conventions of those of `Bsdf` in bsdf.h. Measurements
+// Functions of every closure: meanings, units and conventions as for `Bsdf` (bsdf.h). Measurements
 // are only approximately reciprocal. `importance` uses the value of `radiance` with the directions exchanged, so that
 // light paths and eye paths see the same surface.
 

@@ -17,7 +17,8 @@ namespace lanthorn {
 /// GGX reflection with Schlick's Fresnel term, f0 + (f90 - f0)(1 - cos)^5 [S94 eq. 15], over a diffuse base that
 /// receives the light that is not reflected [K01 eq. 5]: with E the albedo of the reflection, the base has f =
 /// reflectance / pi (1 - E(wi)) (1 - E(wo)) / (1 - mean E). Symmetric. The albedo is E + (1 - E) reflectance. The same
-/// on both sides. With a film, the Fresnel term is that of the film on a dielectric of reflectance f0 / f90, times f90.
+/// on both sides. With a film, the Fresnel term of the film on a dielectric of reflectance f0 / f90, times f90,
+/// replaces Schlick's.
 struct Plastic {
   static constexpr ClosureTraits traits{.is_fibre = false, .transmits = false};
 
@@ -33,7 +34,7 @@ inline bool is_smooth(const Plastic& p) { return effectively_smooth(p.alpha, p.a
 /// Albedo of the specular reflection alone, at a cosine in [0,1].
 Spectrum specular_albedo(const Plastic& p, float cos);
 
-// The functions of every closure have the meanings, units and conventions of those of `Bsdf` in bsdf.h.
+// Functions of every closure: meanings, units and conventions as for `Bsdf` (bsdf.h).
 
 Spectrum eval(const Plastic& p, const Vec3& wi, const Vec3& wo, Transport transport);
 float pdf(const Plastic& p, const Vec3& wi, const Vec3& wo);

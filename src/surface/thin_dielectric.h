@@ -35,7 +35,7 @@ inline Spectrum thin_reflectance(const ThinDielectric& d, float cos_i) {
   return 2 * r / (Spectrum(1) + r);
 }
 
-// The functions of every closure have the meanings, units and conventions of those of `Bsdf` in bsdf.h.
+// Functions of every closure: meanings, units and conventions as for `Bsdf` (bsdf.h).
 
 Spectrum eval(const ThinDielectric& d, const Vec3& wi, const Vec3& wo, Transport transport);
 float pdf(const ThinDielectric& d, const Vec3& wi, const Vec3& wo);

@@ -25,10 +25,10 @@ struct ThinFilm {
   explicit operator bool() const { return thickness > 0; }
 };
 
-/// Fraction of unpolarised light that film and surface together reflect, from the outside; what they do not reflect
-/// enters the surface. `cos_i` in [0,1] is the cosine outside, `eta` >= 1 the index of the surface relative to the
-/// outside, by component. The same from inside, for the refracted direction. In RGB mode it is the mean over white
-/// light, weighted by the response of each channel.
+/// Fraction of unpolarised light from the outside that film and surface together reflect; the rest enters the surface.
+/// `cos_i` in [0,1] is the cosine outside, `eta` >= 1 the index of the surface relative to the outside, by component.
+/// The same from inside, for the refracted direction. In RGB mode it is the mean over white light, weighted by the
+/// response of each channel.
 Spectrum film_reflectance(const ThinFilm& film, float cos_i, const Spectrum& eta);
 
 /// The index of a dielectric of this reflectance (clamped to [0, 0.9999]) at normal incidence.

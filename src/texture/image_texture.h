@@ -49,7 +49,7 @@ class TextureImage {
  public:
   /// Without texels: must not be looked up.
   TextureImage() = default;
-  /// One texel of three channels, in place of a file that is missing.
+  /// One texel of three channels, which replaces a missing file.
   explicit TextureImage(const Rgb& color);
   /// Reads the file into memory, subject to `access`. Throws Error with `location` on failure.
   TextureImage(const ImageSource& source, const FileAccess& access, const ImageWish& wish,

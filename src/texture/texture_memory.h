@@ -13,8 +13,8 @@
 
 namespace lanthorn {
 
-/// The memory of a scene's textures: decides which images stay in memory, and owns the cache of the others. Shared by
-/// the scenes that edits make of one. Whatever it decides, the picture is the same.
+/// The memory of a scene's textures: decides which images stay in memory, and owns the cache of the other images.
+/// Shared by a scene and its edited copies. Whatever it decides, the picture is the same.
 class TextureMemory {
  public:
   /// `bound`: bytes of all images together; by default half of the memory that is free when the bound is first needed.

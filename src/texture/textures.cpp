@@ -136,7 +136,8 @@ int ImageInput::level(const Footprint& footprint) const {
   return std::min(image->levels() - 1, std::ilogb(texels / texels_in_footprint));
 }
 
-// Compilation of a texture, which compiles those that it names. Descriptions that programs make may have cycles.
+// Counts the depth of recursion while a texture compiles the textures that it names. Throws if the depth is exceeded,
+// because descriptions made by programs may contain cycles.
 class TextureGraph::Descent {
  public:
   Descent(std::size_t& depth, const SourceLocation& location) : depth_(depth) {

@@ -100,7 +100,7 @@ class TextureGraph {
   bool has_levels(const SpectrumInput& input) const;
   /// The mapped normal in the frame of dp/du, dp/dv and the smooth normal; unit.
   static Normal evaluate(const NormalMapInput& map, const TexturePoint& at);
-  /// 1 if `alpha` reads the alpha of an image that has none, so that rays need not evaluate it; else `alpha`.
+  /// 1 if `alpha` reads the alpha of an image without alpha, so that rays need not evaluate it; else `alpha`.
   FloatInput without_opaque_image(const FloatInput& alpha) const;
   /// The finest detail of all textures behind an input.
   TextureDetail detail(const FloatInput& input) const;

@@ -38,7 +38,7 @@ void Accumulation::add(const Renderer& renderer, float factor) {
   accumulate_.use();
   accumulate_.set("factor", factor);
   accumulate_.set("share", 1 / static_cast<float>(frames_));
-  // mean_n = mean_{n-1} + (frame - mean_{n-1}) / n. The first frame replaces what was there, even NaN.
+  // mean_n = mean_{n-1} + (frame - mean_{n-1}) / n. The first frame replaces the previous content, even NaN.
   if (frames_ > 1) {
     glEnable(GL_BLEND);
     glBlendEquation(GL_FUNC_ADD);

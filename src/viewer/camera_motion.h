@@ -38,7 +38,7 @@ CameraPose orbit(const CameraPose& pose, const Vec2& degrees);
 CameraPose turn(const CameraPose& pose, const Vec2& degrees);
 /// Shifts the camera in its film plane, so that the pivot follows the pointer.
 CameraPose pan(const CameraPose& pose, const Vec2& metres);
-/// Goes towards the pivot until the distance is `factor` times what it was; factor > 0.
+/// Multiplies the distance to the pivot by `factor` > 0.
 CameraPose zoom(const CameraPose& pose, float factor);
 /// Moves by `metres` along the camera's right, the world's up and the camera's forward axis; the pivot moves along.
 CameraPose fly(const CameraPose& pose, const Vec3& metres);

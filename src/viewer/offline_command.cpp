@@ -50,7 +50,7 @@ void set_technique(RenderOptions& render, const TechniqueDescription& technique,
   render.set = technique_parameters(technique, settings);
 }
 
-// The method that shows the same offline, and what goes with it.
+// The offline method that shows the same, with its settings.
 void set_method(RenderOptions& render, const ShownPicture& shown, const std::string& first_method) {
   if (const TechniqueInfo* technique = find_technique(shown.method))
     return set_technique(render, technique->description, shown.settings);

@@ -71,7 +71,7 @@ std::optional<SurfacePick> Picker::pick(const Ray& ray,
     Transform to_world = instance.to_world;
     if (instance.instance)
       if (const auto place = moved.find(*instance.instance); place != moved.end()) to_world = place->second.start;
-    // Not of unit length: distances are those of the world.
+    // Not of unit length: distances are measured in world space.
     const Transform to_local = to_world.inverted();
     const Point origin = to_local.point(ray.origin);
     const Vec3 direction = to_local.vector(ray.direction);

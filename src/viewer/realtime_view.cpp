@@ -17,7 +17,7 @@ namespace lanthorn {
 
 namespace {
 
-// A choice of the technique, with those of the values for which it has a parameter.
+// A choice of the technique, with the values that are parameters of this technique.
 TechniqueChoice choice_of(const std::string& technique, const ParameterValues& values) {
   ParameterValues own;
   for (const TechniqueParameter& p : all_parameters(find_technique(technique)->description))

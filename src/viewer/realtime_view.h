@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Frames of a camera at rest: each with random numbers of its own, so that their mean gets smoother.
+// Frames of a camera at rest: each with its own random numbers, so that their mean gets smoother.
 #pragma once
 
 #include <cstdint>

@@ -476,7 +476,7 @@ void Viewer::save_picture(const std::string& extension) {
   panel_.message = "Saved " + path.lexically_normal().string();
 }
 
-// Denoising in full quality takes seconds: the window goes on meanwhile.
+// Denoising in full quality takes seconds: meanwhile the window stays responsive.
 void Viewer::save_exr() {
   const bool denoises = offline_ && panel_.denoises && offline_->state.pass_count > 1;
   if (!denoises) return save_picture(".exr");

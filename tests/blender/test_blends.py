@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The Lanthorn authors
 # SPDX-License-Identifier: Apache-2.0
-"""The sixteen .blend files of scenes/blender/make_blends.py, opened and rendered by both engines. Without the scenes of
-caustics, which Cycles does not find, the means of pictures and of blocks agree."""
+"""The sixteen .blend files of scenes/blender/make_blends.py, opened and rendered by both engines. The means of
+pictures and of blocks must agree, except for the scenes with caustics, which Cycles does not find."""
 import os
 import sys
 import tempfile

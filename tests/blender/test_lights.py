@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The Lanthorn authors
 # SPDX-License-Identifier: Apache-2.0
-"""Each kind of lamp on a diffuse plane: the mean of Lanthorn's picture differs from that of Cycles by less than 2 %,
-and the means of lit blocks by less than 4 %."""
+"""Each kind of lamp on a diffuse plane: the means of Lanthorn's and Cycles' pictures differ by less than
+2 %, and the means of lit blocks by less than 4 %."""
 import math
 import os
 import sys

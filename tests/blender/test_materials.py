@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The Lanthorn authors
 # SPDX-License-Identifier: Apache-2.0
-"""Each shader on a ball on a floor, under a uniform sky and an area lamp: means against those of Cycles."""
+"""Each shader on a ball on a floor, under a uniform sky and an area lamp: compares means with Cycles."""
 import math
 import os
 import sys

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The Lanthorn authors
 # SPDX-License-Identifier: Apache-2.0
-"""Node trees that are baked, worlds that are baked, bump and displacement: blocks of pictures beside Cycles."""
+"""Node trees that are baked, worlds that are baked, bump and displacement: compares blocks of pictures with Cycles."""
 import math
 import os
 import sys

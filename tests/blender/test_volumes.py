@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The Lanthorn authors
 # SPDX-License-Identifier: Apache-2.0
-"""Volumes of grids: an OpenVDB file, and the smoke of a fluid domain. Means against those of Cycles."""
+"""Volumes of grids: an OpenVDB file, and the smoke of a fluid domain. Compares means with Cycles."""
 import math
 import os
 import sys

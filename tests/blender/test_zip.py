@@ -15,7 +15,7 @@ CONTENTS = {"addon/b.py": "two\n" * 99, "addon/a.py": "one\n"}
 
 
 def packed(seconds, mode, names):
-    """Bytes of a zip of files that were changed and read at this time and have this mode."""
+    """Returns the bytes of a zip. Its files have this time as their times of change and access, and this mode."""
     with tempfile.TemporaryDirectory() as folder:
         for name in names:
             path = pathlib.Path(folder) / name

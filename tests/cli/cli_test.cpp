@@ -368,7 +368,7 @@ TEST_F(Cli, WritesPhotons) {
   refuse(photons, "--output");
 }
 
-// Where few photons land in view, they are aimed, also by the default method.
+// If few photons land in view, methods aim them; the default method does so, too.
 TEST_F(Cli, PhotonsOfTheDefaultMethodAreThoseOfVcm) {
   dir_.write("large.pbrt", tiny_scene + std::string("LightSource \"distant\" \"point3 from\" [1 3 2]\nShape "
                                                     "\"bilinearmesh\" \"point3 P\" [-300 -1 -300 300 -1 -300 -300 "
@@ -514,7 +514,7 @@ TEST_F(Cli, WrongFilesAreRefusedBeforeTheRender) {
   refuse({"nosuch"}, "subcommand");
 }
 
-// tests/transport checks that all methods give equal states; this test checks that the program's options lead there,
+// tests/transport checks that all methods give equal states; this test checks the same through the program's options,
 // for methods with and without photons, and for methods whose passes depend on each other.
 const Words some_integrators{"auto", "path", "probppm", "sppm"};
 

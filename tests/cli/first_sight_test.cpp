@@ -113,7 +113,8 @@ std::vector<float> shown_at(const fs::path& path, int x, int y) {
   return {image.at(x, y, 0), image.at(x, y, 1), image.at(x, y, 2)};
 }
 
-// An unlit cube beside a light of 54351 cd, for which the exposure is -8: its colour is meant for the display.
+// An unlit cube beside a light of 54351 cd. The light needs an exposure of -8, but the cube's colour is meant for the
+// display.
 TEST_F(FirstSight, UnlitColoursAreShownAsTheyAre) {
   const std::string model = LANTHORN_SOURCE_DIR "/tests/scenes/models/unlit-and-lamp.gltf";
   succeed({"render", model, "-i", "path", "-r", "64x48", "-p", "4", "-o", "a.png", "-o", "a.exr", "-o", "a.state"});

@@ -93,7 +93,7 @@ TEST_F(Noise, InfoTellsTheError) {
   EXPECT_TRUE(contains(succeed({"info", "few.state"}).out, "not known: there are too few passes"));
 }
 
-// The same whether the error is measured together with an .exr's layers or alone.
+// The reported error is the same whether it is measured together with an .exr's layers or alone.
 TEST_F(Noise, AllFilesTellTheSameError) {
   succeed(render({"-i", "vcm", "-p", "17", "-o", "a.png", "-o", "a.exr", "-o", "a.state"}));
   succeed(render({"-i", "vcm", "-p", "17", "-o", "b.png"}));

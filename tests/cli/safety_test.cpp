@@ -27,7 +27,7 @@ class Safety : public Cli {
   static Words endless(const Words& more) {
     return Words{"render", "tiny.pbrt", "-i", "path", "--time", "10m", "--reproducible", "-r"} + more;
   }
-  /// As `endless`, with passes of a second or more on one thread; `more` begins with the number of mutations.
+  /// Like `endless`, but with passes of a second or more on one thread; `more` begins with the number of mutations.
   static Words slow(const Words& more) {
     return Words{"render", "tiny.pbrt", "-i", "mlt", "-T", "1", "--reproducible", "-n"} + more;
   }

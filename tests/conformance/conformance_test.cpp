@@ -22,8 +22,8 @@ struct Case {
 };
 
 // c06 (all light through the globe), c07 and c14 get the samples that a path tracer needs for their caustics. Photons
-// are tested on scenes that are hard for path tracing, fog and motion. On the other scenes, path tracing shows that
-// scenes are read and lit correctly, and transport tests show that photons agree with it.
+// are tested on scenes that are hard for path tracing, with fog and with motion. On the other scenes, path tracing
+// shows that scenes are read and lit correctly, and transport tests show that photons agree with it.
 std::vector<Case> cases() {
   return {{"c01-furnace", "path", 96},
           {"c02-cornell", "path", 96},

@@ -3,11 +3,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Renders random mutations of scenes of all formats with random methods, best with a build with sanitizers.
 
-Three passes of each. Every tenth mutation is one of a saved state instead, which is looked at, resumed or merged. A run
-must end within its time and memory: with exit code 0, a picture without NaN and no sample that was not finite, or with
-2, one line that names the scene or a file of it, and no picture. Nothing else may be left behind, and no control
-character of a file may reach the terminal. Prints what did not and keeps it with its command; ends with exit code 1 if
-there was any. Mutation N of a seed is always the same. By hand: it takes hours.
+Three passes of each. Every tenth mutation changes a saved state instead, which is then inspected, resumed or merged. A
+run must end within its time and memory: either with exit code 0, a picture without NaN and only finite samples, or with
+exit code 2, one line that names the scene or one of its files, and no picture. A run must leave no other files behind,
+and no control character of a file may reach the terminal. Prints the failing runs, keeps their files and commands, and
+ends with exit code 1 if there are any. Mutation N of a seed is always the same. Run it by hand: it takes hours.
 """
 import argparse
 import gzip
@@ -42,7 +42,7 @@ WALL_S = 90  # of a machine that does other work as well; CPU time is what is li
 
 
 def mutate_text(text: str, rng: random.Random) -> str:
-    """In half of all cases readable numbers alone change: most other changes stop at the reader."""
+    """In half of all cases, changes only readable numbers, because the reader rejects most other changes."""
     tokens = re.findall(r'"[^"\n]*"|#[^\n]*|[\[\]]|[^\s\[\]"]+|\s+', text)
     words = [i for i, token in enumerate(tokens) if not token.isspace() and not token.startswith("#")]
     values_only = rng.random() < 0.5
@@ -229,7 +229,7 @@ def mutate(path: Path, rng: random.Random) -> None:
 
 
 def named_by(scene: Path) -> list[Path]:
-    """Files beside the scene that it names, or that a file does that it names."""
+    """Files beside the scene that the scene names, directly or through another file."""
     files = [p for p in sorted(scene.parent.iterdir()) if p.suffix not in SEEDED]
     found: list[Path] = []
     text = scene.read_bytes()

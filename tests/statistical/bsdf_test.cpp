@@ -96,7 +96,7 @@ TEST(Chi2, Conductor) {
       EXPECT_TRUE(chi2_test(bsdf_sampler(Conductor{gold_eta, gold_k, a.x, a.y}, wi), options)) << describe(wi, a);
 }
 
-// For both walks, where the plane mirrors much of their lobes and where it does not.
+// Tests eye and light walks, at angles where the plane mirrors much of the lobe and where it does not.
 TEST(Chi2, Bent) {
   const Normal plane = at_angles(25, 0);
   const std::vector<Bsdf> closures{Bent<Conductor>{{gold_eta, gold_k, 0.1f, 0.1f}, plane},
@@ -192,7 +192,7 @@ Mean sampled_albedo(const Bsdf& bsdf, const Vec3& wi, int n, bool with_delta,
   return mean;
 }
 
-/// As `sampled_albedo`, by integrating eval over cosine-distributed directions; for lobes that are not very narrow.
+/// Like `sampled_albedo`, but integrates eval over cosine-distributed directions; for lobes that are not very narrow.
 Mean integrated_albedo(const Bsdf& bsdf, const Vec3& wi, int n) {
   HashRng rng(test::seed(8));
   Mean mean;
@@ -277,7 +277,8 @@ TEST(Coated, ClearPlasticHasAClosedForm) {
   }
 }
 
-/// Mean of `eval` of a stochastic closure over directions so close to wo that they hardly differ otherwise.
+/// Mean of `eval` of a stochastic closure over directions so close to wo that its expectation hardly differs between
+/// them.
 Mean mean_of_walks(CoatedDiffuse closure, const Vec3& wi, const Vec3& wo) {
   closure.n_samples = 30000;
   Mean mean;
@@ -340,8 +341,8 @@ TEST(Coated, WeightsAreBounded) {
   }
 }
 
-/// There `pdf` is only an approximation, but multiple importance sampling benefits if it is close: it must be a
-/// density, and must not be far too small where samples fall.
+/// The `pdf` of coats is only an approximation, but multiple importance sampling works better if it is close. It must
+/// be normalised, and must not be far too small where samples fall.
 TEST(Coated, PdfIsAUsefulDensity) {
   for (const auto& [name, bsdf] : layered_closures()) {
     for (const Vec3& wi : {at_angles(10, 30), at_angles(60, 100)}) {
@@ -405,7 +406,8 @@ TEST(Energy, BentMetalsReflectAllThatTheyReflect) {
       }
 }
 
-// White fibres over a white base: the base receives what the fibres leave, or less if wo is at a grazing angle.
+// White fibres over a white base: the base receives the light that the fibres do not reflect, or less if wo is at a
+// grazing angle.
 TEST(Energy, ClothGainsNothing) {
   for (const float alpha : {0.02f, 0.1f, 0.4f, 1.0f})
     for (const Vec3& wi : {at_angles(5, 0), at_angles(60, 10), at_angles(85, 20), at_angles(130, -30)}) {
@@ -433,7 +435,7 @@ TEST(Energy, SmoothGlassScattersEverything) {
 }
 
 /// Single scattering loses what multiple bounces between microfacets would return, more for rougher surfaces, and gains
-/// nothing. The bounds are those of the model: below 1, and near 1 for smooth surfaces.
+/// nothing. The bounds follow from the model: below 1, and near 1 for smooth surfaces.
 TEST(Energy, RoughClosuresGainNothing) {
   for (const Widths& a : widths) {
     for (const Vec3& wi : directions) {
@@ -523,7 +525,8 @@ TEST(Hair, LightPathsScatterWhatIsSeen) {
   }
 }
 
-// The density of the reverse direction is about that of the forward one: lobes turn by the same angle the other way.
+// The density of the reverse direction is nearly equal to the density of the forward one: on the way back, each lobe
+// turns by the same angle in the opposite direction.
 TEST(Hair, WayBackIsInTheSameLobes) {
   const Hair hair{Spectrum(0.1f), 0.6f, 1.55f, 0.3f, 0.1f, 0};
   HashRng rng(test::seed(13));

@@ -85,7 +85,8 @@ TEST_P(NearestDensity, IsRightForEveryKernel) {
 
 INSTANTIATE_TEST_SUITE_P(Photons, NearestDensity, testing::Values(10, 50));
 
-// Half of the photons are on the other side: those on this side are counted up to k, and their density is correct.
+// Half of the photons are on the other side of the surface. Only photons on this side are counted up to k, so their
+// density is correct.
 TEST(EstimateDensity, PhotonsOfTheOtherSideDoNotCount) {
   constexpr std::size_t k = 20;
   Mean density, photons, counted;
@@ -114,8 +115,8 @@ TEST(EstimateDensity, PhotonsOfTheOtherSideDoNotCount) {
   EXPECT_LT(density.error(), 0.002);
 }
 
-// Half of the field has nine times the light of the other. Considers points of the darker half near the border whose
-// nearest photons reach across it.
+// One half of the field is nine times as bright as the other. Considers points of the darker half whose nearest photons
+// reach across the border.
 TEST(EstimateDensity, DifferentialCheckingKeepsBordersOfLight) {
   Mean plain, checked, even;  // of fields
   for (std::uint64_t seed = 0; seed < 200; ++seed) {

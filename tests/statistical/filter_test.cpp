@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Filters against quadrature, and chi-squared tests of their samples. The other tests with random numbers check each
-// sample, not means.
+// Compares filters with quadrature, and tests their samples by chi-squared tests. Further tests with random numbers
+// check each sample, not means.
 #include "film/filter.h"
 
 #include <gtest/gtest.h>

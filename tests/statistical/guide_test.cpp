@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Chi-squared tests of guided directions, and their light against that of the closures alone.
+// Chi-squared tests of guided directions, and comparisons of their light with the light of the closures alone.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -84,8 +84,8 @@ TEST(GuidedWalk, DirectionsFollowTheMixture) {
   }
 }
 
-// A mirror-like coat over a diffuse base: samples are of a delta lobe or of the base, stochastic with an approximate
-// density. Lit by a sky that is brighter on one side.
+// A mirror-like coat over a diffuse base, under a sky that is brighter on one side. A sample belongs to the delta lobe
+// or to the base, whose weight is stochastic and whose density is approximate.
 TEST(GuidedWalk, BringsTheLightOfTheClosureAlone) {
   const Bsdf lacquer = CoatedDiffuse{.base = {Spectrum(0.7f)}};
   const TestVertex test(lacquer, at_angles(30, -60));
@@ -108,7 +108,7 @@ TEST(GuidedWalk, BringsTheLightOfTheClosureAlone) {
   }
 }
 
-// Russian roulette uses what the closure's own samples would carry: for a diffuse surface, its reflectance.
+// Russian roulette uses the throughput of the closure's own samples: for a diffuse surface, its reflectance.
 TEST(GuidedWalk, RouletteDoesNotSeeTheGuide) {
   const TestVertex test(Diffuse{Spectrum(0.7f)}, at_angles(30, -60));
   const DirectionGuide guide(oblique, uneven_light(test.at.shading));

@@ -143,7 +143,7 @@ TEST(LightStatistics, PointsOfScreensFollowTheirBrightness) {
   }
 }
 
-/// The start of a light's rays in all its directions, if it matters.
+/// The point from which a light's rays start in all directions, if the point matters.
 EmitterHit on_light(const Light& light) {
   const auto* portal = std::get_if<PortalLight>(&light);
   return portal ? EmitterHit{portal->portal->corner + 0.4f * (portal->portal->width * portal->portal->frame.s +

@@ -61,7 +61,7 @@ class GltfWriter {
   std::size_t accessor(const std::vector<T>& values, std::size_t components, bool normalized = false) {
     return add("accessors", description<T>(view(bytes_of(values)), values.size() / components, components, normalized));
   }
-  /// As `accessor`, each element followed by `padding` bytes.
+  /// Like `accessor`, with `padding` bytes after each element.
   template <class T>
   std::size_t padded_accessor(const std::vector<T>& values, std::size_t components, bool normalized,
                               std::size_t padding) {

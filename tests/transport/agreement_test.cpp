@@ -28,7 +28,7 @@ namespace {
 
 const std::filesystem::path test_scenes = std::filesystem::path(LANTHORN_SOURCE_DIR) / "tests/scenes";
 const std::string overview = "LookAt 0 1 4.4  0 1 0  0 1 0\n";
-// So close to the ball that its facets cover tiles.
+// A view so close to the ball that its facets cover whole tiles.
 const std::string close_up = "LookAt 0.1 0.6 1.7  0.1 0.6 0  0 1 0\n";
 const std::string film =
     "Camera \"perspective\" \"float fov\" [36]\n"
@@ -107,7 +107,7 @@ std::string large_texture() {
          test::patch("-1 0 -1  1 0 -1  -1 0 1  1 0 1") + test::patch("-1 0 -1  1 0 -1  -1 2 -1  1 2 -1");
 }
 
-// With a radius as small as that of the others.
+// The radius is as small as the other methods' radii.
 const char* const photonmap = "photonmap:nearest=0:caustic-nearest=0:max-radius=0.012:gather=4:irradiance=estimated";
 const char* const reversephotonmap = "reversephotonmap:caustic-nearest=0:max-radius=0.012:gather=4";
 
@@ -135,8 +135,8 @@ const std::map<std::string, std::string>& scenes() {
       {"small_lights", overview + film + small_lights + walls + diffuse_ball},
       {"rough_glass", under_lamp + ball("Material \"dielectric\" \"float eta\" [1.5] \"float roughness\" [0.3]\n")},
       {"rough_metal", under_lamp + ball("Material \"conductor\" \"float roughness\" [0.3]\n")},
-      // Narrow lobes, over wide ones and alone, whose light photons and eye paths share: indirect light, and direct
-      // light found by both techniques.
+      // Narrow lobes, over wide ones and alone. Photons and eye paths share their indirect light, and both techniques
+      // find their direct light.
       {"varnish", from_above + film + area_light + walls + diffuse_ball + varnished_floor},
       {"varnish_under_sky",
        from_above + film + "LightSource \"infinite\" \"rgb L\" [0.3 0.4 0.6]\n" + walls + varnished_floor},
@@ -144,7 +144,8 @@ const std::map<std::string, std::string>& scenes() {
       {"leaf", under_lamp + ball("Material \"diffusetransmission\" \"rgb reflectance\" [0.3 0.3 0.1] \"rgb "
                                  "transmittance\" [0.2 0.6 0.2]\n")},
       {"sky", overview + film + "LightSource \"infinite\" \"rgb L\" [0.3 0.4 0.6]\n" + walls + diffuse_ball},
-      // A sky in an opening, which lines through the world's origin in the direction of the light mostly miss.
+      // A sky seen through an opening. Most lines through the world's origin in the direction of the light miss the
+      // opening.
       {"window", overview + film +
                      "LightSource \"infinite\" \"rgb L\" [3 4 6] \"point3 portal\" [1 0.5 -0.5  1 0.5 0.5  1 1.5 0.5  "
                      "1 1.5 -0.5]\n" +
@@ -171,10 +172,10 @@ constexpr ColorMode rgb = ColorMode::rgb, spectral = ColorMode::spectral;
 const std::string guided_photonmap = std::string(photonmap) + ":guide=photons";
 const std::string own_caustics = std::string(photonmap) + ":caustic-photons=60000:emission=";
 
-// Each method meets each closure, kind of light and technique for which it has its own code; methods share closures and
-// lights, so that not every method meets every one.
+// Tests each method with every closure, kind of light and technique for which it has its own code. Methods share the
+// code of closures and lights, so not every combination is tested.
 const std::vector<Case> cases{
-    // Photons, and light paths to the lens, with a single technique each, so that errors are fully visible.
+    // Photons alone, and connections of light paths to the lens alone, so that no other technique hides an error.
     {"shading_normals", "light", rgb, 1, 12},
     {"small_lights", "light", rgb, 1, 12},
     {"rough_glass", "light", spectral, 1, 12},
@@ -224,7 +225,7 @@ const std::vector<Case> cases{
     {"metal_room", photonmap, rgb},
     {"clear_glass", photonmap, spectral},
     {"rough_metal", reversephotonmap, rgb},
-    // Photons emitted where they matter: for lights of all kinds, and through glass.
+    // Photons that a guide aims, for lights of all kinds, and through glass.
     {"small_lights", "probppm:emission=projected", rgb},
     {"small_lights", "probppm:emission=learned", rgb, 1, 12},
     {"leaf", "vcm:emission=learned", rgb, 1, 12},
@@ -400,8 +401,8 @@ TEST(Layers, OfOneScatteringAreDirect) {
   }
 }
 
-// The room's only delta surface is dispersive glass, and a pass of these methods has two sets of wavelengths: light of
-// its caustics has only two hero wavelengths, so that the colours of all pixels lie in one plane.
+// The room's only delta surface is dispersive glass, and a pass of these methods has two sets of wavelengths. Its
+// caustics therefore have only two hero wavelengths, and the colours of all pixels lie in one plane.
 TEST(Layers, DispersedCausticsOfAPassAreOfTwoColors) {
   const Scene scene = test::scene_from_text(test::varied_room);
   for (const char* integrator : {"probppm", "bdpt", "vcm", "bpm", "mlt", "mlt:over=path"}) {

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Coated closures, which simulate walks between coat and base without positions, against the same coats as geometry: a
-// sheet of rough dielectric over a floor, path traced. Both planes are so wide (1000 times their distance) that one
-// path in a million sees an edge. The closures' walks are not noticeably truncated here (maxdepth).
+// Compares coated closures, which simulate walks between coat and base without positions, with path tracing of the same
+// coats as geometry: a sheet of rough dielectric over a floor. Both planes are so wide (1000 times their distance) that
+// one path in a million sees an edge. The closures' walks are not noticeably truncated here (maxdepth).
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 

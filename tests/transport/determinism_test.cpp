@@ -153,7 +153,7 @@ TEST(Determinism, SeedsDiffer) {
   }
 }
 
-// Whatever the tracing order, the light paths of a pass are those of the allocation, each exactly once.
+// Whatever the tracing order, a pass traces each light path of the allocation exactly once.
 TEST(LightPaths, OrderIsAPermutation) {
   const LightPass pass{7, Stream::light, 3, 5000};
   const LightPaths paths(test_scene(), pass);

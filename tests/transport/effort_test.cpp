@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The variance that the pilot of "auto" predicts for other numbers of samples, against that of actual renders.
+// Compares the variance that the pilot of "auto" predicts for other numbers of samples with the variance of actual
+// renders.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -96,7 +97,7 @@ TEST_P(Estimates, OfVarianceAreThoseOfRendersWithinAFifth) {
   }
   EXPECT_NEAR(expected / variance_of(scene, c.method, static_cast<double>(c.light_paths)), 1, 0.2);
 }
-// In the first scene, rare bright contributions dominate the noise; in the others, sums of many.
+// In the first scene, rare bright contributions dominate the noise; in the others, many contributions share it.
 INSTANTIATE_TEST_SUITE_P(
     Cases, Estimates,
     testing::Values(Case{"cornell-caustics.pbrt", "vcm", 1, true}, Case{"cornell-caustics.pbrt", "vcm", 0.25f, true},
@@ -106,7 +107,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"glossy.pbrt", "vcm", 1, true}, Case{"glossy.pbrt", "bdpt", 0.25f, false},
                     Case{"glossy.pbrt", "path", 0, false}));
 
-// After eight passes of four light paths per pixel, the radius is that after 32 passes of one.
+// After eight passes of four light paths per pixel, the radius is the same as after 32 passes of one.
 TEST(Effort, RadiiDependOnThePhotonsOfAllPasses) {
   EXPECT_FLOAT_EQ(merge_radius_shrink(0.5, 7, 4), merge_radius_shrink(0.5, 31, 1));
   EXPECT_FLOAT_EQ(merge_radius_shrink(0.5, 31, 0.25), merge_radius_shrink(0.5, 7, 1));
@@ -177,8 +178,8 @@ TEST(Effort, FindsSunlightThroughAWindow) {
   EXPECT_LT(estimate_error(test::render_state(scene, test::options_for("auto", 16, 1))).noise, 0.6);
 }
 
-// Glass needs light paths. But light traced to the lens is far noisier than next-event estimation and merging, which
-// find all of it.
+// Glass needs light paths. But connections of light paths to the lens are far noisier than next-event estimation and
+// merging, which find all light.
 TEST(Effort, LeavesDirectLightToNextEventEstimation) {
   const Scene scene = test::scene_from_text(R"(
 Film "rgb" "integer xresolution" 32 "integer yresolution" 32

@@ -135,7 +135,7 @@ std::vector<Image> caustics_of(const Scene& scene, const std::string& integrator
   return layers_of(scene, "caustic", integrator, learned, runs);
 }
 
-// From 400 passes of probppm with a million photons each.
+// Measured by 400 passes of probppm with a million photons each.
 constexpr double mean_caustic = 0.0170;
 
 // Squared differences between runs, divided by the square of the mean.
@@ -148,9 +148,9 @@ double relative_variance(const std::vector<Image>& images, double mean) {
   return sum / static_cast<double>(count) / sqr(mean);
 }
 
-// One photon in 30 000 finds the ball, and few of these land within the radius of an eye path: about one in four
-// renders without a guide. That none of a hundred does, which would look like zero noise, has a probability of 1e-12.
-// Paths of vcm also reach it without photons. Gains are 2500 and 600.
+// One photon in 30 000 finds the ball, and few of these land within the radius of an eye path: without a guide, this
+// happens in about one of four renders. The probability that it happens in none of a hundred renders, which would look
+// like zero noise, is 1e-12. Paths of vcm also reach it without photons. Gains are 2500 and 600.
 TEST(LearnedEmission, FindsWhatIsSmall) {
   const Scene scene = test::scene_from_text(view_of_the_ball + corner_of_a_plain(near_lamp));
   for (const auto& [integrator, least_gain] : {std::pair<const char*, double>{"probppm", 10}, {"vcm", 10}}) {
@@ -164,9 +164,9 @@ TEST(LearnedEmission, FindsWhatIsSmall) {
   }
 }
 
-// Eye paths find the lamp through the ball, too, but in none of these renders. Merging must contribute the light, and
-// the weights must know how dense the guide makes the photons: without that, six sevenths of it are missing. The mean
-// is that of 60 passes with a million light paths each.
+// In principle, eye paths find the lamp through the ball, too, but this happens in none of these renders. Merging must
+// contribute the light, and the weights must know how dense the guide makes the photons: without that, six sevenths of
+// it are missing. The expected mean comes from 60 passes with a million light paths each.
 TEST(LearnedEmission, IsKnownToWeights) {
   const Scene scene = test::scene_from_text(view_of_the_ball + corner_of_a_plain(far_lamp));
   EXPECT_TRUE(test::runs_agree(test::mean_of_means(caustics_of(scene, "vcm", true, 24)), 0.01496, 0.05, 0.6));
@@ -290,7 +290,7 @@ TEST(LearnedEmission, LeavesNoWayThroughGlassToChance) {
   EXPECT_TRUE(test::below(50 / found[10], 1));
 }
 
-// One of two equal balls casts its caustic where a spot light outshines it.
+// Two equal balls cast caustics; a spot light outshines one of them.
 TEST(LearnedEmission, SparesWhatIsOutshone) {
   const Scene scene = test::scene_from_text(
       view_of_the_ball + corner_of_a_plain(near_lamp) +
@@ -350,7 +350,7 @@ double share_towards_fog(const EmissionGuide& guide, const Scene& scene) {
   return static_cast<double>(met) / n;
 }
 
-// Photons are aimed at media, except where they would not be stored.
+// Guides aim photons at media, except where media would store none.
 TEST(MediaAsTargets, GuidesAimAtThem) {
   const Scene scene = test::scene_from_text(ball_of_fog);
   const RenderPlan plan = test::plan_render(scene, test::options_for("probppm", 1));
@@ -384,7 +384,7 @@ TEST(AutomaticEmission, DoesNotAimForNothing) {
   EXPECT_EQ(emission.remark, "");
 }
 
-// Eye paths that leave a block reach only the sky. Small glass objects, which they miss, are found by projection maps.
+// Eye paths that leave a block reach only the sky. They miss small glass objects, but projection maps find these.
 TEST(LearnedEmission, TracesLightOnlyIfItCanAddToThePicture) {
   const std::string block =
       "Film \"rgb\" \"integer xresolution\" [12] \"integer yresolution\" [9]\nLookAt 3 3 3  0 0 0  0 1 0\n"
@@ -474,7 +474,7 @@ TEST(LearnedDirections, LeadThroughTheWindow) {
   EXPECT_TRUE(test::below(2 * at_ceiling(starts) / at_ceiling(guide), 1));
 }
 
-// The mean of flux times any function of the origin equals that of the light without disks.
+// The mean of flux times any function of the origin is the same as for the light without disks.
 TEST(AimedDisks, LeaveTheLightAsItIs) {
   const Scene scene = test::scene_from_text(court(true));
   const BoundingSphere& all = scene.bounding_sphere();
@@ -543,7 +543,7 @@ const std::string lamp =
     "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [100 100 100]\nTranslate 0 2 4\n"
     "Shape \"sphere\" \"float radius\" [0.05]\nAttributeEnd\n";
 
-// Light that path tracing finds only rarely is that of small lights behind glass.
+// Path tracing finds the light of small lights behind glass only rarely.
 TEST(RareLight, IsThatOfSmallLightsBehindGlass) {
   const std::string glass = "Material \"dielectric\"\n";
   const std::string around_the_lamp = glass +

@@ -50,7 +50,8 @@ TEST(Guide, LessensNoiseOfFinalGathering) {
   EXPECT_TRUE(test::below(guided / alone, 0.5));
 }
 
-// With equal photons, so that little but the directions differs: the standard error of the ratio is 0.5 %.
+// Both renders use the same photons, so they differ in little but the directions: the standard error of the ratio is
+// 0.5 %.
 TEST(Guide, LeavesTheMeanOfFinalGathering) {
   const std::string gather = "photonmap:max-radius=0.1:gather=64";
   const std::vector<Image> alone = renders_of(gather + ":guide=none", 16, 1, "term.D"),

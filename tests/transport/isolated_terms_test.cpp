@@ -35,8 +35,8 @@ const std::string tilted_panel =
     "  \"normal N\" [0.766 -0.643 0  0.766 -0.643 0  0.766 -0.643 0  0.766 -0.643 0]\n";
 
 // The same with a mirroring panel, and a lamp behind a screen, so that the floor gets only the panel's reflection. By
-// the shading normal alone, part of what the floor would see via the panel lies below the panel's surface: the
-// surface's plane reflects that part once more.
+// the shading normal alone, some of the reflected directions lead below the panel's surface; the surface's plane
+// reflects these once more.
 std::string tilted(const std::string& material) {
   return "LookAt 0 1.3 2.2  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [24]\n" + film +
          "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [20 20 20]\n" +
@@ -78,7 +78,7 @@ const std::string rough_metal_under_light =
     test::quad("-2 -2 0  2 -2 0  2 2 0  -2 2 0");
 
 // A lamp near the floor of a white box: photons are 20 times as dense below it as at the camera's left, and the radii
-// of pixels differ as much. Between half and all of the light has been scattered before.
+// of pixels differ accordingly. At least half of the light is indirect.
 const std::string lamp_near_floor =
     "LookAt 0 0.9 0.9  0 0 -0.2  0 1 0\nCamera \"perspective\" \"float fov\" [70]\n" + film +
     "Material \"diffuse\" \"rgb reflectance\" [0.8 0.8 0.8]\n"

@@ -238,8 +238,9 @@ TEST_F(Ispm, MetalsKeepTheirPatterns) {
 
 class VoxelCones : public Ispm {};
 
-// Ratio of indirect to direct light in the same frames, which share the few sampled points on lamps, against that of
-// path. The bias is within 12 % (docs/methods/voxelcones.md). Leaking cones, as with Crassin's weights, reach half.
+// Compares the ratio of indirect to direct light with the ratio by path. Both parts come from the same frames, which
+// share the few sampled points on lamps. The bias is within 12 % (docs/methods/voxelcones.md). Leaking cones, as with
+// Crassin's weights, reach half.
 TEST_P(VoxelCones, AreNearPath) {
   const Scene scene = test::scene_from_text(scenes().at(GetParam()));
   const auto ratio = [&](const std::string& method, std::uint64_t passes) {
@@ -259,7 +260,7 @@ TEST_P(VoxelCones, AreNearPath) {
 
 class FramesOfRender : public Ispm {};
 
-// As EveryMethod in determinism_test.cpp: passes are functions of seed and number, but only for one driver.
+// Like EveryMethod in determinism_test.cpp: passes are functions of seed and number, but only with the same driver.
 TEST_P(FramesOfRender, BytesDoNotDependOnThreadsResumingOrShards) {
   const Scene scene = test::scene_from_text(scenes().at("mirror_box"));
   const auto state = [&](unsigned threads, PassRange passes, RenderState resumed = {}) {

@@ -80,7 +80,8 @@ TEST(Media, CutPathsAreCounted) {
   RenderOptions o = options("path", 64);
   o.max_depth = 8;
   const RenderState state = test::render_state(scene, o);
-  // The limit removes exactly the light of the paths that reach it: all of it comes from a world of radiance 1.
+  // The limit removes exactly the light of the paths that reach it; as all light comes from a world of radiance 1, the
+  // loss is known.
   const double mean = test::mean_of(*select_layer(picture_of(state), "color"));
   EXPECT_EQ(state.eye.paths, 64u * 64u);
   EXPECT_GT(mean, 0.3);
@@ -158,7 +159,8 @@ TEST(Media, BeersLaw) {
   EXPECT_NEAR(mean(scene, options("path", 1)).mean(), std::exp(-0.7), 1e-4);
 }
 
-// A grid of equal values is the same medium, except for half a cell at each end, where it falls linearly to half.
+// A grid of equal values is the same medium, except for half a cell at each end, where the density falls linearly to
+// half.
 TEST(Media, BeersLawOnGrids) {
   const std::string grid =
       "\"point3 p0\" [-0.5 -0.5 -0.5] \"point3 p1\" [0.5 0.5 0.5] \"integer nx\" 1 \"integer ny\" 1 \"integer nz\" 4 ";
@@ -199,8 +201,7 @@ TEST(Media, SingleScattering) {
   }
 }
 
-// Light without interfaces on its way takes a shorter path through the code: an interface hidden behind a wall changes
-// no pixel.
+// Scenes without interfaces take a shorter path through the code. An interface hidden behind a wall changes no pixel.
 TEST(Media, InterfacesElsewhereChangeNothing) {
   const std::string room =
       "LookAt 0 0 0.9  0 0 0  0 1 0\nMediumInterface \"\" \"fog\"\nCamera \"perspective\" \"float fov\" [60]\n" + film +
@@ -319,7 +320,7 @@ TEST(Media, IntegratorsAgree) {
       {"light", "bdpt", "mlt"}, 1);
 }
 
-// A flame that scatters, all light that there is, over a glossy floor, beside a ball of glass, seen in a rough mirror.
+// A flame that scatters is the only light, over a glossy floor, beside a ball of glass, seen in a rough mirror.
 TEST(NightlyMedia, VolumeEmissionLightsItsSurroundings) {
   const Scene scene = test::scene_from_text(
       "LookAt 0 1 3  0 1 0  0 1 0\nCamera \"perspective\" \"float fov\" [40]\n" + film + "WorldBegin\n" +
@@ -338,8 +339,8 @@ TEST(NightlyMedia, VolumeEmissionLightsItsSurroundings) {
   expect_agreement(scene, {"light", "probppm", "bdpt", "vcm", "auto"}, 2);
 }
 
-// On the right a ball of fog in front of a black wall: all light comes out of the medium, also behind a pane of glass.
-// On the left a white wall that the fog also lights: none does.
+// On the right, a ball of fog in front of a black wall: all light comes from the medium, also behind a pane of glass.
+// On the left, a white wall that the fog also lights: no light comes from the medium.
 class LayerOfMedia : public testing::TestWithParam<const char*> {};
 
 TEST_P(LayerOfMedia, HasAllLightThatComesOutOfThem) {

@@ -14,8 +14,8 @@ namespace {
 
 constexpr float radius = 0.3f;
 
-// What an eye path that has scattered `eye_scatterings` times gathers in a white sphere from photons whose paths have
-// at most `max_depth` scatterings.
+// The light that an eye path gathers in a white sphere after `eye_scatterings` scatterings, from photons whose paths
+// have at most `max_depth` scatterings.
 float gathered(const Scene& scene, int max_depth, int eye_scatterings, ColorMode color) {
   Sampler pass_sampler = Sampler::for_pass(0, 0);
   const PathDraw draw = draw_time_and_wavelengths(make_view(scene.description().view).camera, color, pass_sampler);

@@ -76,7 +76,8 @@ TEST(PhotonMap, LightOfTheSkyIsDirect) {
   EXPECT_EQ(mean_of(render_with(scene, "photonmap", 1, "term.B")), 0);
 }
 
-// With equal photons, up to the difference between the record at the nearest photon and an estimate in place.
+// With the same photons, the means agree up to the difference between the record at the nearest photon and an estimate
+// in place.
 TEST(PhotonMap, PrecomputedIrradianceLeavesTheMean) {
   const Scene scene = test::scene_from_text(camera + box);
   const std::vector<Image> estimated = runs(scene, "photonmap:irradiance=estimated", 1, "term.D");
@@ -158,7 +159,7 @@ TEST(NightlyPhotonMap, SharesOfNarrowLobesAddUp) {
         << layer;
 }
 
-// So many rays that the map is hardly used. Under a sky, which continued rays would hit, too.
+// So many gather rays that the map is hardly used, under a sky that continued rays would hit, too.
 TEST(PhotonMap, ShortRaysFindWhatTheMapWouldTell) {
   const Scene scene = test::scene_from_text(camera + "LightSource \"infinite\" \"rgb L\" [1 1 1]\n" + box);
   const std::vector<Image> expected = runs(scene, "path", 4, "indirect", 100, 32);
@@ -226,7 +227,7 @@ TEST(PhotonMap, CachedGathersLeaveTheMean) {
             render_with(scene, cached + ":gather=64", 1, "term.A").pixels);
 }
 
-// In mirrors and in motion, in both colour modes and at a depth at which gather rays end.
+// Tests cached gathers in mirrors and in motion, in both colour modes, and at a depth at which gather rays end.
 TEST(PhotonMap, CachedGathersBehindMirrors) {
   const Scene scene = test::scene_from_text(
       camera + box +
@@ -320,7 +321,7 @@ TEST(PhotonMap, ShadowPhotonsSpareShadowRays) {
     const std::string shadows = "photonmap:gather=1:shadows=photons:max-radius=0.25";
     const std::vector<Image> by_rays = runs(scene, "photonmap:gather=1", 1, "term.A", 100, 8),
                              by_photons = runs(scene, shadows, 1, "term.A", 100, 8);
-    // With equal samples: the difference is what the search radius removes from thin shadows.
+    // Both renders use the same samples: the difference is the part of thin shadows that the search radius removes.
     EXPECT_TRUE(test::runs_agree(test::paired_ratio(by_photons, by_rays), 1, 0.004, 0.03)) << light;
 
     RenderPlan plan = test::plan_render(scene, options_of(shadows, 1));

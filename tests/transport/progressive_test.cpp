@@ -154,8 +154,8 @@ TEST(Gather, DoesNotDependOnItsReach) {
   EXPECT_GT(seen_far, 3 * seen_near);
 }
 
-// A metal plate of uniform roughness: what eye paths do beyond their hit points must average out over the passes.
-// (Direct light: by shadow rays, and by walks that continue where they do not gather.)
+// A metal plate of uniform roughness: the light beyond the hit points must average out over the passes. (Shadow rays
+// find direct light, and so do walks that continue where they do not gather.)
 TEST(ProgressivePhotonMapping, FixesHitPointsAlone) {
   const Scene scene = test::scene_from_text(R"(
 LookAt 0 0 2  0 0 0  0 1 0
@@ -251,8 +251,8 @@ TEST(FirstRadius, IsWiderForPhotonsOfMoreFlux) {
   EXPECT_NEAR(means[1] / means[0], 1, 0.1);                      // standard deviation over seeds 0.015
 }
 
-// Without a guide photons have equal flux, unless shading normals differ much from geometric ones, as here those of a
-// pane of glass under the lamp.
+// Without a guide photons have equal flux, unless shading normals differ much from geometric ones, as on the pane of
+// glass under this lamp.
 TEST(FirstRadius, IsOneForPhotonsOfEqualFlux) {
   const std::string pane =
       "Material \"dielectric\"\nShape \"trianglemesh\" \"integer indices\" [0 1 2 1 3 2]\n"
@@ -364,9 +364,9 @@ double error_over_path_under_sky(const std::string& method, const std::string& m
   return relative_error(scene, options, reference) / by_path;
 }
 
-// Found by the walk for narrow lobes, and elsewhere by branches that the closure samples beside next-event estimation.
-// Over five seeds the ratios are 1.4 to 1.7 on varnish and .9 to 1.1 on plaster. With next-event estimation alone they
-// were 2.5 and 6, and 12 on varnish when photons had the same share of its wide and narrow lobes.
+// For narrow lobes the walk finds the sky; elsewhere, branches sampled from the closure find it, besides next-event
+// estimation. Over five seeds the ratios are 1.4 to 1.7 on varnish and .9 to 1.1 on plaster. With next-event estimation
+// alone they were 2.5 and 6, and 12 on varnish when photons had the same share of its wide and narrow lobes.
 TEST(ProbabilisticProgressivePhotonMapping, SeesTheSkyAlmostAsPathTracingDoes) {
   for (const std::string material : {"\"coateddiffuse\" \"float roughness\" [0]", "\"diffuse\""})
     EXPECT_TRUE(test::below(error_over_path_under_sky("probppm", material), 2)) << material;
@@ -398,8 +398,8 @@ Exponents exponents_of(double alpha) {
   return e;
 }
 
-// Figs. 2 and 4: at fixed points, variance falls as N^-alpha and bias as N^-(1 - alpha), asymptotically. Direct light
-// is that of a spot light, without noise, and pixels are points: all noise comes from photons.
+// Figs. 2 and 4: at fixed points, variance falls as N^-alpha and bias as N^-(1 - alpha), asymptotically. The direct
+// light of the spot light has no noise, and pixels are points, so all noise comes from photons.
 TEST(NightlyProbabilisticProgressivePhotonMapping, ConvergesAtThePublishedRates) {
   const Scene scene = test::scene_from_text(R"(
 LookAt 0 1 2.2  0 0.6 0  0 1 0

@@ -112,7 +112,7 @@ TEST(ReversePhotonMap, RadiiSpreadAllLight) {
   }
 }
 
-// The expected mean is that of path, since the radii are small and there are many photons.
+// The radii are small and there are many photons, so the mean must agree with path.
 TEST(ReversePhotonMap, AgreesWithPath) {
   const Scene scene = test::scene_from_text(box);
   const test::Mean expected = test::mean_of_means(runs(scene, "path", 16, "indirect"));

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 // Every scene of tests/scenes with every integrator: only finite values, no empty picture, equal bytes for any number
-// of threads. What the pictures should show is tested with the features. The scenes meant for users load without a
+// of threads. The tests of the features check the content of the pictures. The scenes meant for users load without a
 // warning and render with every integrator.
 #include <gtest/gtest.h>
 
@@ -27,8 +27,8 @@ std::vector<std::filesystem::path> scenes_in(const std::string& folder) {
   return found;
 }
 
-// Many gather rays would not improve this test. Photons alone, and so few of them, show something in every scene only
-// if they reach far.
+// Many gather rays would not improve this test. With so few photons, methods without gather rays show something in
+// every scene only if the radii are large.
 void choose(const IntegratorInfo& info, RenderOptions& options) {
   options.integrator = info.name;
   options.set.clear();
@@ -57,7 +57,7 @@ TEST_P(TestScenes, RenderInEveryWay) {
         const RenderState state = test::render_state(scene, options);
         EXPECT_TRUE(state.film.report().clean());
         const Image image = *select_layer(state.film.resolve(state.pass_count()), "color");
-        // Split-sum shading shows emitters and what the sky lights: some scenes have neither in view.
+        // Split-sum shading shows only emitters and surfaces that the sky lights; some scenes have neither in view.
         const float least = info.name == "splitsum" ? -1 : 0.01f;
         EXPECT_GT(*std::max_element(image.pixels.begin(), image.pixels.end()), least);
         one = encode_state(state);

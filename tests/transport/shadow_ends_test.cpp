@@ -17,8 +17,9 @@ struct Case {
   double floor;  // mean radiance of the picture
 };
 
-// The first two: with the stencil or pane at 1 mm, where all methods of other renderers agree. A fifth of a millimetre
-// is 7e-5 of the distance. The third: the same lamp at the origin, whose centre is .0500 analytically.
+// The first two expected values were measured with the stencil or pane at 1 mm, where all methods of other renderers
+// agree. A fifth of a millimetre is 7e-5 of the distance. The third is the same lamp at the origin, whose centre is
+// .0500 analytically.
 const Case stencil{"stencil-at-lamp", .0850}, pane{"pane-at-lamp", .1695}, far_away{"lamp-10km-away", .04135};
 
 class ShadowEnds : public testing::TestWithParam<const char*> {};

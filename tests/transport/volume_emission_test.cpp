@@ -28,9 +28,9 @@ RenderOptions options(const std::string& integrator, std::uint64_t passes, std::
   return o;
 }
 
-// A ball that emits evenly and lets all light through lights what is outside of it as a point in its middle would:
-// irradiance is the field of gravity of an even ball (Newton's shell theorem). The camera looks down on a square metre
-// of the floor, from under the ball.
+// A ball that emits uniformly and transmits all light illuminates its outside like a point light at its centre:
+// irradiance behaves like the gravity of a uniform ball (Newton's shell theorem). The camera looks down on a square
+// metre of the floor, from under the ball.
 TEST(VolumeEmission, ThinBallLightsThePlane) {
   const double height = 2, radius = 0.2, emission = 100, reflectance = 0.6, pi_d = 3.14159265358979;
   const Scene scene = test::scene_from_text(
@@ -110,8 +110,8 @@ TEST(VolumeEmission, CausticOfAFlame) {
   expect_agreement(scene, {"light", "bdpt", "vcm", "probppm", "sppm", "photonmap"}, 2, {"color", "caustic"});
 }
 
-// Unbounded emissive fog is not a light: eye paths find its emission, in photon methods besides the photons of
-// others.
+// Unbounded emissive fog is not a light. Eye paths find its emission; in photon methods, they do so in addition to
+// gathering the photons of other lights.
 TEST(VolumeEmission, FogWithoutEndIsFoundByEyePaths) {
   const Scene scene = test::scene_from_text(
       "MediumInterface \"\" \"fog\"\n" + camera + film +

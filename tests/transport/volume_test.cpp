@@ -43,7 +43,7 @@ class Volume : public testing::TestWithParam<std::string> {
   static void expect_point_light();
 };
 
-// Sums up what is gathered until the eye path's first scattering.
+// Sums up the light gathered until the eye path's first scattering.
 struct FirstFlight {
   const PathContext& path;
   const VolumeGather& gather;
@@ -266,9 +266,9 @@ double slope_of_theory(double alpha, double power, double norm) {
   return slope.exponent;
 }
 
-// Knaus & Zwicker 2011, section 5. The light is scattered twice, and the variance is that of each position, because the
-// theory assumes independent photons at one point. Directly from the lamp, stratified photons have less variance, the
-// more so for larger kernels; and estimates at positions with overlapping kernels are correlated.
+// Knaus & Zwicker 2011, section 5. The light is scattered twice, and the variance is measured at each position, because
+// the theory assumes independent photons at one point. Directly from the lamp, stratified photons have less variance,
+// the more so for larger kernels; and estimates at positions with overlapping kernels are correlated.
 TEST_P(Volume, VarianceFallsAtTheRateOfItsDimensions) {
   constexpr double alpha = 0.5;
   constexpr std::uint32_t passes = 32, runs = 100, places = 12;
@@ -314,7 +314,7 @@ struct LightInFog {
         "LightSource \"point\" \"rgb I\" [1 1 1]\nMediumInterface \"fog\" \"fog\"\n"
         "Material \"dielectric\" \"float eta\" 1 Shape \"sphere\" \"float radius\" 0.01\n");
   }
-  // Position `i` of `count` in all directions; all have the same bias.
+  // Position `i` of `count`, which are spread over all directions. By symmetry, the bias is the same at each.
   static Direction place(std::uint32_t i, std::uint32_t count) {
     const float turn = static_cast<float>(i) * std::numbers::phi_v<float>;
     return sample_uniform_sphere({(static_cast<float>(i) + 0.5f) / static_cast<float>(count), turn - std::floor(turn)});
@@ -522,8 +522,8 @@ TEST_P(MergingInMedia, CausticOfAPointLight) {
 }
 
 // Thin fog in a ball, with kernels of .3 of its radius: a spot light illuminates it, via clear glass for photons, so
-// that nothing else finds its light. Of cylinders with ends perpendicular to the eye's rays .12 would be outside; of
-// those that end at tangent planes .05 are.
+// that nothing else finds its light. Cylinders with ends perpendicular to the eye's rays would lie outside by .12 of
+// their volume; cylinders that end at tangent planes do so by .05.
 TEST(VolumeMethods, LightReachesTheBoundaryOfAMedium) {
   const auto scene_with = [](const std::string& around_light) {
     return test::scene_from_text(
@@ -563,7 +563,7 @@ TEST(VolumeMethods, WeightsAreFiniteAtTheLens) {
   }
 }
 
-// Forward-scattering fog: merging counts in part all along eye paths and light paths.
+// Forward-scattering fog: merging has part of its weight at all vertices of eye paths and light paths.
 TEST(VolumeMethods, WeightsInForwardFogSumToOne) {
   const Scene scene = test::scene_from_text(
       "LookAt 0 0 4  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [24]\n" + film +
@@ -744,7 +744,8 @@ TEST(VolumeMethods, MemoryForPhotonsInMediaIsBounded) {
   }
 }
 
-// As many as are stored for the point estimators, without a normal; on request also those straight from the light.
+// Writes the photons that are stored for the point estimators, without normals; on request also photons that come
+// straight from the light.
 TEST(VolumeMethods, PhotonsAreWrittenFromMedia) {
   const Scene scene = milk();
   const RenderOptions o = options("probppm", 1, 500);

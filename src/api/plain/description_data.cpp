@@ -234,7 +234,7 @@ DescriptionEdits edits_of_data(const Value& value, const SceneDescription& scene
   refuse_other_keys(reader, data, known);
 
   SceneEdits changes;
-  // Excludes what the view has read, which is part of the view's own identity.
+  // Excludes the members of the view, because they are part of the view's own identity.
   reader.hash = scene.hash;
   read_edits(reader, data, "materials", scene.materials, changes.materials);
   read_edits(reader, data, "lights", scene.lights, changes.lights);

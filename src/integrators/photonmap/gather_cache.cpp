@@ -18,7 +18,7 @@ namespace lanthorn {
 namespace {
 
 // Largest number of mirrors and panes between the eye and a cached point. Few points lie behind more, and each number
-// needs records of its own.
+// needs its own records.
 constexpr int most_depth = 4;
 
 // The window's pixels in stages. Each stage refines the grid of the stage before: first by the centres of its cells,
@@ -71,8 +71,8 @@ void Filling::see_all() {
   });
 }
 
-// Gathers where no record has an estimated error below `limit`. Of pixels that are close to each other only one
-// gathers; the others wait for its record.
+// Gathers where no record has an estimated error below `limit`. Among pixels that are close to each other only one
+// gathers; the other pixels wait for its record.
 void Filling::cover(const std::vector<PixelPlace>& places, float limit) {
   std::vector<PixelPlace> waiting = places;
   while (!waiting.empty()) {

@@ -26,8 +26,8 @@ class IrradianceCache {
   IrradianceCache(const Bounds& scene, float error) : error_(error), valid_(scene), reach_(scene) {}
 
   /// Adds a record. First applies neighbour clamping (Křivánek et al. 2006, "Making Radiance and Irradiance Caching
-  /// Practical: Adaptive Caching and Neighbor Clamping"): by the triangle inequality, its distance and those of the
-  /// records around it are limited to a neighbour's distance plus the distance to the neighbour.
+  /// Practical: Adaptive Caching and Neighbor Clamping"): by the triangle inequality, the distances of this record and
+  /// of the records around it are limited to a neighbour's distance plus the distance to the neighbour.
   void insert(IrradianceRecord record);
 
   /// True if a record has an estimated error below `limit` at the point. `limit` is at most `smoothing` times the

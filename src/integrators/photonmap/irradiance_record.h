@@ -69,7 +69,7 @@ struct HemisphereRay {
 
 /// A record without its position: irradiance, both gradients and distance, from one ray for each cell. The distance is
 /// the harmonic mean, limited to the distance at which the translational gradient would bring the irradiance to zero.
-/// `frame` is that of the grid, in world space.
+/// `frame`: of the grid, in world space.
 IrradianceRecord estimate_irradiance(const HemisphereGrid& grid, std::span<const HemisphereRay> rays,
                                      const Frame& frame);
 

@@ -53,7 +53,7 @@ PhotonMapSettings::PhotonMapSettings(const Parameters& parameters, Search search
 
 MemoryUse PhotonMapSettings::memory_use(const RenderSettings& settings) const {
   const double paths = static_cast<double>(std::max<std::uint64_t>(1, settings.photons * settings.parts));
-  // An upper bound, because light paths that are traced for caustics alone leave fewer photons than others.
+  // An upper bound, because light paths that are traced for caustics alone leave fewer photons.
   const double all_paths = (paths + static_cast<double>(caustic_photons)) / paths;
   MemoryUse use{bytes_per_photon * all_paths, bytes_per_light_path * all_paths, 0, 1};
   if (reverse) use.per_photon += sizeof(InfluencePhoton) + sizeof(Ball) + sizeof(float);

@@ -53,7 +53,7 @@ class ReversePhotons {
   /// `split` leaves a part of the vertex's light to the map.
   void add(const SurfaceVertex& vertex, const LobeSplit& split, Term term);
 
-  /// Calls `visit(term, light)` for each; those of one kind are in the order of the eye path.
+  /// Calls `visit(term, light)` for each: diffuse ones first, each group in the order of the eye path.
   template <class Visit>
   void for_each(Visit&& visit) const {
     for (const DiffuseReversePhoton& r : diffuse) visit(r.term, r.light);

@@ -85,9 +85,9 @@ inline Normal normal_of_light(const SurfaceVertex& vertex) {
   return vertex.wi_local.z < 0 ? -vertex.at.shading.n : vertex.at.shading.n;
 }
 
-/// Continuation of the eye path at a vertex where many rays estimate the light of wide lobes: the walk goes on with
-/// four times the probability of its part of the light. Infinite lights are found by branches, one for each sample of
-/// direct light.
+/// Continuation of the eye path at a vertex where many gather rays estimate the light of wide lobes. The walk's part of
+/// the light is sampled with four times its usual probability, so that its noise matches that of the many rays.
+/// Branches find infinite lights, one branch for each sample of direct light.
 inline NarrowContinuation narrow_lobes(const LobeSplit& split) { return NarrowContinuation::with_sky_branch(split, 4); }
 
 /// Follows the eye path of a pixel, and the rays of its final gathers.

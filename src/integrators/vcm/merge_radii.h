@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The radii of merging, on surfaces and in media: those of the first pass, which a pilot measures, and those of each
-// pass, which shrink (Knaus & Zwicker 2011).
+// The radii of merging, on surfaces and in media. A pilot measures the radii of the first pass; from there they shrink
+// with the passes (Knaus & Zwicker 2011).
 #pragma once
 
 #include <array>
@@ -41,13 +41,13 @@ class FirstMergeRadii {
 /// far.
 float merge_radius_shrink(double alpha, std::uint32_t pass, double light_paths);
 
-/// Radii of merging on surfaces in a pass, relative to those of the first pass: one number for all pixels, or one for
-/// each.
+/// Radii of merging on surfaces in a pass, relative to the radii of the first pass: one number for all pixels, or one
+/// for each.
 ///
 /// A wide disc has little noise, and no bias where the density of photons is uniform. There radii hardly need to
-/// shrink: after each test that a pixel passes, they follow the schedule with α = .9. After each test that it fails,
-/// the area is halved, until it is that of the schedule with `alpha`, α < .9. After the last test all radii shrink by
-/// the schedule with α = 2/3, so that all bias vanishes, at the rate with the least mean squared error.
+/// shrink: after each test that a pixel passes, they follow the schedule with α = .9. After each failed test the area
+/// is halved, down to the area of the schedule with `alpha`, α < .9. After the last test all radii shrink by the
+/// schedule with α = 2/3, so that all bias vanishes, at the rate with the least mean squared error.
 class MergeShrinks {
  public:
   /// One factor for all pixels.
@@ -66,7 +66,7 @@ class MergeShrinks {
   std::array<float, UniformityTests::histories> by_history_{};
 };
 
-/// Radii of merging on surfaces in a pass, m. Keeps a reference to those of the first pass.
+/// Radii of merging on surfaces in a pass, m. Keeps a reference to the radii of the first pass.
 class MergeRadii {
  public:
   MergeRadii(const FirstMergeRadii& first, const MergeShrinks& shrinks) : first_(&first), shrinks_(shrinks) {}

@@ -36,7 +36,8 @@ bool UniformityTests::test(int x, int y) {
   return false;
 }
 
-// Eye paths through a pixel may miss obstacles on its surface, so those of the neighbouring pixels count, too.
+// The eye paths of a pixel may miss obstacles near its surface, so the obstacles that neighbouring pixels found count,
+// too.
 bool UniformityTests::is_clear_around(int x, int y) const {
   for (int j = std::max(0, y - 1); j <= std::min(height_ - 1, y + 1); ++j)
     for (int i = std::max(0, x - 1); i <= std::min(width_ - 1, x + 1); ++i)

@@ -16,8 +16,9 @@
 namespace lanthorn {
 
 /// Tests each pixel several times: are the photons around the first merges of its eye paths uniformly distributed? The
-/// photons of the first passes are counted. Too few photons tell nothing: they may be the few bright ones that have
-/// leaked in under a door. The pixel then passes if the discs of the merges around it are flat and clear.
+/// photons of the first passes are counted. With too few photons the test is meaningless, because these may be bright
+/// ones that have leaked in, for example under a door. The pixel then passes if the discs of the merges around it are
+/// flat and unobstructed.
 class UniformityTests {
   struct Counts {
     std::array<std::atomic<std::uint32_t>, disc_sectors> photons{};
@@ -29,7 +30,7 @@ class UniformityTests {
   static constexpr std::uint32_t counted_passes = 16;  ///< whose photons are counted
   static constexpr unsigned tests = 5;
   static constexpr unsigned histories = 1u << tests;  ///< of a pixel: each test passed or failed
-  /// The first pass whose radii depend on test `t`: those before it are counted for the test.
+  /// The first pass whose radii depend on test `t`; the test counts the photons of all passes before it.
   static constexpr std::uint32_t pass_of_test(unsigned t) { return 1u << t; }
 
   explicit UniformityTests(const PixelWindow& window);
@@ -38,13 +39,13 @@ class UniformityTests {
   std::uint32_t passes_counted() const { return passes_counted_; }
   bool are_done() const { return passes_counted_ == counted_passes; }
   /// Counts a photon of pass `passes_counted()` in the disc of a merge. `offset`: from its centre, in the frame of the
-  /// surface; `u`: squared distance over that of the edge. Threads may call it at the same time.
+  /// surface; `u`: squared distance, divided by the squared distance of the edge. Threads may call it at the same time.
   void count(std::uint32_t pixel, const Vec3& offset, float u) {
     counts_[pixel].photons[sector_of(offset, u > 0.5f)].fetch_add(1, std::memory_order_relaxed);
   }
   /// True if merges of pass `passes_counted()` look for obstacles: only once, because the rays are expensive.
   bool seeks_obstacles() const { return passes_counted_ == 0; }
-  /// The disc of a merge is not flat and clear. Threads may call it at the same time.
+  /// Notes that the disc of a merge is not flat and unobstructed. Threads may call it at the same time.
   void note_obstacle(std::uint32_t pixel) { counts_[pixel].is_obstructed.store(true, std::memory_order_relaxed); }
   /// Call when all photons of the pass have been counted.
   void end_pass();

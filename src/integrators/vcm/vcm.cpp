@@ -9,7 +9,8 @@
 // 1. Trace N light paths. Keep each vertex, and connect it to the lens.
 // 2. Sort the vertices into maps for merging.
 // 3. Trace an eye path for each pixel. At each of its vertices, count the light that it hits, and gather light by
-//    next-event estimation, by connections to the vertices of one light path, and by merging with those of all.
+//    next-event estimation, by connections to the vertices of one light path, and by merging with the vertices of
+//    all light paths.
 //
 // Each has the weight of the balance heuristic, w = 1 / (w_light + 1 + w_eye) (TR eq. 37). path/mis.h derives both
 // terms from sums that both kinds of walk carry from vertex to vertex, d_VCM, d_VC and d_VM (TR eqs. 31-36): `Subpath`.

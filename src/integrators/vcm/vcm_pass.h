@@ -85,7 +85,7 @@ struct VcmPass {
   std::size_t partner(std::size_t first, int i, int count) const;
   /// The vertices of a light path. None if it belongs to another block.
   std::span<const LightVertex> light_path(std::size_t path) const;
-  /// Time and wavelengths of an eye path: those of the light path that it is connected to.
+  /// Time and wavelengths of an eye path, which are equal to those of the light path that it is connected to.
   PathDraw draw_of_eye_path(Sampler& sampler) const;
 };
 

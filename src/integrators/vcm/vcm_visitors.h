@@ -98,7 +98,7 @@ class LightVisitor {
   Subpath subpath_;
 };
 
-/// An answer of `EyeVisitor`: whether the walk goes on, and whether by delta lobes alone.
+/// An answer of `EyeVisitor`: whether the walk continues, and whether by delta lobes alone.
 struct EyeContinuation : Continuation {
   bool by_delta_alone = false;
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Merging in media: photons and photons' flights of a pass that eye paths meet at points and along rays, with the
-// weight that each has among all techniques (Křivánek, Georgiev, Hachisuka, Vévoda, Šik, Nowrouzezahrai & Jarosz 2014,
+// Merging in media: eye paths gather a pass's photons and photon beams, at points and along rays. Each contribution has
+// its MIS weight among all techniques (Křivánek, Georgiev, Hachisuka, Vévoda, Šik, Nowrouzezahrai & Jarosz 2014,
 // "Unifying Points, Beams, and Paths in Volumetric Light Transport Simulation").
 #pragma once
 

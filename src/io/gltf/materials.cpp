@@ -284,7 +284,7 @@ class MaterialReader {
     result_.transmission = factor(*transmission, "transmissionFactor", 0, "transmissionTexture", red, neutral_effect);
     const auto volume = material_.extension("KHR_materials_volume");
     result_.thin = !volume || !(volume->number("thicknessFactor", 0) > 0);
-    // A thin sheet rarely has an index of its own. Blender writes gems and water like this.
+    // For a thin sheet, files rarely give an index. Blender writes gems and water like this.
     if (!volume && ior && (result_.transmission.texture || result_.transmission.value > 0))
       document_.warn("thin sheet", *transmission,
                      fmt::format("material {} has no KHR_materials_volume, so it is a thin sheet, which does not bend "

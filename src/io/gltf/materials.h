@@ -31,8 +31,8 @@ class Materials {
 
   /// The material of a primitive, by its member "material", or the default material.
   const Surface& of(const Value& primitive);
-  /// The area lights that may illuminate the scene: those of materials that are not unlit and whose emission is not
-  /// textured (a texture may be black except for a few spots).
+  /// The area lights that may illuminate the scene. Excludes lights of unlit materials, and of materials with textured
+  /// emission (a texture may be black except for a few spots).
   const std::vector<description::Index>& lamps() const { return lamps_; }
   /// Those materials of the scene that are not double-sided.
   const std::set<description::Index>& one_sided() const { return one_sided_; }

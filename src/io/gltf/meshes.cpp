@@ -159,7 +159,7 @@ std::vector<glm::vec4> tangents_along_u(const TriangleMesh& mesh) {
 }
 
 // Rotates the tangents about the normals, counter-clockwise as seen from outside if w is 1. If the file has no
-// tangents, uses those along u.
+// tangents, uses tangents along u.
 void turn_tangents(TriangleMesh& mesh, std::vector<glm::vec4> tangents, float angle) {
   if (angle == 0 || mesh.normals.empty()) return;
   if (tangents.empty() && !mesh.uvs.empty()) tangents = tangents_along_u(mesh);

@@ -17,8 +17,8 @@ struct Primitive {
   Strokes strokes;
 };
 
-/// A deformed primitive with what its surface needs: texture coordinates as (u, 1 - v), tangents. nullopt, with a
-/// warning, if it has nothing to render. Throws Error.
+/// A deformed primitive with the attributes that its material needs: texture coordinates as (u, 1 - v), tangents.
+/// nullopt, with a warning, if it has nothing to render. Throws Error.
 std::optional<Primitive> read_primitive(Document& document, const Value& primitive, const Surface& surface,
                                         const Deformation& deformation);
 

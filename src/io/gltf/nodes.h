@@ -18,8 +18,8 @@ struct PlacedNode {
 /// All nodes of the scene, parents before children. Throws Error if a node is reached twice.
 std::vector<PlacedNode> placed_nodes(Document& document, const Pose& pose);
 
-/// The transforms of a node's mesh: one, or those of EXT_mesh_gpu_instancing. Singular transforms (scale 0) are
-/// omitted.
+/// The transforms of a node's mesh: one, or all transforms of EXT_mesh_gpu_instancing. Singular transforms (scale 0)
+/// are omitted.
 std::vector<Transform> mesh_places(Document& document, const PlacedNode& placed);
 
 }  // namespace lanthorn::gltf

@@ -21,7 +21,7 @@ class Pose {
   std::vector<float> morph_weights(std::size_t node) const;
 
  private:
-  /// Animated values, which replace those of the node.
+  /// Animated values, which replace the node's own.
   struct Animated {
     std::optional<std::vector<double>> translation, rotation, scale, weights;
   };

@@ -50,8 +50,8 @@ struct Context {
   bool leaves_out(const std::filesystem::path& path) const {
     return access != nullptr && access->skip_missing && access->is_missing(path);
   }
-  /// True if the file is missing and will be reported later, together with others; the reader continues without it.
-  /// `problem`: the error to report if it is the only one.
+  /// True if the file is missing and will be reported later, together with other missing files; the reader continues
+  /// without it. `problem`: the error to report if it is the only one.
   bool defer_missing(const std::filesystem::path& path, const Error& problem);
   /// Throws the error for all files missing so far, or adds warnings for them.
   void report_missing();

@@ -26,7 +26,7 @@ struct DirectiveForm {
 const DirectiveForm* find_form(std::string_view name);
 
 /// One directive of a file. The parser makes directives; the assembler builds the scene from them, the upgrader
-/// translates those of pbrt-v3 to pbrt-v4, the writer prints them.
+/// translates directives of pbrt-v3 to pbrt-v4, the writer prints directives.
 struct Directive {
   std::string_view name;  ///< refers to a static string
   std::array<double, 16> numbers{};

@@ -35,7 +35,7 @@ Place parse(std::string_view text, const DirectiveSink& sink, FileStack& files, 
   return Parser(text, own, files, sink, context).parse();
 }
 
-// As `parse` for a pbrt-v3 file, translated to pbrt-v4's directives.
+// Like `parse`, for a pbrt-v3 file: translates it to pbrt-v4's directives.
 Place parse_upgraded(std::string_view text, const DirectiveSink& sink, FileStack& files, Context& context) {
   Upgrader upgrader(context, sink);
   const Place end = parse(

@@ -28,7 +28,7 @@ bool ends_word(char c) {
   }
 }
 
-// Removes what std::from_chars rejects but pbrt accepts: a leading plus sign, and a trailing comma.
+// Removes characters that std::from_chars rejects but pbrt accepts: a leading plus sign, and a trailing comma.
 std::string_view bare_number(std::string_view text) {
   if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
   if (text.size() > 1 && text.back() == ',') text.remove_suffix(1);

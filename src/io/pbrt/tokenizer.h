@@ -56,7 +56,7 @@ class Tokenizer {
 std::string string_value(const Token& token);
 /// A finite number. Underflow gives 0; throws Error at the token if it is not a number or too large.
 float float_value(const Token& token);
-/// As `float_value` in double precision, but within the range of floats.
+/// Like `float_value`, in double precision but within the range of floats.
 double double_value(const Token& token);
 /// A 32-bit integer in decimal; throws Error at the token otherwise.
 std::int32_t integer_value(const Token& token);

@@ -45,13 +45,13 @@ class ScopedNames {
   std::vector<std::size_t> begins_;
 };
 
-/// Translates the directives of a pbrt-v3 file, or of a pbrt-v2 file as far as its directives are the same, to those of
-/// a pbrt-v4 file: call `translate` for each, in file order, then `finish`. Each output directive has the place of the
+/// Translates the directives of a pbrt-v3 file to pbrt-v4, and of a pbrt-v2 file as far as they are the same as in
+/// pbrt-v3: call `translate` for each, in file order, then `finish`. Each output directive has the place of the
 /// directive it was made from. Approximations cause warnings, one per kind. Throws Error for directives that are
 /// invalid or exist only in pbrt-v4.
 class Upgrader {
  public:
-  /// The context's version is that of the file.
+  /// The context has the version of the file.
   Upgrader(Context& context, const DirectiveSink& sink);
 
   void translate(Directive d);

@@ -137,8 +137,8 @@ class MaterialUpgrade {
   // A diffuse base of albedo Kd (1 - Ks) under a reflection that is Ks at normal incidence and 1 at grazing angles
   // [A00]. A clear coat that reflects much more than glass would trap the base's light. Therefore the coat is glass,
   // and the rest of Ks is a mirror on a fraction of the surface. Both together have Schlick's reflectance: s + (1 - s)
-  // (g + (1 - g) (1 - cos)^5) equals Ks + (1 - Ks) (1 - cos)^5 for the fraction s = (Ks - g) / (1 - g), with g that of
-  // glass.
+  // (g + (1 - g) (1 - cos)^5) equals Ks + (1 - Ks) (1 - cos)^5 for the fraction s = (Ks - g) / (1 - g), where g is the
+  // reflectance of glass.
   Upgraded substrate() {
     Parameter kd = take("Kd", 0.5f), ks = take("Ks", 0.5f);
     Parameters parameters = roughness({"uroughness", "vroughness"}, 0.1f);
@@ -233,7 +233,7 @@ class MaterialUpgrade {
     return {"hair", std::move(parameters)};
   }
 
-  // "amount" is the weight of the first material; in pbrt-v4, that of the second.
+  // "amount" is the weight of the first material in pbrt-v3, and of the second in pbrt-v4.
   Upgraded mix() {
     const Factor amount = weight("amount", 0.5f);
     const auto first = old_.take_string("namedmaterial1"), second = old_.take_string("namedmaterial2");

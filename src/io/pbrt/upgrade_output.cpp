@@ -70,7 +70,7 @@ Factor UpgradeOutput::grey(const Parameter& spectrum, const std::string& entity)
   return {mean(*colour)};
 }
 
-// A float texture like this spectrum texture, with means in place of colours.
+// A float texture like this spectrum texture, with means instead of colours.
 std::string UpgradeOutput::grey_texture(const std::string& name, Place place, int depth) {
   constexpr int deepest = 100;
   if (const auto known = grey_textures_.find(name); known != grey_textures_.end()) return known->second;

@@ -16,8 +16,8 @@
 
 namespace lanthorn::pbrt {
 
-/// Receives the pbrt-v4 directives made from a pbrt-v3 file, and provides what their makers share: new names,
-/// arithmetic with textures, and the list of approximations.
+/// Receives the pbrt-v4 directives made from a pbrt-v3 file, and provides the functions that the translators share: new
+/// names, arithmetic with textures, and the list of approximations.
 class UpgradeOutput {
  public:
   UpgradeOutput(Context& context, const DirectiveSink& sink) : context_(context), sink_(sink) {}

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Translations of pbrt-v3's directives, by what they describe. Texture names are already those of the output. All throw
-// Error for kinds that pbrt-v3 does not have.
+// Translations of pbrt-v3's directives, by subject. Texture names are already the names in the output. All throw Error
+// for kinds that pbrt-v3 does not have.
 #pragma once
 
 #include <string>

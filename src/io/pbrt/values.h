@@ -16,8 +16,8 @@ namespace lanthorn::pbrt {
 std::optional<description::SpectrumValue> find_spectrum(const ParameterList& list, std::string_view name,
                                                         description::SpectrumRole role, Context& context);
 
-/// As `find_spectrum`, or a "texture". A skipped texture (see Context) is replaced by grey for reflectances, 0 for
-/// lights, else nullopt. Throws Error if no spectrum texture of that name is defined.
+/// Like `find_spectrum`, but also accepts a "texture". A skipped texture (see Context) is replaced by grey for
+/// reflectances, 0 for lights, else nullopt. Throws Error if no spectrum texture of that name is defined.
 std::optional<description::SpectrumParameter> find_spectrum_or_texture(const ParameterList& list, std::string_view name,
                                                                        description::SpectrumRole role,
                                                                        Context& context);

@@ -106,7 +106,8 @@ class LeastErrorRadius {
     }
   };
   float radius() const { return radius_; }
-  /// The estimate of the Laplacian needs more photons than that of the light: those within up to twice the radius.
+  /// The estimate of the Laplacian needs more photons than the estimate of the light: those within up to twice the
+  /// radius.
   float reach(const AdaptiveRadiusSettings& s) const { return s.kernel.support(std::min(2 * radius_, widest_)); }
   void update(const Tally& tally, const AdaptiveRadiusSettings& s);
   bool is_possible(float largest) const {

@@ -38,8 +38,8 @@ struct Kernel {
   KernelShape shape = KernelShape::box;
   float cone_slope = 1;  ///< k >= 1 of the cone: its value reaches 0 at k R
 
-  /// Support radius R, beyond which the kernel is 0; `radius` is that of the equivalent box kernel. 3σ with σ = radius
-  /// for `gaussian`, otherwise the radius itself. Queries use this radius.
+  /// Support radius R, beyond which the kernel is 0; `radius`: of the equivalent box kernel. 3σ with σ = radius for
+  /// `gaussian`, otherwise the radius itself. Queries use this radius.
   float support(float radius) const { return shape == KernelShape::gaussian ? gaussian_cut * radius : radius; }
 
   /// Value at u = dist²/R² in [0, 1], relative to the box kernel.
@@ -80,8 +80,8 @@ struct Kernel {
   static constexpr float gaussian_peak = gaussian_rate / (1 - 0.0111089965f);  // over 1 - exp(-rate)
 };
 
-/// ∫K² and ∫K x² of a kernel on the unit disc. With support R, the estimate's variance is `roughness / R²` times that
-/// of a photon's light per area, and its bias is half of `second R²` times the Laplacian of the light.
+/// ∫K² and ∫K x² of a kernel on the unit disc. With support R, the variance of the estimate is `roughness / R²` times
+/// the variance of a photon's light per area, and its bias is half of `second R²` times the Laplacian of the light.
 struct KernelMoments {
   float roughness = 0, second = 0;
 };

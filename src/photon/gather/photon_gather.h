@@ -68,10 +68,10 @@ struct MetPhoton {
 
 /// Density estimate of reflected radiance (Jensen 2001, eq. 7.6) from the photons on the vertex's surface, that is,
 /// those whose distance from the tangent plane is small against the radius, and which have not set out behind it. The
-/// photons' powers are already divided by the number of emitted photons. Photons count with the part of light that
-/// `settings.split` leaves to them, but those that came from a delta light by delta scatterings alone count in full: no
-/// walk can find their light. Calls `see(MetPhoton)` for each photon within `reach` (m), which is at least the kernel's
-/// support.
+/// photons' powers are already divided by the number of emitted photons. A photon's contribution is multiplied by the
+/// part of light that `settings.split` leaves to photons. Photons that came from a delta light by delta scatterings
+/// alone count in full: no walk can find their light. Calls `see(MetPhoton)` for each photon within `reach` (m), which
+/// is at least the kernel's support.
 template <class Map, class See>
 GatheredLight gather_photons(const Map& map, const SurfaceVertex& vertex, const GatherSettings& settings,
                              const Wavelengths& w, float reach, See&& see) {

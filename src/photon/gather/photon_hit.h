@@ -21,8 +21,8 @@ inline constexpr float plane_flatness = 1e-3f;
 
 /// True if a photon within `reach` (m) of a gather point is on the point's surface: it is near the tangent plane, and
 /// it has not set out behind that plane, as seen from the side that it would light. Otherwise it is between this
-/// surface and one close to it, and its light cannot have come here. `height` (m) is the photon's over the plane,
-/// `cosine` that of its direction to the plane's normal; `flight` (m) is at most the length of its last flight.
+/// surface and one close to it, and its light cannot have come here. `height` (m): of the photon over the plane.
+/// `cosine`: between its direction and the plane's normal. `flight` (m): at most the length of its last flight.
 inline bool is_on_surface(float height, float cosine, float flight, float reach) {
   const float in_plane = plane_flatness * reach, lit_height = cosine > 0 ? height : -height;
   const bool set_out_behind = lit_height < -in_plane && lit_height + flight * std::fabs(cosine) <= in_plane;

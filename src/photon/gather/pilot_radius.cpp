@@ -92,8 +92,8 @@ class PilotPhotons {
   std::vector<float> flux_;  // by slot, W times light paths
 };
 
-// Follows an eye path to its gather point. The footprint is that of a straight path of the same length: curved mirrors
-// and lenses are not accounted for.
+// Follows an eye path to its gather point. The footprint is taken from a straight path of the same length: curved
+// mirrors and lenses are not accounted for.
 struct GatherPointVisitor {
   const PathContext& path;
   const PilotPhotons& photons;
@@ -179,7 +179,7 @@ class Pilot {
 
  private:
   // Factor for squared distances, which are proportional to 1 / density: converts from the pilot's numbers of photons
-  // and neighbours to those of a pass.
+  // and neighbours to the numbers of a pass.
   float scale2(double wanted_photons) const {
     return static_cast<float>(wanted_photons / static_cast<double>(pilot_neighbours) * photons() /
                               static_cast<double>(std::max<std::uint64_t>(1, job_.settings.photons)));

@@ -46,7 +46,7 @@ class FirstRadius {
   }
 
   float at(std::uint32_t pixel) const { return per_pixel_.empty() ? typical_ : per_pixel_[pixel]; }
-  /// Classes of the photons' flux; radii are those of the first class.
+  /// Classes of the photons' flux; radii refer to the first class.
   const FluxClasses& classes() const { return classes_; }
   /// Ratio of a class's radius to the first class's radius, which currently is `radius`.
   float class_factor(int flux_class, std::uint32_t pixel, float radius) const {
@@ -87,8 +87,8 @@ class PassRadii {
 /// measure the distance to their nearest photons. The distance is scaled so that a gather of the first pass finds about
 /// `wanted_photons`. It is at most a twentieth of the scene's radius and, where the surface is not flat and clear that
 /// far, at most ten pixels: where photons are few, noise is better than the darkening by a disc that reaches over an
-/// edge. Depends on scene, view, seed and photon count only. `guide` is that of the passes, or null. With `by_flux`,
-/// photons of uneven flux have radii that depend on their flux.
+/// edge. Depends on scene, view, seed and photon count only. `guide`: of the passes, or null. With `by_flux`, photons
+/// of uneven flux have radii that depend on their flux.
 FirstRadius choose_first_radius(const RenderJob& job, const RadiusChoice& choice, double wanted_photons,
                                 const LightGuide* guide = nullptr, bool by_flux = false);
 

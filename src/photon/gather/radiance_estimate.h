@@ -60,9 +60,9 @@ inline ChosenNearest choose_nearest(std::span<Neighbour> found, std::size_t want
   return {found, wanted};
 }
 
-/// Density of the photons' light at a point. `bring(photon, reach)` returns the light of one photon, W or W/sr;
-/// nullopt if the photon does not belong to the surface although it is within `reach` (m), see `lies_on`. Such photons
-/// count neither in the sum nor in the number of photons nor in the radius. The dark side of a thin wall stays dark,
+/// Density of the photons' light at a point. `bring(photon, reach)` returns the light of one photon, W or W/sr; nullopt
+/// if the photon does not belong to the surface although it is within `reach` (m), see `lies_on`. Such photons are left
+/// out of the sum, of the number of photons and of the search for the radius. The dark side of a thin wall stays dark,
 /// and corners are not darkened.
 template <class Map, class Bring>
 DensityEstimate estimate_density(const Map& map, const Point& p, const EstimateSettings& settings, Bring&& bring) {

@@ -35,8 +35,8 @@ struct RadiusSchedule {
     assert(alpha > 0 && alpha <= 1);
     return i == 1 ? 1 : std::exp(log_gamma(i + alpha) - log_gamma(1 + alpha) - log_gamma(i + 1));
   }
-  /// r / r_1 of pass `pass`. The variance of a density estimate is inversely proportional to r^dimensions, which
-  /// therefore shrinks as r² does in two dimensions (Knaus & Zwicker 2011, section 5).
+  /// r / r_1 of pass `pass`. The variance of a density estimate is inversely proportional to r^dimensions. This power
+  /// therefore follows the schedule that r² follows in two dimensions (Knaus & Zwicker 2011, section 5).
   float shrink(std::uint64_t pass, int dimensions) const {
     return static_cast<float>(std::pow(shrink2(pass), 1.0 / dimensions));
   }

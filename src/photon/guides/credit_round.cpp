@@ -13,8 +13,8 @@ namespace lanthorn {
 
 namespace {
 
-// Limits on the number of light paths of a round, which is otherwise that of a pass: enough to learn from, and no more
-// than the cells can use.
+// A round traces as many light paths as a pass, within these limits: enough to learn from, and no more than the cells
+// can use.
 constexpr std::uint64_t least_of_round = 16384, most_of_round = 65536;
 
 struct PilotPhotonVisitor {

@@ -47,7 +47,7 @@ struct Landings {
   }
 };
 
-/// The landings of pilot eye paths other than those of `find_hit_points`.
+/// The landings of further pilot eye paths, not the ones of `find_hit_points`.
 Landings find_landings(const RenderJob& job, PhotonUse use, bool in_media, const PassDraw& draw);
 
 }  // namespace lanthorn

@@ -93,8 +93,8 @@ EmissionGuide shared_by_power(EmissionGuide guide, const Scene& scene) {
 
 bool has_power(const Light& light) { return power(light) > 0; }
 
-// Photons add light only where eye paths that go on meet something. Eye paths may miss small mirrors and glass, which
-// projection maps find, and scattering media.
+// Photons add light only where eye paths that continue meet a surface or a medium. Eye paths may miss small mirrors and
+// glass, which projection maps find, and scattering media.
 bool may_gain(const Scene& scene, const Landings& landings) {
   return !landings.places.empty() || scene.may_be_specular() || scene.has_scattering_media();
 }
@@ -106,8 +106,8 @@ LearnedEmission learn_emission(const RenderJob& job, PhotonUse use, bool in_medi
   if (std::none_of(scene.lights().begin(), scene.lights().end(), has_power)) return {};
   const PassDraw draw = draw_for_pass(job, 0);
   const std::vector<HitPoint> hits = find_hit_points(job, use, in_media, draw);
-  // The first round uses projection maps, including that of mirrors and glass: in large scenes, few of the photons that
-  // are emitted by power reach a visible surface.
+  // The first round uses projection maps, including the map of mirrors and glass: in large scenes, few of the photons
+  // that are emitted by power reach a visible surface.
   Landings landings = find_landings(job, use, in_media, draw);
   if (!may_gain(scene, landings)) return {};
   const std::optional<AimedDisks> disks = disks_around(landings.places, hits, scene.bounding_sphere());

@@ -24,9 +24,9 @@ using Cell = TreeDistribution::Cell;
 constexpr float uniform_share = 1.0f / 16;
 // Largest number of cells with a target in their way, for all lights together and for one light.
 constexpr double cells_of_scene = 32768, cells_of_light = 4096;
-// Each cell has a list of the balls that it may meet. The lists of one level of the subdivision are in memory together
-// with those of the next, which are at most twice as long. Bounds on the number of balls, and on the list entries of a
-// level for each cell that a light may have, keep the lists of a light below 200 MB.
+// Each cell has a list of the balls that it may meet. Memory holds the lists of one level of the subdivision together
+// with the lists of the next level, which are at most twice as long. Bounds on the number of balls, and on the list
+// entries of a level for each cell that a light may have, keep the lists of a light below 200 MB.
 constexpr std::size_t most_balls = 1 << 18, entries_per_cell = 4096;
 
 /// A bound of a cell's photons: origins in a sphere, directions within an angle of an axis.
@@ -180,7 +180,7 @@ class LightSubdivision {
     if (!met.empty()) level.push_back({static_cast<std::uint32_t>(nodes_.size() - 1), std::move(met)});
   }
 
-  // How a cell is halved, and what both halves meet.
+  // How a cell is halved, and the balls that each half meets.
   struct Halves {
     std::uint32_t axis = 0;
     std::array<std::vector<std::uint32_t>, 2> met;

@@ -61,7 +61,7 @@ struct LandingVisitor {
     if (is_hidden(state)) add_first(landing);
     return Continuation::go_on();
   }
-  // Directions out of a medium count like those of a diffuse surface in place of its interface.
+  // Directions out of a medium count as if its interface were a diffuse surface.
   Continuation operator()(const MediumVertex& vertex) const {
     pilot.media.push_back(
         {vertex.position, sum_of(vertex.state.beta), static_cast<std::uint32_t>(pilot.paths.size() - 1)});

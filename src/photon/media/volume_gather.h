@@ -89,13 +89,13 @@ inline float gather_probability(const HenyeyGreenstein& hg) { return spread_of_p
 /// Kernels of several sizes whose estimates are compared.
 struct KernelLadder {
   std::span<const KernelIn> kernels;  ///< the widest first: that of the gather
-  /// m. Photons at distance t from the eye count with weight t² / (t² + near²): a photon closer than its kernel is wide
+  /// m. Photons at distance t from the eye have weight t² / (t² + near²): a photon closer than its kernel is wide
   /// covers the whole picture, and a few of them would dominate.
   float near = 0;
 };
 
 /// Estimates from a pass's photons in media. Photons that a delta light has sent through mirrors and clear glass alone
-/// count in full, because no walk can find their light; all others count with the share `gather_probability`.
+/// count in full, because no walk can find their light; all other photons are multiplied by `gather_probability`.
 class VolumeGather {
  public:
   /// `chunks`: the records that the estimator needs, in path order. `radius`: of the equivalent box kernel, m.

@@ -188,7 +188,7 @@ class VolumePilot {
     return result;
   }
 
-  // Photons of one of the pilot's sets over those of a pass.
+  // Number of photons of one of the pilot's sets, divided by the number of a pass.
   double share() const {
     const std::uint64_t photons = std::max<std::uint64_t>(1, job_.settings.photons);
     const double light_paths = static_cast<double>(paths_) / static_cast<double>(photons);
@@ -196,7 +196,7 @@ class VolumePilot {
     return light_paths * static_cast<double>(share_of_beams(paths_)) / static_cast<double>(share_of_beams(photons));
   }
 
-  // Number of photons that an eye path can meet in the time of all other work that a pass does for it.
+  // Number of photons that an eye path can meet in the time that a pass needs for all other work per eye path.
   double most_work() const {
     const PixelWindow film = job_.view.film();
     const double eye_paths = static_cast<double>(film.width()) * film.height();
@@ -206,8 +206,9 @@ class VolumePilot {
   // The rung whose estimate L_r of the light L has the least squared error after n passes, relative to the light,
   //   (E L_r - L)² + V(L_r) / n = (E L_r)² - 2 L E L_r + V(L_r) / n + L².
   // L is not known. But blurring by r equals blurring twice by r/√2, and each blur can be applied to either factor, so
-  // that the sum of L E L_r over the paths is that of (E L_{r/√2})². V(L_r) is inversely proportional to the kernel's
-  // size. Radii smaller than that of the least noise have to be significantly better, because they find few photons.
+  // the sum of L E L_r over the paths equals the sum of (E L_{r/√2})². V(L_r) is inversely proportional to the kernel's
+  // size. Radii smaller than the one with the least noise have to be significantly better, because they find few
+  // photons.
   std::size_t least_error(const std::vector<Estimates>& paths) const {
     const auto count = static_cast<double>(paths.size());
     double light = 0;

@@ -17,8 +17,8 @@ struct MediumLight {
 /// Divides the light of media between an eye walk and photons. Where the walk scatters in a medium, next-event
 /// estimation and the walk's next ray find single scattering, combined by MIS. Photons give the share p of all other
 /// light (`gather_probability`), along each flight's whole way or at the point of scattering. With probability 1 - p
-/// the walk goes on for the rest. Otherwise it is *gathered*: its next ray still finds lights, and after that it finds
-/// only the emission of media that are not lights.
+/// the walk continues for the rest. Otherwise it is *gathered*: its next ray still finds lights, and after that it
+/// finds only the emission of media that are not lights.
 class VolumeWalk {
  public:
   explicit VolumeWalk(const VolumeGather& volume) : volume_(&volume) {}
@@ -32,8 +32,8 @@ class VolumeWalk {
     return is_gathered_ || flight.state.medium == MediumId::vacuum ? GatheredLight{} : volume_->along(path, flight);
   }
 
-  /// Light at a vertex, and the decision whether the walk is gathered from there on. It must go on in either case.
-  /// Preconditions: it is not gathered, and the vertex may scatter.
+  /// Light at a vertex, and the decision whether the walk is gathered from there on. The walk must continue in either
+  /// case. Preconditions: it is not gathered, and the vertex may scatter.
   MediumLight scatter(const PathContext& path, const MediumVertex& vertex, const RayLight& ray_light) {
     const bool photons_reach = vertex.state.depth <= PhotonFlags::most_eye_scatterings + 1;
     const float p = photons_reach ? gather_probability(vertex.phase) : 0.0f;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Techniques as methods of `render`: every pass is a frame with photons, views of lights and turns of its own, and the
+// Techniques as methods of `render`: every pass is a frame with its own photons, views of lights and turns, and the
 // image is the mean of the frames.
 #pragma once
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Frames of a scene by OpenGL. What a frame shows is a function of scene, view and settings.
+// Frames of a scene by OpenGL. The picture of a frame is a function of scene, view and settings.
 #pragma once
 
 #include <cstdint>
@@ -47,10 +47,10 @@ class Renderer {
   /// Throws gl::Unavailable if the context has no OpenGL 4.5, Error if a shader does not compile.
   explicit Renderer(const Scene& scene);
 
-  /// Shows an edited scene (`edit_scene`). `scene` must outlive its frames, like that of the constructor.
+  /// Shows an edited scene (`edit_scene`). `scene` must outlive its frames, like the constructor's scene.
   void update(const Scene& scene);
 
-  /// Draws the frame into layers. Throws Error with what OpenGL has reported, if anything.
+  /// Draws the frame into layers. Throws Error with OpenGL's message if OpenGL has reported an error.
   void draw(const View& view, const FrameSettings& settings);
   /// Layers emission, direct, indirect, caustic of the last frame: channels emission.R ... caustic.B.
   Image read_layers() const;

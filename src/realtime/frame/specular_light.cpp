@@ -19,8 +19,8 @@ namespace lanthorn {
 
 namespace {
 
-/// Follows delta lobes and the narrow parts of others, as GatherVisitor of integrators/progressive.h. The GPU draws the
-/// non-delta lobes of vertices before `first_depth`.
+/// Follows delta lobes and the narrow parts of other lobes, like GatherVisitor in integrators/progressive.h. The GPU
+/// draws the non-delta lobes of vertices before `first_depth`.
 struct SpecularVisitor {
   const PathContext& path;
   const VertexLight& light;

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Light of mirrors, glass and glossy surfaces: eye paths of the CPU, because a rasteriser cannot follow them. They go
-// on through delta lobes and, direction by direction, through narrow ones (LobeSplit); the frame's technique gives the
-// indirect light of wide lobes, as photons do in probppm.
+// Light of mirrors, glass and glossy surfaces: eye paths of the CPU, because a rasteriser cannot follow them. They
+// continue through delta lobes and, direction by direction, through narrow ones (LobeSplit); the frame's technique
+// gives the indirect light of wide lobes, as photons do in probppm.
 #pragma once
 
 #include <cstdint>

@@ -37,7 +37,7 @@ struct LightView {
   float power = 0;  ///< W, luminance: bound of the power that leaves it, by which photons are shared out
 };
 
-/// Where parallel light needs finer maps than those of the whole scene.
+/// The region in which parallel light needs finer maps than the maps of the whole scene.
 struct LightFocus {
   Point centre{0};
   float radius = 0;  ///< m

@@ -11,11 +11,11 @@
 
 namespace lanthorn {
 
-/// In RGB mode a path through dispersive glass has the colour of its one wavelength. Each path of a frame has a
-/// wavelength of its own, so that glass has the colour of all of them: the wavelengths of neighbours lie far apart, and
-/// so do those of a pixel's successive frames. A photon and the eye path that finds it have independent wavelengths,
-/// and their colours multiply. Where both are dispersed this is right in the mean, except that light is not seen
-/// through the glass at the wavelength at which it came.
+/// In RGB mode a path through dispersive glass has the colour of its one wavelength. Each path of a frame has its own
+/// wavelength, so that glass shows the mean colour over all of them: wavelengths of neighbouring pixels lie far apart,
+/// and so do wavelengths of a pixel in successive frames. A photon and the eye path that finds it have independent
+/// wavelengths, and their colours multiply. Where both are dispersed this is right in the mean, except that light is
+/// not seen through the glass at the wavelength at which it came.
 class FrameHeroes {
  public:
   /// Without dispersion, glass has the index of a wavelength in the middle for all paths, and no colour.

@@ -52,7 +52,7 @@ glm::vec4 emission_of(const Scene& scene, std::uint32_t light, const Vec2& uv) {
   return {radiance[0], radiance[1], radiance[2], area->two_sided ? 1.0f : 0.0f};
 }
 
-/// Largest radiance over the unit square, by channel; a as `emission_of`.
+/// Largest radiance over the unit square, by channel; the alpha channel is as in `emission_of`.
 glm::vec4 largest_emission(const Scene& scene, std::uint32_t light) {
   glm::vec4 largest(0);
   for (const glm::vec4& probe : probe_square([&](const Vec2& uv) { return emission_of(scene, light, uv); }))

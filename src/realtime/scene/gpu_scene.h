@@ -62,14 +62,14 @@ class GpuScene {
   void draw() const { draw(commands_); }
   /// The same without the shapes that are hidden from the camera.
   void draw_for_camera() const { draw(camera_commands_); }
-  /// Binds what scene.glsl and bsdf.glsl name.
+  /// Binds the resources that scene.glsl and bsdf.glsl name.
   void bind() const;
 
   std::uint64_t triangles() const { return triangles_; }
   const BoundingSphere& sphere() const { return sphere_; }
   /// Largest distance of a triangle from the surface that it stands for, m.
   float largest_slack() const;
-  /// What the GPU shows differently from the scene, as text for the user; empty if nothing.
+  /// Differences between the picture of the GPU and the scene, as text for the user; empty if there are none.
   const std::vector<std::string>& limitations() const { return limitations_; }
   /// A number, from 1 on, that changes whenever places or materials may have changed.
   std::uint64_t surface_version() const { return surface_version_; }

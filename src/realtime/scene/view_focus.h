@@ -18,7 +18,8 @@ struct ViewFocus {
 /// Found by 64 rays through a view at rest, so that it is the same for all frames of the view.
 ViewFocus focus_of(const Scene& scene, const View& view);
 
-/// Radius of the visible region, m: that of the scene or, for a small object in a large place, four times its distance.
+/// Radius of the visible region, m: the radius of the scene or, for a small object in a large place, four times its
+/// distance.
 float seen_radius(const Scene& scene, const View& view);
 
 }  // namespace lanthorn

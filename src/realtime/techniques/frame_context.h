@@ -50,8 +50,8 @@ struct FrameSettings {
   /// Paths through dispersive glass have wavelengths of their own, and their colours. A single frame shows these as
   /// coloured noise. False: glass without dispersion.
   bool disperses = true;
-  /// Parallel light has finer maps, and half of its photons, around what is seen of a large scene. Photons from beyond
-  /// are few and heavy.
+  /// In a large scene, parallel light has finer maps and half of its photons around the visible part. Photons from
+  /// beyond are few and heavy.
   bool has_light_focus = false;
   /// Shadows of maps are blurred by a texel: for the first frames of a view, whose mean shows the texels.
   bool has_soft_edges = false;

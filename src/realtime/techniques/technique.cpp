@@ -23,7 +23,7 @@ namespace lanthorn {
 
 namespace {
 
-// A deque: references to entries must stay valid when others are added.
+// A deque: references to entries must stay valid when further entries are added.
 std::deque<TechniqueInfo>& registry() {
   static std::deque<TechniqueInfo> all = [] {
     std::vector<TechniqueInfo> built_in = built_in_techniques();

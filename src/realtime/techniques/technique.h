@@ -31,7 +31,8 @@ class TechniqueChoice;
 using VertexLight =
     std::function<void(const SurfaceVertex& vertex, const LobeSplit& split, int max_depth, LightLayers& layers)>;
 
-/// A technique keeps data made of scene and GPU between frames. What a frame shows is a function of its context alone.
+/// A technique keeps data made of scene and GPU between frames. The picture of a frame is a function of its context
+/// alone.
 class Technique {
  public:
   virtual ~Technique() = default;

@@ -14,7 +14,7 @@
 
 namespace lanthorn {
 
-/// The sums of a round. A process that has rendered no pass of the round has none.
+/// The sums of a round. nullopt: the process has rendered no pass of the round.
 using RoundSums = std::optional<RenderState>;
 
 /// The same sums as the bytes of a state; empty if there are none. `name`: of the process, in messages.
@@ -23,9 +23,9 @@ struct PackedSums {
   std::string name;
 };
 
-/// Sums go up a tree: each process adds those of its children to its own and passes them on to its parent, so that rank
-/// 0 receives two states of a round and not as many as there are processes. Film sums are exact, so the result
-/// does not depend on the tree. The states of the children are added block by block, without a film of their own.
+/// Sums go up a tree: each process adds the sums of its children to its own and passes them on to its parent. So rank 0
+/// receives two states per round, not one from each process. Film sums are exact, so the result does not depend on the
+/// tree. The states of the children are added block by block, without a film of their own.
 class Gathering {
  public:
   Gathering(int rank, int size) : awaited_(1 + children(rank, size)) {}
@@ -68,8 +68,8 @@ class Gathering {
   std::map<std::uint64_t, Part> parts_;
 };
 
-/// Checks that each process waits for exactly as many others as pass their sums on to it; otherwise it would wait for
-/// ever, or sums would be lost. Rank 0 knows the tree as each process sees it.
+/// Checks that each process waits for exactly those processes that pass their sums on to it; otherwise it would wait
+/// for ever, or sums would be lost. Rank 0 knows the tree as each process sees it.
 class TreeCheck {
  public:
   TreeCheck(int size, int awaited_at_first);

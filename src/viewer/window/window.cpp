@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The window, by GLFW, with its input; a module, so that programs that open none load neither GLFW nor X11.
+// The window, by GLFW, with its input. It is a module, so that programs without a window load neither GLFW nor X11.
 #include <GLFW/glfw3.h>
 #include <backends/imgui_impl_glfw.h>
 #include <backends/imgui_impl_opengl3.h>

@@ -142,7 +142,7 @@ TEST(Api, APictureThatDoesNotFitIntoMemoryIsRefused) {
   EXPECT_THROW(Session(load(box), options), lanthorn::Error);
 }
 
-// Stops at some time during a pass: the picture is that of the passes before.
+// Stops at some time during a pass: the picture contains only the passes before.
 TEST(Api, AStoppedPassLeavesNoTrace) {
   const SharedScene scene = load(box);
   for (const char* const integrator : {"probppm", "sppm", "ppm", "vcm", "bpm", "bdpt", "path", "light", "mlt",

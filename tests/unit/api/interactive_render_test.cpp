@@ -135,8 +135,8 @@ TEST(InteractiveRender, EachPartCanBeEdited) {
   EXPECT_EQ(end.picture->image.pixels, pixels_of(darker(0.5f), view_of_angle(30), other));
 }
 
-// Its pilot, and that of the photons of vcm, take longer than a coarse pass. vcm has a parameter named as the file's,
-// but rejects its value.
+// The pilot of auto, and the pilot of vcm's photons, take longer than a coarse pass. vcm has a parameter of the same
+// name as the file's, but rejects its value.
 TEST(InteractiveRender, CoarsePicturesOfAutoHaveNoPilot) {
   const SharedScene scene = build_scene(read_pbrt_string(
       "Integrator \"sppm\" \"string volume\" \"short-photon-beam\"\n" + test::camera + test::box, ".", "test scene"));

@@ -132,8 +132,8 @@ TEST(ErrorEstimate, NoiseOfAPartIsMeasured) {
   EXPECT_GE(tried.kept, 0.8);
 }
 
-// Most pixels of a half have no bright path, some have one or two. Stripes leave no surroundings to compare with: the
-// true value is estimated from the pixel itself, which such a path makes too bright.
+// Most pixels of a half have no bright path, some have one or two. Between stripes, no surroundings are alike: the true
+// value is estimated from the pixel itself, which such a path makes too bright.
 std::vector<double> rare_bright_paths(std::mt19937& rng) {
   constexpr double mean = 0.3;
   std::poisson_distribution<int> number(mean);

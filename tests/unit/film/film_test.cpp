@@ -278,7 +278,7 @@ TEST(Film, TechniquesAddUpToColor) {
   EXPECT_EQ(select_layer(copy.resolve(4), "technique.splat")->pixels, layer("technique.splat").pixels);
 }
 
-// Light of wavelengths outside the gamut may have negative luminance, which is not a share.
+// Light of wavelengths outside the gamut may have negative luminance. It counts as a share of 0.
 TEST(Film, SharesAreOfPositiveLight) {
   Film film(1, 1, 4, {.light = layers, .decomposition = techniques});
   PixelSample s;
@@ -499,14 +499,15 @@ TEST(Display, AgxKeepsGreysAndTakesSaturationFromBrightColours) {
   EXPECT_GT(dim.r, 2 * dim.g);
   EXPECT_GT(bright.g, 0.6f * bright.r);
   EXPECT_NEAR(bright.g, bright.b, 0.02f);
-  // The inset of the primaries leaves colours unchanged that are white: equal parts of red, green and blue.
+  // The inset of the primaries leaves neutral colours (equal red, green and blue) unchanged.
   const DisplaySettings display{.exposure = 1, .curve = ToneCurve::agx};
   EXPECT_NEAR(to_display({0.09f, 0.09f, 0.09f}, display).r, 0.5f, 1e-5f);
   EXPECT_FLOAT_EQ(to_display({infinity, infinity, infinity}, display).r, 1);
   EXPECT_NEAR(to_display({-1, std::nanf(""), 0}, display).r, 0, 1e-6f);
 }
 
-// A picture of 100 x 1 pixels: surfaces of the same albedo in the same light, a lamp in a fifth of it, the rest black.
+// A picture of 100 x 1 pixels: surfaces of equal albedo in equal light, a lamp in a fifth of the picture, the rest
+// black.
 Image lit_picture(float albedo, float light, int surfaces) {
   std::vector<std::string> channels{"R", "G", "B"};
   for (const char* layer : {"emission", "direct", "indirect", "caustic", "albedo"})

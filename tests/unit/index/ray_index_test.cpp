@@ -223,7 +223,7 @@ Answer exact(const Beam& beam, const RaySegment& ray) {
   const Exact gap = a.t * d - w - a.s * e;
   a.dist2 = dot(gap, gap);
   a.sin = std::sqrt(n2);
-  // Small angles between lines amplify rounding, here in the normal equations, in the index in the cross products.
+  // Small angles between lines amplify rounding: in the normal equations here, in the cross products of the index.
   const long double worst = far / n2, r2 = static_cast<long double>(beam.radius) * beam.radius;
   a.found = within(ray.begin, a.t, worst, a.on_boundary);
   a.found = (ray.end == infinity || within(a.t, ray.end, worst, a.on_boundary)) && a.found;

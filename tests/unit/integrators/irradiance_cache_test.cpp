@@ -174,7 +174,8 @@ TEST(IrradianceCache, SkipsRecordsBeforeThePoint) {
   EXPECT_FALSE(cache.find({1.51f, 0.5f, 0.5f}, up));
 }
 
-// A floor with a step that only one record is near enough to detect; across a wall it has no effect.
+// A floor with a step that only one record is near enough to detect. The record limits its neighbours, but not across a
+// wall.
 TEST(IrradianceCache, NeighboursClampDistances) {
   for (const bool small_first : {true, false}) {
     IrradianceCache cache(unit_box, 0.2f);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Second moments for other numbers of samples, against those computed by hand.
+// Compares second moments for other numbers of samples with values computed by hand.
 #include "integrators/vcm/moments.h"
 
 #include <gtest/gtest.h>

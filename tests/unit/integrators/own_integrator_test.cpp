@@ -21,7 +21,7 @@ namespace lanthorn::own_integrator_test {
 namespace {
 
 // Ambient occlusion: the unoccluded fraction of a cosine-weighted hemisphere up to a distance, for pixels that see a
-// surface, and 1 for others, which go into a separate layer.
+// surface, and 1 for all other pixels, which go into a separate layer.
 class AmbientOcclusion final : public Integrator {
  public:
   explicit AmbientOcclusion(const Parameters& parameters)

@@ -132,7 +132,7 @@ TEST_F(SplitSumShading, IsNearPathTracingWhereNormalViewAndReflectionAreOne) {
   for (const double alpha : {0.05, 0.17}) expect_near(alpha, 0.045f);
 }
 
-// For a metal whose Fresnel term is 1, only the maps have errors there: those of the filter and, in the last levels of
+// For a metal whose Fresnel term is 1, only the maps have errors there: errors of the filter and, in the last levels of
 // 16 and 4 texels across, of interpolation between texels.
 TEST_F(SplitSumShading, EqualsPathTracingWhereNormalViewAndReflectionAreOne) {
   struct Level {

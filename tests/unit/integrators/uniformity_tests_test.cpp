@@ -121,7 +121,7 @@ TEST(MergeShrinks, ShrinkAlikeEverywhereAfterTheTests) {
     EXPECT_NEAR(area(even, pass) / area(even, 16), area_by(2.0 / 3, pass) / area_by(2.0 / 3, 16), 1e-5);
 }
 
-// A merged state may lack passes before those that have been counted.
+// A pass keeps its radii when later passes have been counted: a merged state may get earlier passes afterwards.
 TEST(MergeShrinks, OfAPassStayTheSameLater) {
   for (const Photons photons : {Photons::even, Photons::in_one_half})
     for (std::uint32_t pass = 0; pass < 16; ++pass)

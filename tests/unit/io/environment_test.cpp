@@ -141,7 +141,7 @@ TEST_F(Environment, OfPbrtFilesStandsAsTheCameraDoes) {
   expect(scene, handedness * cross(Vec3(1, 0, 0), Vec3(0, 0, 1)), {0, 0, 1});
   const SharedScene y_up = build_scene(read("zup.pbrt", {.source = file(equirectangular()), .up = UpAxis::y}));
   expect(y_up, {0, 1, 0}, {0, 1, 0});
-  // A right-handed world, as in most converted scenes, is like that of glTF.
+  // A right-handed world, as in most converted scenes, is treated like the world of glTF.
   const SharedScene mirrored = build_scene(read("mirrored.pbrt", {.source = file(equirectangular()), .rotation = 90}));
   for (const Vec3& d : directions) expect(mirrored, {d.z, d.y, -d.x}, d);
 }

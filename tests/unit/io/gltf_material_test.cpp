@@ -302,7 +302,7 @@ TEST(GltfMaterial, TransmittedLightHasTheBaseColour) {
                  {{"KHR_materials_transmission", {{"transmissionFactor", 1}}},
                   {"KHR_materials_volume", {{"thicknessFactor", thickness}}}}}};
   };
-  // For a volume, the tint is that of passing both interfaces; for a sheet, that of passing the sheet.
+  // For a volume, the tint applies to passing both interfaces; for a sheet, to passing the sheet.
   const auto solid = closure_of<Dielectric>(with_material(glass(0.5, 1)));
   EXPECT_NEAR(solid.tint[0], 0.5f, 1e-6f);
   EXPECT_NEAR(solid.tint[2], std::sqrt(0.5f), 1e-6f);
@@ -465,7 +465,7 @@ TEST(GltfMaterial, BasisTexturesAreNamedAndHaveFallbacks) {
   EXPECT_EQ(warnings(other).size(), 1u);  // of the stand-ins
 }
 
-// As Blender writes a Glass BSDF, and a Principled BSDF with Transmission and an index.
+// Materials as Blender writes them for a Glass BSDF, and for a Principled BSDF with Transmission and an index.
 TEST(GltfMaterial, GlassThatAnExporterLost) {
   const auto messages = [](const json& material) {
     GltfWriter file;

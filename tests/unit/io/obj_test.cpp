@@ -154,7 +154,7 @@ TEST(Mtl, SeveralLibrariesInALine) {
   EXPECT_TRUE(warnings(blank).empty());
 }
 
-// The inside of an open box whose faces are wound as seen from inside is visible, here from behind.
+// The faces of this open box are wound for a viewer inside. The view shows the inside of the box, here from behind.
 TEST(Obj, OpenBoxesAreSeenFromInside) {
   const SceneDescription scene = read(
       "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n"
@@ -178,7 +178,7 @@ const std::string models = LANTHORN_SOURCE_DIR "/tests/scenes/models/";
 
 std::vector<std::string> messages(const std::filesystem::path& file) { return warnings(read_scene(file)); }
 
-// The largest angle between a corner's normal and that of its triangle, degrees.
+// The largest angle between a corner's normal and its triangle's normal, degrees.
 float bend(const SceneDescription& scene) {
   float largest = 0;
   for (const Shape& shape : scene.shapes) {
@@ -257,7 +257,7 @@ TEST(ObjSmoothing, WithoutGroupsEdgesOfLessThan30DegreesAreSmooth) {
   EXPECT_EQ(read("s 1\n" + triangle + "v 0 0 1\nf 1 2 3\nf 2 1 4\nf 2 1 3\n").shapes.empty(), false);
 }
 
-// As in collections for students' renderers, whose models have a picture but no MTL file.
+// Collections for students' renderers have models with a picture but without an MTL file.
 TEST(Obj, APictureCalledAfterTheModelIsSuggested) {
   test::TemporaryDir dir;
   const std::string faces = triangle + "vt 0 0\nf 1/1 2/1 3/1\n";

@@ -212,7 +212,7 @@ TEST(StandIns, RoomsAreSeenFromInsideByALampInThem) {
   EXPECT_TRUE(lit.area_lights.empty());
 }
 
-// The user's environment replaces only the studio: camera and lamp are as without it.
+// The user's environment replaces only the studio; camera and lamp stay the same.
 TEST(StandIns, TheUsersEnvironmentMovesNoCamera) {
   const Vec3 half(4, 1.5f, 3);
   for (const bool is_room : {true, false}) {

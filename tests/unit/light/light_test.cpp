@@ -350,8 +350,8 @@ TEST(Light, EmissionIsInverted) {
       // For distant lights, any point on the ray is correct.
       const Point origin = is_far(l.light) ? s->origin + 1.7f * s->direction : s->origin;
       const EmissionNumbers found = invert_emission(l.light, {origin, s->normal}, s->direction);
-      // Random numbers that a light does not need do not affect it. Positions on stretched and twisted emitters, and on
-      // two-sided spheres and those behind slats, cannot be inverted.
+      // Random numbers that a light does not need do not affect it. The sampling of positions cannot be inverted on
+      // stretched and twisted emitters, on two-sided spheres, and on spheres behind slats.
       const bool rejects = l.name.starts_with("ellipsoid") || l.name.starts_with("sheared sphere") ||
                            l.name.starts_with("partial ellipsoid") || l.name.starts_with("sheared cylinder") ||
                            l.name.starts_with("saddle") || l.name == "sphere two-sided" ||
@@ -684,7 +684,8 @@ TEST(PhotonAllocation, IsSafeAtItsEnds) {
   EXPECT_THROW(emission_probabilities(one, &of_other_scene), std::invalid_argument);
 }
 
-// A density requested up to a bound is exact below it, and between the bound and the exact value above.
+// A density requested up to a bound is exact if it is below the bound; otherwise the result lies between the bound and
+// the exact value.
 TEST(GuidedDensity, NeedNotBeExactAboveWhatIsEnough) {
   const BoundingSphere scene{{0, 0, 0}, 10};
   const Light light = UniformInfiniteLight{test_colour(), scene};

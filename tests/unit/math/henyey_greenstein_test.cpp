@@ -32,8 +32,8 @@ TEST_P(Peaks, AreNormalisedAndHaveTheirMeanCosine) {
   EXPECT_NEAR(mean_versine, expected, 1e-4 * expected);
 }
 
-// Half of the samples lie within the median angle. The density returned with a direction is that of the direction, up
-// to the direction's own rounding.
+// Half of the samples lie within the median angle. The density returned with a direction equals the density evaluated
+// for it, up to the direction's own rounding.
 TEST_P(Peaks, AreSampled) {
   const Direction in = normalize(Vec3(1, -2, 0.5f));
   for (const float g : {GetParam(), -GetParam()}) {

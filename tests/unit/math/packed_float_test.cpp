@@ -87,7 +87,8 @@ TEST(SharedExponent, IsRoundedToNearest) {
       mean_error += (decoded[c] - rgb[c]) / largest / (3.0 * count);
     }
   }
-  // Single errors have a standard deviation of 8e-4 and their mean one of 1e-6. The bound is six of the latter.
+  // A single error has a standard deviation of 8e-4, the mean error of 1e-6. The bound is six standard deviations of
+  // the mean.
   EXPECT_LT(std::fabs(mean_error), 6e-6);
 }
 

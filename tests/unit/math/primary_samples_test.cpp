@@ -41,8 +41,8 @@ double wrapped_normal(double a, double b, double sigma) {
   return sum;
 }
 
-// Tests how far numbers move around the torus in `mutations` small mutations, if the group is only read after the last:
-// the distribution is that of the same number of separate steps. The numbers stay uniform.
+// Tests how far numbers move around the torus in `mutations` small mutations, if the group is only read after the last
+// one: the distribution is the same as after as many separate steps. The numbers stay uniform.
 void expect_wrapped_normal(float sigma, int mutations) {
   constexpr int vectors = 20000;
   std::vector<double> steps(cells), places(cells), expected(cells);
@@ -138,7 +138,7 @@ TEST(PrimarySamples, RejectionRestoresEveryNumber) {
     samples.reject();
     expect_equal(8);
   }
-  // A group that had steps to catch up when a mutation read it that is then rejected.
+  // The group had steps to catch up when a mutation read it; then the mutation is rejected.
   for (PrimarySamples* s : {&samples, &untouched}) {
     s->propose(Mutation::small);
     s->accept();

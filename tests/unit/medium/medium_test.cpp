@@ -46,7 +46,8 @@ TEST_P(Phase, IsNormalisedWithMeanCosineG) {
   EXPECT_NEAR(mean_cosine, static_cast<double>(GetParam()), 1e-3);
 }
 
-// Moments of the cosine of samples against those of the density, and the density returned with each sample.
+// Compares the moments of the samples' cosines with the moments of the density, and checks the density returned with
+// each sample.
 TEST_P(Phase, SamplesFollowIt) {
   const HenyeyGreenstein hg{GetParam()};
   const Direction wi = normalize(Vec3(1, -2, 0.5f));

@@ -124,7 +124,7 @@ double density_of_connection(const RandomPath& path, int s) {
   if (s > 0 && !path.techniques.connects) return 0;
   if (s <= k && !eye_path_reaches(path, s)) return 0;
   if ((s >= 2 && is_delta(s - 1)) || (s >= 1 && s <= k && is_delta(s))) return 0;
-  // With merging alone, the walk only keeps the light that photons cannot bring.
+  // With merging alone, the walk only keeps the light that photons cannot provide.
   if (s == 0 && !path.techniques.connects)
     for (int i = 1; i <= k; ++i)
       if (!is_delta(i)) return 0;
@@ -305,7 +305,7 @@ TEST(Mis, RecursiveWeightsAreRatiosOfDensities) {
       const double density = connections[static_cast<unsigned>(s)];
       if (density == 0) continue;
       const double weight = static_cast<double>(weight_of_connection(path, r, s));
-      // If merging alone leaves hits to the walk, they have the full weight.
+      // If merging is the only other technique and leaves hits to the walk, the hits have the full weight.
       ASSERT_NEAR(weight, density / total, 1e-4) << "path " << n << " of " << k << ", technique " << s;
       sum += weight;
     }

@@ -37,7 +37,7 @@ TEST(FluxClasses, HaveAreasThatGrowWithTheRootOfTheFlux) {
   EXPECT_FLOAT_EQ(classes.area_factor(1), 1);
 }
 
-// For a dispersed path, only the first wavelength matters, whatever the others carry.
+// For a dispersed path, only the first wavelength matters, whatever flux the other wavelengths carry.
 TEST(FluxClasses, CountWhatDispersionLeaves) {
   const Wavelengths w = Wavelengths::spectral(0.3f);
   EXPECT_FLOAT_EQ(flux_of({1, 2, 3, 4}, false, w), 10);

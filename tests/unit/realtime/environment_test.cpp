@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Split-sum shading with OpenGL: maps baked by compute shaders, and frames, against those of the CPU.
+// Split-sum shading with OpenGL: compares maps baked by compute shaders, and frames, with the CPU's.
 #include <gtest/gtest.h>
 
 #include <algorithm>

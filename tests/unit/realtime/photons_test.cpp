@@ -306,7 +306,7 @@ std::size_t block_of(const Point& p) {
   return (along(p.x, -1.001f) * 3 + along(p.y, -0.001f)) * 3 + along(p.z, -1.001f);
 }
 
-// All photons of a frame start at one point of the lamp, so that frames are the samples.
+// All photons of a frame start at one point of the lamp, so each frame is one sample.
 std::vector<Blocks> watts_of_maps(const Scene& scene, std::uint32_t frames, std::uint32_t photons) {
   std::vector<Blocks> samples;
   Renderer renderer(scene);

@@ -209,8 +209,8 @@ double roughness_of_edge(const Scene& scene, FrameSettings settings) {
   return std::sqrt(sum / static_cast<double>(edges.size()));
 }
 
-// A texel is five pixels wide. Single texels give a saw-toothed edge; the mean of four would keep 0.24 of its teeth,
-// that of nine keeps 0.13 (both confirmed by simulating the filters).
+// A texel is five pixels wide. Single texels give a saw-toothed edge. The mean of four texels would keep 0.24 of the
+// teeth, the mean of nine keeps 0.13 (both confirmed by simulating the filters).
 TEST_F(RendererTest, SoftEdgesHaveNoTeeth) {
   const Scene scene = test::scene_from_text(floor_and_blade);
   double ratios = 0;

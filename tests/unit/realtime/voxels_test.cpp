@@ -61,7 +61,8 @@ Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-1 -1 -1  1 -1 
   EXPECT_NEAR(area / (2 * (slanted + 4)), 1, 1e-4);
 }
 
-// Of a floor wider than the grid, the grid contains a square with two sides. It contains nothing of a floor beside it.
+// If a floor is wider than the grid, the grid contains a square of it with two sides. If a floor lies beside the grid,
+// the grid contains nothing.
 TEST_F(VoxelsTest, HoldOfSurfacesWhatLiesInTheirGrid) {
   const Scene scene = test::scene_from_text(view("0 1 -3  0 0 0  0 1 0", 40) + R"(
 Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-8 0 -8  8 0 -8  8 0 8  -8 0 8]
@@ -126,7 +127,7 @@ TEST(VoxelGrids, AreAsManyAsAreAskedForOrNeeded) {
   EXPECT_EQ(voxel_grids(bounds, 256, {}, 8).size(), 2u) << "of .9 GiB each";
 }
 
-// 2 m above a floor, and the same with parallel rays, which need detail where they meet it.
+// The eye is 2 m above a floor. Parallel rays start at the same place, but need detail where they meet the floor.
 TEST_F(VoxelsTest, FocusIsTheEyeOrWhatParallelRaysMeet) {
   const std::string floor = test::quad("-50 0 -50  50 0 -50  50 0 50  -50 0 50");
   const auto focus = [&](const std::string& camera) {
@@ -311,7 +312,7 @@ TEST_F(VoxelsTest, FramesAreTheSameFromRunToRun) {
   EXPECT_EQ(indirect_of(first, scene, cone_settings(2)).pixels, indirect_of(second, scene, cone_settings(2)).pixels);
 }
 
-// A metal ball in a white environment reflects what its lobe does, although no direction of the frame hits the
+// A metal ball in a white environment reflects the light of its lobe, although no direction of the frame hits the
 // environment.
 TEST_F(VoxelsTest, ConesOfNarrowLobesShowTheSky) {
   const Scene scene = test::scene_from_text(R"(

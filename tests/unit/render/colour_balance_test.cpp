@@ -95,8 +95,8 @@ double relative_variance(const Scene& scene, const char* method, ColorMode color
   return total;
 }
 
-// Without dispersion, noise is at most 1.15 times that of RGB after equal passes. Measured: 1.03 (path), .7 (bpm, which
-// has two eye paths a pass); with wavelengths in proportion to the eye's response, 1.95 and 1.24.
+// Without dispersion, noise is at most 1.15 times as much as in RGB after equal passes. Measured: 1.03 (path), .7 (bpm,
+// which has two eye paths a pass); with wavelengths in proportion to the eye's response, 1.95 and 1.24.
 TEST(ColourBalance, SpectralPicturesAreAsSmoothAsThoseInRgb) {
   const Scene scene = test::scene_from_text(
       test::camera +

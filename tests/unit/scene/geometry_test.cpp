@@ -568,7 +568,7 @@ TEST(SceneRobustness, OffsetsAreRoundingErrorsNotScales) {
   EXPECT_FALSE(floor.intersect(spawn_ray(*at, normalize(Vec3(1, 1e-4f, 0))), test::white));
 }
 
-// Up to the distance from which on a warning is given, rays hit shapes of all kinds, with and without an instance.
+// Rays hit shapes of all kinds, with and without an instance, at all distances up to the one at which a warning starts.
 TEST(SceneRobustness, WhatIsTooFarIsWarnedOf) {
   const std::vector<std::string> shapes{
       "Shape \"sphere\"", "Shape \"disk\"", "Shape \"bilinearmesh\" \"point3 P\" [-1 -1 0  1 -1 0  -1 1 0  1 1 0]",

@@ -398,7 +398,7 @@ TEST(SceneLights, TheLargestRadianceIsThatOfTheNearestSurface) {
     EXPECT_NEAR(largest_of(light, "10", "1e5") / largest_of(light, "10", "1e3"), 1, 1e-3) << light;
     EXPECT_NEAR(largest_of(light, "10", "1e5") / largest_of(light, "20", "1e5"), 4, 1e-2) << light;
   }
-  // A light that touches a surface increases the range only up to what the far end of the landscape needs.
+  // A light that touches a surface increases the range, but only as far as the far end of the landscape allows.
   const float far = largest_of(point, "10", "1e3") * sqr(10 / 1.4142136e5f);
   EXPECT_LT(largest_of(point, "1e-9", "1e5") / far, std::exp2(33));
 }
@@ -504,7 +504,7 @@ TEST(SceneLights, MayNotBeSoBrightThatNumbersOverflow) {
   EXPECT_EQ(error_of("MakeNamedMedium \"m\" \"string type\" \"homogeneous\" \"rgb Le\" [2e25 0 0]\n"
                      "MediumInterface \"\" \"m\" Shape \"sphere\"\n"),
             "test scene:4:1: " + bright);
-  // The brightness of a point light is that of the surfaces it lights.
+  // The brightness of a point light is measured by the surfaces it lights.
   const std::string near = "LightSource \"point\" \"rgb I\" [1e24 0 0]\n";
   EXPECT_EQ(error_of(near + weak), "no error");
   EXPECT_EQ(error_of(weak + near + "Translate 0 0 .2 Shape \"disk\" \"float radius\" 10\n"),

@@ -65,7 +65,7 @@ TEST(Curves, TubesAreWhereTheFormulaSays) {
   }
 }
 
-// Normals are those of the surface even where the radius changes. Expected values are differences of positions.
+// Normals are perpendicular to the surface even where the radius changes. Expected values are differences of positions.
 TEST(Curves, TubesNormalsArePerpendicularToTheSurface) {
   description::Curves curves;
   curves.kind = description::CurveKind::cylinder;

@@ -445,7 +445,7 @@ TEST(NamedSpectra, MetalsInRgbModeResembleSpectralOnes) {
   }
 }
 
-// The light that the balance is for becomes white, and keeps its luminance.
+// A balance for a light makes this light white and keeps its luminance.
 TEST(WhiteBalance, MakesItsLightWhite) {
   const auto colour_of = [](const DenseSpectrum& light) {
     SpectrumCurve curve = SpectrumCurve::tabulated_light(&light);

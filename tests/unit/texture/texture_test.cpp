@@ -82,7 +82,7 @@ TEST(TextureMappings, Spherical) {
   expect_near(mapped("\"spherical\"", at_point({0, 3, 0})), {0.5f, 0.25f});
   expect_near(mapped("\"spherical\"", at_point({-3, 0, 3})), {0.25f, 0.5f});
   expect_near(mapped("\"spherical\"", at_point({0, -3, -3})), {0.75f, 0.75f});
-  // The CTM where the texture is defined is that of texture space.
+  // The CTM at the texture's definition defines texture space.
   expect_near(mapped("\"spherical\"", at_point({5, 6, 4}), "Translate 5 6 1 Rotate 90 0 1 0\n"), {0.5f, 0.5f});
 }
 
@@ -302,7 +302,7 @@ std::string chain(const std::string& kind, const std::string& inputs, int last, 
   return text;
 }
 
-// Compiles the last texture, which compiles the others in turn.
+// Compiles the last texture, which compiles all earlier ones.
 std::string error_of_last(const std::string& text) {
   const SceneDescription description = read_pbrt_string("WorldBegin\n" + text, ".", "t.pbrt");
   SpectrumStore spectra;

@@ -13,8 +13,8 @@ namespace lanthorn {
 
 namespace {
 
-/// Irradiance, W/m², as if a third of the light were spread evenly over a room as large as what is seen. Light from
-/// afar fills the scene.
+/// Irradiance, W/m², as if a third of the light were spread evenly over a room as large as the visible part of the
+/// scene. Light from afar fills the scene.
 float fitting_irradiance(const Scene& scene, const View& view) {
   const float scene_radius = scene.bounding_sphere().radius, seen = seen_radius(scene, view);
   float irradiance = 0;

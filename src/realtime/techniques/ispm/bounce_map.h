@@ -28,9 +28,10 @@ class BounceMap {
   /// `closures`: the result of `closure_defines`.
   explicit BounceMap(const gl::ShaderFiles& files, const std::string& closures = {});
 
-  /// Begins the photons on the GPU. The scene must be bound; the maps were drawn with the same numbers of photons.
+  /// Draws the first scattering of each photon on the GPU. The scene must be bound, and the maps must have been drawn
+  /// for the same numbers of photons.
   void start(const LightMaps& maps, int view_count, std::uint32_t photons, std::uint64_t seed, std::uint32_t frame);
-  /// The photons that have begun last; waits for the GPU.
+  /// The photons of the last `start`; waits for the GPU.
   std::vector<PhotonStart> read() const { return starts_.read<PhotonStart>(count_); }
 
  private:

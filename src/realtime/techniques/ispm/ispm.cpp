@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 // Image-space photon mapping (McGuire & Luebke 2009): photons start in the lights' maps, the CPU follows their later
-// bounces while the GPU draws G-buffer and direct light, and their volumes are drawn over what is seen.
+// bounces while the GPU draws G-buffer and direct light, and their volumes are drawn over the visible surfaces.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -54,7 +54,7 @@ class ImageSpacePhotons final : public Technique {
   VertexLight light_at_vertices(const FrameContext& frame) override;
 
  private:
-  /// What photons depend on. They are kept while only the eye moves.
+  /// The inputs that photons depend on. They are kept while only the eye moves.
   struct Source {
     std::uint64_t light_maps = 0;
     int max_depth = 0;

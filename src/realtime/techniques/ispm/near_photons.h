@@ -12,7 +12,7 @@
 
 namespace lanthorn {
 
-/// The photons of a frame, for gathering at points. The kernel is that of photon.glsl.
+/// The photons of a frame, for gathering at points. The kernel is the same as in photon.glsl.
 class NearPhotons {
  public:
   NearPhotons(SharedPhotons photons, const PhotonVolume& volume);

@@ -56,7 +56,8 @@ void PhotonLight::splat(const GBuffer& seen, const WindowRays& rays, const Mat4&
   splat_.set("to_clip", to_clip);
   splat_.set("first_photon", photons.first);
   glBindVertexArray(no_vertices_.name());
-  // The far sides of the boxes are drawn where they lie behind what is seen, so that the eye may be inside.
+  // The far sides of the boxes are drawn where they lie behind the visible surface, so that the eye may be inside a
+  // box.
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_LESS);
   glDepthMask(GL_FALSE);

@@ -19,7 +19,7 @@ int voxel_grid_limit(int size) {
 std::vector<VoxelGrid> voxel_grids(const Bounds& bounds, int size, const ViewFocus& focus, int count) {
   constexpr float width_by_distance = 1.5f;
   constexpr int steps = 8;  // of a corner along the grid's edge
-  // The surfaces in its middle: the outermost walls lie in the middles of voxels.
+  // Centres the surfaces in the grid, so that the outermost walls lie in the middles of voxels.
   VoxelGrid whole;
   whole.size = size;
   const float widest = bounds.empty() ? 0 : max_component(bounds.extent());

@@ -23,7 +23,7 @@ struct VoxelGrid {
   friend bool operator==(const VoxelGrid&, const VoxelGrid&) = default;
 };
 
-/// Largest number of grids of this size: `gpu::most_voxel_grids`, or what fits into 2 GiB of memory.
+/// Largest number of grids of this size: `gpu::most_voxel_grids`, or fewer if they would not fit into 2 GiB of memory.
 int voxel_grid_limit(int size);
 
 /// A cube around `bounds`, followed by cubes around the focus, each with half the edge of the one before and moved so

@@ -57,7 +57,7 @@ bool VoxelLight::prepare(const Scene& scene, const GpuScene& gpu_scene, const Vi
     if (!triangles) triangles.emplace(gpu_scene);
     grids[g] = voxelise(scene, gpu_scene, *triangles, wanted[g]);
   }
-  // Voxelising may throw: grids that stay are moved only when all others are made.
+  // Voxelising may throw: grids that stay are moved only when all other grids are complete.
   for (std::size_t g = 0; g < wanted.size(); ++g)
     if (const auto same = held(wanted[g]); same != grids_.end()) grids[g] = std::move(*same);
   grids_ = std::move(grids);

@@ -39,7 +39,7 @@ class VoxelLight {
   /// Voxelises the surfaces in the grids that the view needs, if surfaces or grids have changed; returns whether they
   /// have.
   bool prepare(const Scene& scene, const GpuScene& gpu_scene, const View& view, const VoxelSettings& settings);
-  /// Lights the voxels anew. The scene must be bound; the maps are those of the views.
+  /// Lights the voxels anew. The scene must be bound; the maps belong to the views.
   void light(const LightMaps& maps, int view_count, const VoxelSettings& settings) const;
   /// Uses the program cones.frag.glsl with the voxels. G-buffer and scene must be bound.
   void use(const WindowRays& rays, const VoxelSettings& settings, const EyePaths& eye_paths) const;
