@@ -68,9 +68,9 @@ Image picture_of(const RenderState& state);
 /// Like `picture_of`, without the layers `error` and `bias`, which cost about as much as all other layers.
 Image picture_without_error(const RenderState& state);
 
-/// A picture of this state, extended by what `denoise` needs: for each layer of light and of features a layer
-/// noise.NAME, the first half of the passes minus all passes; and the channel noise.share, the fraction of the samples
-/// that belongs to this half.
+/// A picture of this state, extended by what `denoise` needs: for `bias` and each layer of light and of features a
+/// layer noise.NAME, the first half of the passes minus all passes; and the channel noise.share, the fraction of the
+/// samples that belongs to this half.
 Image with_noise(const RenderState& state, const Image& picture);
 
 /// Like `with_noise`, for the picture with all pixels around it that were rendered for `denoise` (ViewOptions::margin);

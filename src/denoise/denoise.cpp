@@ -94,6 +94,14 @@ Part part_of(const Image& picture, const Image& around) {
   return part;
 }
 
+// Relative squared errors above 1 count as 1. Those of single pixels are too noisy for that: means over squares do.
+Plane at_most_1(Plane error) {
+  constexpr int radius = 1;
+  const Plane around = box_filtered(error, radius);
+  error.fill([&](std::size_t i) { return error[i] / std::max(1.0f, around[i]); });
+  return error;
+}
+
 class Denoiser {
  public:
   Denoiser(const Image& picture, const Image& around)
@@ -132,7 +140,9 @@ class Denoiser {
       optimism.fill([&](std::size_t i) { return optimism[i] + denoised.optimism[i]; });
     }
     write_sum(tile);
-    write_error(tile, light, result, optimism, levels[0].scale);
+    const ErrorScale scale = sharpened(levels[0].scale, result);
+    optimism.fill([&](std::size_t i) { return optimism[i] * levels[0].scale.light2[i] / scale.light2[i]; });
+    write_error(tile, light, result, optimism, scale);
   }
 
   // Sums up the layers as the film does.
@@ -148,18 +158,31 @@ class Denoiser {
         }
   }
 
+  // The noisy light around a pixel follows no detail finer than its window, and errors beside bright lines would look
+  // small. So its square is multiplied by the denoised light's relation to its own surroundings.
+  ErrorScale sharpened(const ErrorScale& scale, const Halves& result) const {
+    constexpr int radius = NoisyPicture::scale_radius;
+    const Plane& all = scale.light2;
+    const float least = noisy_.least_scale();
+    Plane light(all.width(), all.height());
+    for (std::size_t c = 0; c < color_channels; ++c) {
+      const Plane mean = mean_of(result, c, noisy_.shares());
+      light.fill([&](std::size_t i) { return light[i] + std::min(mean[i], scale.white) / color_channels; });
+    }
+    const Plane around = box_filtered(light, radius);
+    return {Plane::of(all.width(), all.height(),
+                      [&](std::size_t i) { return all[i] * (sqr(light[i]) + least) / (sqr(around[i]) + least); }),
+            scale.white};
+  }
+
   void write_error(const Tile& tile, const Halves& light, const Halves& result, const Plane& optimism,
                    const ErrorScale& of_errors) {
     constexpr int radius = 4;
     const Plane& scale = of_errors.light2;
     Plane error = squared_error(light, result, noisy_.shares(), of_errors);
     error.fill([&](std::size_t i) { return error[i] + optimism[i]; });
-    Plane bias(scale.width(), scale.height());
-    if (has_layer(noisy_.image(), "bias", components))
-      for (const char* const c : components) {
-        const Plane own = noisy_.read(tile, std::string("bias.") + c);
-        bias.fill([&](std::size_t i) { return bias[i] + sqr(own[i]) / (color_channels * scale[i]); });
-      }
+    error = at_most_1(std::move(error));
+    const Plane bias = squared_bias(tile, scale);
     add_to_estimate(tile, error, bias, result, of_errors);
     error.fill([&](std::size_t i) { return error[i] + bias[i]; });
     const Plane smooth = box_filtered(box_filtered(error, radius), radius);
@@ -167,6 +190,23 @@ class Denoiser {
         scale.width(), scale.height(), [&](std::size_t i) { return std::sqrt(std::max(0.0f, smooth[i]) * scale[i]); });
     for (std::size_t c = 0; c < color_channels; ++c)
       write(standard_error, tile, part_, (1 + layers_.size()) * color_channels + c, denoised_);
+  }
+
+  // The noise of the halves' biases is independent: their product estimates the square of the bias, and can be
+  // negative. Divided by `scale`, a mean over channels.
+  Plane squared_bias(const Tile& tile, const Plane& scale) const {
+    Plane sum(scale.width(), scale.height());
+    if (!has_layer(noisy_.image(), "bias", components)) return sum;
+    const bool knows_noise = has_layer(noisy_.image(), "noise.bias", components);
+    const Halves bias = knows_noise ? noisy_.read_halves(tile, "bias", components) : Halves{};
+    for (std::size_t c = 0; c < color_channels; ++c) {
+      const Plane all = noisy_.read(tile, std::string("bias.") + components[c]);
+      sum.fill([&](std::size_t i) {
+        const float square = knows_noise ? bias[0][c][i] * bias[1][c][i] : sqr(all[i]);
+        return sum[i] + std::clamp(square / scale[i], -1.0f, 1.0f) / color_channels;
+      });
+    }
+    return sum;
   }
 
   // Means over blocks of pixels, which are treated as independent values.

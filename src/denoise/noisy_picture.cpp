@@ -36,7 +36,8 @@ std::vector<std::string> light_layers(const Image& picture) {
   for (const std::string& channel : picture.channels) {
     if (!channel.starts_with(noise_prefix) || !channel.ends_with(".R")) continue;
     const std::string layer = channel.substr(noise_prefix.size(), channel.size() - noise_prefix.size() - 2);
-    if (layer != "albedo" && has_layer_with_noise(picture, layer, components)) layers.push_back(layer);
+    if (layer != "albedo" && layer != "bias" && has_layer_with_noise(picture, layer, components))
+      layers.push_back(layer);
   }
   return layers;
 }
@@ -140,17 +141,21 @@ Halves NoisyPicture::read_halves(const Tile& tile, const std::string& layer,
   return halves;
 }
 
+float NoisyPicture::least_scale() const {
+  constexpr float dark = 0.01f, tiny = 1e-30f;
+  return dark * sqr(mean_) + tiny;
+}
+
 ErrorScale NoisyPicture::scale_of(const Tile& tile) const {
-  constexpr int radius = 2;
-  constexpr float dark = 0.01f, tiny = 1e-30f, bright = 10;
+  constexpr float bright = 10;
   const float white = bright * mean_;
   Plane light(tile.outer_width, tile.outer_height);
   for (const char* const c : components) {
     const Plane color = read(tile, c);
     light.fill([&](std::size_t i) { return light[i] + std::min(color[i], white) / 3; });
   }
-  light = box_filtered(light, radius);
-  light.fill([&](std::size_t i) { return sqr(light[i]) + dark * sqr(mean_) + tiny; });
+  light = box_filtered(light, scale_radius);
+  light.fill([&](std::size_t i) { return sqr(light[i]) + least_scale(); });
   return {std::move(light), white};
 }
 

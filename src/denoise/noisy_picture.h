@@ -60,6 +60,8 @@ class NoisyPicture {
   /// A channel of the tile including its margin.
   Plane read(const Tile& tile, const std::string& name) const;
   Halves read_halves(const Tile& tile, const std::string& layer, const std::array<const char*, 3>& names) const;
+  static constexpr int scale_radius = 2;  ///< of the squares over which `scale_of` averages light
+  float least_scale() const;              ///< of black pixels
   /// As in `ErrorEstimate`; values above ten times the picture's mean are clamped to it.
   ErrorScale scale_of(const Tile& tile) const;
   /// Factors that divide light by the albedo of these features.

@@ -393,4 +393,14 @@ MeasuredError measure_error(const PictureHalves& pictures) {
   return ErrorMeasurement(pictures).measure();
 }
 
+Image smoothed_bias(const Image& bias) {
+  Image out = bias;
+  const std::size_t channels = bias.channel_count();
+  for (std::size_t c = 0; c < channels; ++c) {
+    const PixelPlane smooth = PixelPlane::of(bias, c).smoothed();
+    for (std::size_t i = 0; i < smooth.size(); ++i) out.pixels[i * channels + c] = static_cast<float>(smooth[i]);
+  }
+  return out;
+}
+
 }  // namespace lanthorn

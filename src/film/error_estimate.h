@@ -37,4 +37,7 @@ struct MeasuredError {
 /// Depends only on the pictures, not on the number of threads.
 MeasuredError measure_error(const PictureHalves& pictures);
 
+/// Smooths one half's bias (HalfPicture::bias) as `MeasuredError::bias` is smoothed.
+Image smoothed_bias(const Image& bias);
+
 }  // namespace lanthorn

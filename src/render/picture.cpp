@@ -96,6 +96,17 @@ Image noise_of(const Image& picture, Image first_half) {
   return first_half;
 }
 
+// The first half's bias minus the picture's, in layers `noise.bias`.
+Image noise_of_bias(const Image& picture, Image first_half) {
+  const std::size_t channels = first_half.channel_count();
+  for (std::size_t c = 0; c < channels; ++c) {
+    const std::size_t all = *picture.find_channel(first_half.channels[c]);
+    for (std::size_t i = 0; i * channels < first_half.pixels.size(); ++i)
+      first_half.pixels[i * channels + c] -= picture.pixels[i * picture.channel_count() + all];
+  }
+  return prefixed("noise.", std::move(first_half));
+}
+
 }  // namespace
 
 namespace {
@@ -111,8 +122,12 @@ MeasuredPicture measured_part(const RenderState& state, const Film& film, const 
 // `picture`: of the same part.
 Image part_with_noise(const RenderState& state, const ShownPart& part, const Image& picture) {
   const Passes first = passes_in(state.passes, FilmHalf::first);
-  Image half = shown(part, state.film.resolve_first_half(count(first), colour_balance(state, first)));
-  return with_layers(picture, prefixed("noise.", noise_of(picture, std::move(half))));
+  const Rgb balance = colour_balance(state, first);
+  Image half = shown(part, state.film.resolve_first_half(count(first), balance));
+  Image noisy = with_layers(picture, prefixed("noise.", noise_of(picture, std::move(half))));
+  if (!picture.find_channel("bias.R")) return noisy;
+  const HalfPicture own = state.film.resolve_half(FilmHalf::first, count(first), balance);
+  return with_layers(noisy, noise_of_bias(picture, prefixed("bias.", smoothed_bias(shown(part, own.bias)))));
 }
 
 }  // namespace

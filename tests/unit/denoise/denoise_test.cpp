@@ -234,6 +234,55 @@ TEST(Denoise, KnowsItsError) {
   EXPECT_LT(std::sqrt(expected / found), 2);
 }
 
+// A picture with the layers `bias` and `noise.bias`: a constant bias, estimated with noise of this standard deviation
+// in each half.
+Image with_bias(const Image& picture, double bias, double sigma) {
+  Image layers(picture.width, picture.height,
+               {"bias.R", "bias.G", "bias.B", "noise.bias.R", "noise.bias.G", "noise.bias.B"});
+  std::mt19937 rng(7);
+  for (std::size_t c = 0; c < 3; ++c) {
+    const std::vector<double> a = noise_field(picture.width, picture.height, 3, rng),
+                              b = noise_field(picture.width, picture.height, 3, rng);
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      layers.pixels[6 * i + c] = static_cast<float>(bias + sigma * (a[i] + b[i]) / 2);
+      layers.pixels[6 * i + 3 + c] = static_cast<float>(sigma * (a[i] - b[i]) / 2);
+    }
+  }
+  return with_layers(picture, layers);
+}
+
+// The bias is noisy as well: its noise is no error of the picture.
+TEST(Denoise, AddsTheBiasToItsErrorWithoutTheNoiseOfTheBias) {
+  const auto light = [](int, int) { return 1.0; };
+  const Image picture = picture_of({128, 128, {{"caustic", light, fifth}}});
+  const auto error_with = [&](double bias, double sigma) { return denoise(with_bias(picture, bias, sigma)).error; };
+  const ErrorEstimate without = denoise(picture).error, noisy = error_with(0, 0.5), biased = error_with(0.3, 0.5);
+  EXPECT_LT(noisy.error, without.error + 0.1);
+  EXPECT_LT(noisy.bound, 0.25);
+  EXPECT_NEAR(biased.error, std::hypot(without.error, 0.3), 0.06);
+  EXPECT_GT(biased.bound, biased.error);
+  EXPECT_FALSE(denoise(with_bias(picture, 0.3, 0.5)).picture.find_channel("denoised.bias.R"));  // no layer of light
+}
+
+// The errors of dark pixels beside bright lines are relative to the dark light.
+TEST(Denoise, KnowsItsErrorBesideBrightLines) {
+  const auto lines = [](int x, int) { return x % 8 == 0 ? 8.0 : 0.5; };
+  const auto sigma = [](int, int) { return 0.4; };
+  double found = 0, expected = 0;
+  for (unsigned seed = 1; seed <= 2; ++seed) {
+    const DenoisedPicture out = denoise(picture_of({96, 96, {{"caustic", lines, sigma}}}, seed));
+    const std::size_t red = *out.picture.find_channel("denoised.R");
+    for (int y = 0; y < 96; ++y)
+      for (int x = 0; x < 96; ++x) {
+        const double r = lines(x, y), d = static_cast<double>(out.picture.at(x, y, red)) - r;
+        found += d * d / (r * r + 0.01 * 1.44 * 1.44) / (96 * 96);
+      }
+    expected += out.error.error * out.error.error;
+  }
+  EXPECT_GT(std::sqrt(expected / found), 0.8);
+  EXPECT_LT(std::sqrt(expected / found), 1.6);
+}
+
 TEST(Denoise, IsTheSameForAnyNumberOfThreads) {
   const Image noisy = picture_of({150, 70, {{"direct", smooth, fifth}, {"caustic", step, fifth}}});
   std::vector<std::vector<float>> results, previews;

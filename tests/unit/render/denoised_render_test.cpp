@@ -190,5 +190,38 @@ TEST(DenoisedRender, HasLessErrorByAnyMethod) {
   }
 }
 
+double mean_square_of_bias(const Image& picture, bool by_halves) {
+  const std::size_t bias = *picture.find_channel("bias.R"), noise = *picture.find_channel("noise.bias.R");
+  double sum = 0;
+  for (int y = 0; y < picture.height; ++y)
+    for (int x = 0; x < picture.width; ++x)
+      for (std::size_t c = 0; c < 3; ++c) {
+        const auto all = static_cast<double>(picture.at(x, y, bias + c)),
+                   off = by_halves ? static_cast<double>(picture.at(x, y, noise + c)) : 0.0;
+        sum += (all + off) * (all - off);
+      }
+  return sum;
+}
+
+// In fog, few photons make the light of a pixel, and much of its estimated bias is noise, which the halves tell apart.
+TEST(DenoisedRender, KnowsTheErrorOfMergedLight) {
+  const SharedScene fog = build_scene(read_scene(LANTHORN_SOURCE_DIR "/scenes/ball-in-fog.pbrt"));
+  constexpr int size = 32;
+  Session reference(fog, options("vcm", size, 7)), session(fog, options("vcm", size));
+  reference.render({.passes = {0, 128}});
+  session.render({.passes = {0, 8}});
+  const Image truth = picture_of(reference.state()), picture = with_noise(session.state(), session.picture());
+  EXPECT_LT(mean_square_of_bias(picture, true), 0.5 * mean_square_of_bias(picture, false));
+  const DenoisedPicture denoised = denoise(picture);
+  const double of_reference = estimate_error(reference.state()).noise;
+  const auto error = [&](const Image& found, const char* layer) {
+    return std::sqrt(relative_mse(found, layer, truth) - of_reference * of_reference);
+  };
+  const double noisy = error(picture, "color"), clean = error(denoised.picture, "denoised");
+  EXPECT_LT(clean, 0.65 * noisy);
+  EXPECT_GT(denoised.error.bound, clean);
+  EXPECT_LT(denoised.error.bound, 0.6 * estimate_error(session.state()).bound);
+}
+
 }  // namespace
 }  // namespace lanthorn::denoised_render_test
