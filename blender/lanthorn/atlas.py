@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The Lanthorn authors
 # SPDX-License-Identifier: Apache-2.0
-"""Gives each triangle of a mesh a place of its own in an image, in proportion to its size."""
+"""Gives each triangle of a mesh its own place in an image, in proportion to its size."""
 import numpy
 
 LARGEST_RATIO = 6     # log2 of the largest square over the smallest one

@@ -23,7 +23,7 @@ UNTOLD = {"name", "label", "location", "width", "width_hidden", "height", "selec
 
 
 def _plain(value):
-    """Returns a property's value as text, which differs if the value does."""
+    """Returns a property's value as text; equal texts mean equal values."""
     if isinstance(value, (bool, int, float, str)) or value is None:
         return str(value)
     if isinstance(value, bpy.types.Image):
@@ -107,7 +107,7 @@ class Bakes:
 
     @staticmethod
     def _unsaved(images, textures):
-        """Writes images that the .blend file would not contain to files, and returns their paths by name."""
+        """Writes images that are not stored in the .blend file to files, and returns their paths by name."""
         return {image.name: textures.images.path_of(image) for image in images
                 if image.packed_file is None and (image.is_dirty or image.source == "GENERATED")}
 

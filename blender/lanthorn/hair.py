@@ -8,7 +8,7 @@ THINNEST = 1e-7  # metres
 
 def bezier(lines, radii):
     """Returns Bézier curves through points. `lines` and `radii` have the points (n, 3), n > 1, and the radii (n) of each
-    hair. Tangents are those of Catmull-Rom splines; inner control points lie a third of them away."""
+    hair. Tangents follow Catmull-Rom splines; inner control points lie a third of the tangent away."""
     points, segments, start = [], [], 0
     for line, radius in zip(lines, radii):
         tangents = numpy.gradient(line, axis=0) / 3

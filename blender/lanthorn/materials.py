@@ -16,8 +16,8 @@ HALFWAY = 0.5
 OLD_CLEARCOAT = 0.25  # the factor in Blender 3
 # Fibres of this roughness, times this factor, have the albedo of Blender 3's sheen within 10 % at all angles.
 OLD_SHEEN, OLD_SHEEN_ROUGHNESS = 0.089, 0.4
-# For each sigma of Velvet: the roughness of fibres, and factors for their colour and for that of the surface below.
-# The mean albedo is that of Cycles' velvet (Ashikhmin). At angles where it is large, the albedo is within 25 %.
+# For each sigma of Velvet: the roughness of fibres, and factors for the colours of fibres and of the surface below. The
+# mean albedo equals that of Cycles' velvet (Ashikhmin). At angles where the albedo is large, it is within 25 %.
 VELVET_SIGMA = [0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0]
 VELVET_ROUGHNESS = [0.15, 0.15, 0.16, 0.25, 0.35, 0.38, 0.41, 0.42, 0.44, 0.44, 0.44]
 VELVET_FIBRES = [0.0, 0.16, 0.70, 0.86, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0]
@@ -475,8 +475,8 @@ class Materials:
                            roughness=self._roughness(node, owner))
 
     def _plastic(self, node, owner):
-        # The reflectance at normal incidence is 0.08 times Specular in Blender 3; in Blender 4, twice the level times that of
-        # the index.
+        # The reflectance at normal incidence is 0.08 times Specular in Blender 3; in Blender 4, twice the level times the
+        # reflectance from the index.
         specular = node.inputs.get("Specular") or node.inputs["Specular IOR Level"]
         factor = self.textures.number(specular, owner)
         if not isinstance(factor, dict):

@@ -14,7 +14,7 @@ def shutter_times(scene):
 
 
 def _places(depsgraph, camera_object):
-    """Returns the matrices of all instances by name, and that of the camera."""
+    """Returns the matrices of all instances by name, and the camera's matrix."""
     places = {SceneExport.name_of(i): camera.rows(i.matrix_world) for i in depsgraph.object_instances if i.show_self}
     seen = camera_object.evaluated_get(depsgraph)
     return places, camera.times_flip_z(camera.without_scale(seen.matrix_world))

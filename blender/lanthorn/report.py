@@ -8,7 +8,7 @@ class Report:
         self._notes = {}
 
     def note(self, owner, text):
-        """Notes that an object or material (`owner`) has an unsupported feature. `text` also names what replaces it."""
+        """Notes that an object or material (`owner`) has an unsupported feature. `text` also names the replacement."""
         self._notes.setdefault(text, []).append(owner)
 
     def lines(self):

@@ -11,8 +11,8 @@ from .report import Report
 from .textures import ImageFiles
 
 MESH_TYPES = {"MESH", "META"}
-# The depsgraph shows a curve, surface or text beside its mesh, which is an instance of its own. Particles instance it
-# without that mesh; then Blender's own engines do not draw it either.
+# Besides a curve, surface or text, the depsgraph shows its mesh as a separate instance. If particles instance the curve,
+# this mesh is missing, and Blender's own engines do not draw it either.
 SHOWN_AS_MESHES = {"CURVE", "SURFACE", "FONT"}
 IGNORED_TYPES = SHOWN_AS_MESHES | {"CAMERA", "EMPTY", "ARMATURE", "LATTICE", "SPEAKER", "LIGHT_PROBE", "GPENCIL"}
 VISIBILITIES = ("visible_diffuse", "visible_glossy", "visible_transmission", "visible_volume_scatter", "visible_shadow")
@@ -197,7 +197,7 @@ class SceneExport:
 
     @staticmethod
     def name_of(instance):
-        """Returns a name for an instance, or for an object itself, that stays the same over time."""
+        """Returns a name for an instance or an object that does not change over time."""
         if not instance.is_instance:
             return instance.object.name_full
         numbers = [str(i) for i in instance.persistent_id if i != 2**31 - 1]

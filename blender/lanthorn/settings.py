@@ -8,7 +8,7 @@ from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, Po
 
 from . import presets
 
-# The names are those of `lanthorn list`.
+# Names as in `lanthorn list`.
 METHODS = [("auto", "Automatic", "A pilot render chooses the method for each kind of light"),
            ("vcm", "Vertex connection and merging", "Finds all kinds of light"),
            ("path", "Path tracing", "Fast, but does not find caustics of small lights"),
@@ -85,7 +85,7 @@ class LanthornLayerSettings(bpy.types.PropertyGroup):
 class LanthornPreferences(bpy.types.AddonPreferences):
     bl_idname = __package__
 
-    program: StringProperty(name="Program", description="Path of the program lanthorn. If empty, it is searched on the PATH", subtype="FILE_PATH")
+    program: StringProperty(name="Program", description="Path of the program lanthorn. If empty, the PATH is searched", subtype="FILE_PATH")
 
     def draw(self, _context):
         self.layout.prop(self, "program")
@@ -93,7 +93,7 @@ class LanthornPreferences(bpy.types.AddonPreferences):
         self.layout.label(text=found or MISSING, icon="CHECKMARK" if found else "ERROR")
 
 
-MISSING = "The program lanthorn was not found on the PATH: install it, or name it in the add-on's preferences"
+MISSING = "The program lanthorn was not found on the PATH: install it, or enter its path in the add-on's preferences"
 
 
 def program_path():
