@@ -69,7 +69,7 @@ RayLights::LitPart RayLights::lit_part(const Source& source, const Segment& segm
   const glm::dvec3 o = glm::dvec3(segment.origin) - source.position, d = glm::normalize(glm::dvec3(segment.direction));
   LitPart part;
   part.nearest = -glm::dot(o, d);
-  // At least the least height that single precision distinguishes from 0: keeps densities finite on rays through the
+  // Not below the least height that single precision distinguishes from 0: densities stay finite on rays through the
   // source.
   constexpr double least = 1e-6;
   part.height = std::max(glm::length(o + part.nearest * d), least * (glm::length(o) + 1e-30));
