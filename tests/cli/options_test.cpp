@@ -40,7 +40,9 @@ class CliOptions : public Cli {
     for (int y = 0; y < part.height; ++y)
       for (int x = 0; x < part.width; ++x)
         for (std::size_t c = 0; c < part.channel_count(); ++c) {
-          if (part.channels[c].starts_with("error.") || part.channels[c].starts_with("bias.")) continue;
+          const std::string& channel = part.channels[c];
+          if (channel.starts_with("error.") || channel.starts_with("bias.") || channel.starts_with("noise.bias."))
+            continue;
           const float a = part.at(x, y, c), b = whole.at(x + 3, y + 5, c);
           const bool equal = std::fabs(a - b) <= rounding * std::fabs(b) || (std::isnan(a) && std::isnan(b));
           different += equal ? 0 : 1;
