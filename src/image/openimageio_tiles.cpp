@@ -68,7 +68,7 @@ using Perthread = OIIO::ImageCache::Perthread;
 // the records of its threads, and no two caches use the same name for an image.
 class TileCache {
  public:
-  TileCache() : number_(++count_) {}
+  TileCache() = default;
   TileCache(const TileCache&) = delete;
   TileCache& operator=(const TileCache&) = delete;
   ~TileCache() {
@@ -104,8 +104,12 @@ class TileCache {
       OIIO::ImageCache::create(false), [](OIIO::ImageCache* cache) { OIIO::ImageCache::destroy(cache); }};
 
  private:
-  static inline std::atomic<std::uint64_t> count_{0};
-  const std::uint64_t number_;  // from 1
+  static std::uint64_t next_number() {
+    static std::atomic<std::uint64_t> count{0};
+    return ++count;
+  }
+
+  const std::uint64_t number_ = next_number();  // from 1
   std::mutex mutex_;
   std::map<std::thread::id, Perthread*> threads_;
   std::deque<CachedImage> images_;  // a deque keeps addresses stable
