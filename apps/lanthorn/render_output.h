@@ -35,7 +35,7 @@ void check_files(const RenderFiles& files, const std::string& scene_file, const 
 /// Throws Error if a state to be replaced holds passes that `session` will not render.
 void check_states(const RenderFiles& files, const std::vector<std::filesystem::path>& outputs, const Session& session);
 
-/// The warnings that a command has printed. Each is printed only once.
+/// Lines that a command has already printed, so that it prints none twice.
 class SaidLines {
  public:
   bool is_new(const std::string& line) { return said_.insert(line).second; }

@@ -94,7 +94,8 @@ Part part_of(const Image& picture, const Image& around) {
   return part;
 }
 
-// Relative squared errors above 1 count as 1. Those of single pixels are too noisy for that: means over squares do.
+// Relative squared errors above 1 count as 1. Single pixels are too noisy to tell which are, so the mean over 3 x 3
+// pixels decides.
 Plane at_most_1(Plane error) {
   constexpr int radius = 1;
   const Plane around = box_filtered(error, radius);
@@ -158,8 +159,8 @@ class Denoiser {
         }
   }
 
-  // The noisy light around a pixel follows no detail finer than its window, and errors beside bright lines would look
-  // small. So its square is multiplied by the denoised light's relation to its own surroundings.
+  // `scale` is a mean over a window, which blurs bright lines, so errors beside them would look small. Hence it is
+  // multiplied by the pixel's denoised light squared, divided by the square of the mean in the same window.
   ErrorScale sharpened(const ErrorScale& scale, const Halves& result) const {
     constexpr int radius = NoisyPicture::scale_radius;
     const Plane& all = scale.light2;

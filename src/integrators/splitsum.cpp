@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 // Split-sum shading (Karis 2013), as in real-time engines: shades the first surface with the prefiltered maps of the
-// environment. Comparing it with `path` shows the error of the approximation. The surface sees nothing but the
-// environment: no shadows, no other lights, no second scattering.
+// environment. Comparing it with `path` shows the error of the approximation. Only the
+// environment lights the surface: there are no shadows, no other lights and no second scattering.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 

@@ -28,9 +28,9 @@
 namespace lanthorn {
 
 /// Members that every light must have. For their meanings, units and conventions see the functions of the same names
-/// below. `pdf_direct` and `emitted` take the point that a ray has hit for lights with a surface, and the direction in
-/// which a ray has left the scene for infinite lights. For media, `pdf_direct` takes the direction of a ray through the
-/// medium. Only lights that are not far have `bounds`.
+/// below. If a light has a surface, its `pdf_direct` and `emitted` take the point that a ray has hit. If it is
+/// infinite, they take the direction in which a ray has left the scene. If it is a medium, `pdf_direct` takes the
+/// direction of a ray through it. Only lights that are not far have `bounds`.
 template <class L>
 concept LightSource = requires(const L l, const Point p, const Direction d, const Vec2 u, const EmitterHit hit,
                                const Wavelengths w) {

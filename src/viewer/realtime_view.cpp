@@ -17,7 +17,7 @@ namespace lanthorn {
 
 namespace {
 
-// A choice of the technique, with the values that are parameters of this technique.
+// The technique with its own parameters, taken from `values`, which may have parameters of other techniques, too.
 TechniqueChoice choice_of(const std::string& technique, const ParameterValues& values) {
   ParameterValues own;
   for (const TechniqueParameter& p : all_parameters(find_technique(technique)->description))

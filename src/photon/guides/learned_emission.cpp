@@ -106,8 +106,8 @@ LearnedEmission learn_emission(const RenderJob& job, PhotonUse use, bool in_medi
   if (std::none_of(scene.lights().begin(), scene.lights().end(), has_power)) return {};
   const PassDraw draw = draw_for_pass(job, 0);
   const std::vector<HitPoint> hits = find_hit_points(job, use, in_media, draw);
-  // The first round uses projection maps, including the map of mirrors and glass: in large scenes, few of the photons
-  // that are emitted by power reach a visible surface.
+  // The first round uses projection maps, including the map of mirrors and glass: in large scenes, few photons
+  // would reach a visible surface if lights emitted them in proportion to their power.
   Landings landings = find_landings(job, use, in_media, draw);
   if (!may_gain(scene, landings)) return {};
   const std::optional<AimedDisks> disks = disks_around(landings.places, hits, scene.bounding_sphere());

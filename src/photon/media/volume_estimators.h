@@ -99,8 +99,8 @@ inline Spectrum along_beam(const PathContext& path, const Medium& medium, const 
 
 /// Photons in a disc across the ray, each at the place where the ray passes it (Jarosz et al. 2008, eq. 14), at most
 /// `aside` (m) from it. The cylinder ends at the planes of the surfaces at the ray's ends. If it were cut off
-/// perpendicular to the ray, it would partly lie behind a surface that the ray meets at an angle. There are no photons
-/// there, or photons of another room. A uniform density between the planes is thus estimated without bias.
+/// perpendicular to the ray, it would partly lie behind a surface that the ray meets at an angle. That side has
+/// no photons, or the photons of another room. A uniform density between the planes is thus estimated without bias.
 template <class Visitor>
 void meet_points_along(const EyeRay& eye, const BallBvh& photons, float aside, Visitor&& visitor) {
   const RaySegment clear = eye.clear_of_planes(aside);

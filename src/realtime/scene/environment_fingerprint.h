@@ -8,7 +8,8 @@
 
 namespace lanthorn {
 
-/// Radiance from directions all around, by which environments are told apart: edits change their strength or colour.
+/// Radiance from directions all around, and from one direction of each light, by which environments are told apart:
+/// edits change their strength or colour.
 std::vector<Vec3> environment_fingerprint(const Scene& scene);
 
 }  // namespace lanthorn

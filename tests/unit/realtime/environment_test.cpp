@@ -13,6 +13,7 @@
 #include "lanthorn/ibl.h"
 #include "lanthorn/metrics.h"
 #include "realtime/frame/renderer.h"
+#include "realtime/scene/environment_fingerprint.h"
 #include "realtime/scene/shader_files.h"
 #include "realtime/techniques/splitsum/environment_baker.h"
 #include "support/opengl.h"
@@ -172,6 +173,19 @@ TEST_F(EnvironmentTest, FrameIsThePictureOfTheCpu) {
   renderer.draw(view, settings);
   EXPECT_FALSE(has_baked());
   EXPECT_EQ(select_layer(renderer.read_layers(), "direct")->pixels, found.pixels);
+}
+
+// The sun is smaller than the distance between the directions all around.
+TEST(EnvironmentFingerprint, ChangesWithASmallSun) {
+  const auto of = [](const std::string& light) {
+    return environment_fingerprint(test::scene_from_text("WorldBegin\nLightSource \"distant\" \"float angle\" .5 " +
+                                                         light + "\nShape \"sphere\"\n"));
+  };
+  const std::string up = "\"point3 from\" [.1 1 .2] \"point3 to\" [0 0 0] ";
+  const auto one = of(up + "\"rgb L\" [1 1 1]");
+  EXPECT_EQ(of(up + "\"rgb L\" [1 1 1]"), one);
+  EXPECT_NE(of(up + "\"rgb L\" [1 1 .9]"), one);
+  EXPECT_NE(of("\"point3 from\" [.2 1 .1] \"point3 to\" [0 0 0] \"rgb L\" [1 1 1]"), one);
 }
 
 }  // namespace
