@@ -6,6 +6,7 @@
 #include <exception>
 #include <new>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -47,6 +48,11 @@ int run_command(CLI::App& app, int argc, char** argv) {
   } catch (const CLI::ParseError& e) {  // a request for help is also a ParseError
     return app.exit(e) == 0 ? 0 : 2;
   }
+}
+
+int say_internal_error(const std::exception& e) {
+  say("lanthorn: internal error: {}\n", e.what());
+  return 3;
 }
 
 int run(int argc, char** argv) {
@@ -94,9 +100,12 @@ int run(int argc, char** argv) {
     say("lanthorn: not enough memory: a smaller picture (--resolution), fewer light paths (--photons) or a "
         "smaller scene needs less\n");
     return 2;
+  } catch (const std::system_error& e) {
+    if (e.code() != std::errc::resource_unavailable_try_again) return say_internal_error(e);
+    say("lanthorn: the system allows no further threads (ulimit -u, or the limit of a container)\n");
+    return 2;
   } catch (const std::exception& e) {
-    say("lanthorn: internal error: {}\n", e.what());
-    return 3;
+    return say_internal_error(e);
   }
 }
 

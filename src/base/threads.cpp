@@ -54,8 +54,12 @@ unsigned startable_threads(unsigned wanted) {
   return started;
 }
 
-// Observed on two cores: the libraries started four threads.
-unsigned threads_of_image_libraries() { return 2 * std::max(2u, std::thread::hardware_concurrency()); }
+// On Debian 12: OpenBLAS and OpenImageIO start a thread for each further core, and log4cplus starts four. A child
+// process tries first.
+unsigned threads_of_image_libraries() {
+  const unsigned others = std::max(2u, std::thread::hardware_concurrency()) - 1;
+  return others + others + 4 + 1;
+}
 
 namespace {
 

@@ -11,8 +11,8 @@ namespace lanthorn {
 /// than `wanted` if the system limits the threads of a user or container, or if their stacks do not fit into memory.
 unsigned startable_threads(unsigned wanted);
 
-/// Number of threads reserved for the libraries behind image codecs (image/image_codec.h), which start their threads
-/// when loaded, and end the program if they cannot.
+/// Number of threads and processes that opening the image codec (image/image_codec.h) is expected to need at a time;
+/// left free for it where threads are scarce.
 unsigned threads_of_image_libraries();
 
 /// Number of hardware threads that this process may run on (CPU affinity).

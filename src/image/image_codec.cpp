@@ -3,9 +3,15 @@
 #include "image/image_codec.h"
 
 #include <dlfcn.h>
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <csignal>
 #include <thread>
 
 #include "base/parallel.h"
@@ -17,23 +23,71 @@ namespace lanthorn {
 
 namespace {
 
-const ImageCodec& load_codec() {
-  const unsigned started_by_libraries = threads_of_image_libraries();
-  if (startable_threads(started_by_libraries) < started_by_libraries)
-    throw Error(fmt::format("the libraries that read images start up to {} threads, more than are allowed",
-                            started_by_libraries));
+void* load_module() {
   void* module = dlopen(LANTHORN_IMAGE_MODULE, RTLD_LAZY | RTLD_LOCAL);
   if (const auto folder = folder_of_fallback_libraries(); module == nullptr && !folder.empty()) {
     load_fallback_libraries(folder);
     module = dlopen(LANTHORN_IMAGE_MODULE, RTLD_LAZY | RTLD_LOCAL);
   }
+  return module;
+}
+
+// For a child process that may crash or, as a copy of a process with several threads, wait for a lock forever.
+void end_without_a_trace() {
+  constexpr unsigned most_seconds = 20;
+  sigset_t none;
+  ::sigemptyset(&none);
+  ::sigprocmask(SIG_SETMASK, &none, nullptr);
+  for (const int signal : {SIGINT, SIGABRT, SIGALRM}) ::signal(signal, SIG_DFL);
+  ::prctl(PR_SET_DUMPABLE, 0);
+  if (const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC); nowhere >= 0) ::dup2(nowhere, STDERR_FILENO);
+  ::alarm(most_seconds);
+}
+
+// Throws Error if the module cannot be loaded.
+const ImageCodec& open_codec(bool with_one_thread) {
+  void* const module = load_module();
   void* const symbol = module != nullptr ? dlsym(module, image_codec_symbol) : nullptr;
   if (symbol == nullptr) throw Error({}, std::string("the module that reads images cannot be loaded: ") + dlerror());
   const ImageCodec& codec = *reinterpret_cast<ImageCodecFunction>(symbol)();
-  // OpenEXR starts a thread for every core and fails if it cannot.
-  const unsigned wanted = thread_count() - 1 + std::max(1u, std::thread::hardware_concurrency());
-  if (startable_threads(wanted) < wanted) codec.use_one_thread();
+  if (with_one_thread) codec.use_one_thread();
   return codec;
+}
+
+// Whether a child process survives opening the codec with one thread.
+bool child_survives() {
+  const pid_t child = ::fork();
+  if (child == 0) {
+    end_without_a_trace();
+    try {
+      open_codec(/*with_one_thread=*/true);
+    } catch (const Error&) {  // the caller will get the same error
+    } catch (...) {           // a thread could not be started
+      ::_exit(1);
+    }
+    ::_exit(0);
+  }
+  int status = 0;
+  pid_t ended = -1;
+  do ended = ::waitpid(child, &status, 0);
+  while (ended < 0 && errno == EINTR);
+  return child > 0 && ended == child && WIFEXITED(status) && WEXITSTATUS(status) == 0;
+}
+
+// The libraries behind the module start threads: when they are loaded, and for their pools. If they cannot, log4cplus
+// and OpenImageIO end the program, and OpenBLAS sends it SIGINT. How many they start depends on which libraries the
+// system has. Where threads are scarce, the codec therefore uses one thread, and a child process tries first.
+const ImageCodec& load_codec() {
+  constexpr unsigned unknown = 8;  // threads of other libraries
+  const unsigned pool_of_openexr = std::max(1u, std::thread::hardware_concurrency());
+  const unsigned ample = threads_of_image_libraries() + unknown + pool_of_openexr + thread_count() - 1;
+  const unsigned startable = startable_threads(ample);
+  const bool are_scarce = startable < ample;
+  if (are_scarce && !child_survives())
+    throw Error(fmt::format(
+        "images cannot be read: the libraries that read them start threads, and the system allows only {} more",
+        startable));
+  return open_codec(are_scarce);
 }
 
 }  // namespace

@@ -96,7 +96,7 @@ struct ImageCodec {
   /// `config`; empty names select its defaults.
   void (*apply_view)(const std::string& config, const std::string& display, const std::string& view, int width,
                      int height, float* colors);
-  /// From now on, OpenEXR decoding uses only the calling thread.
+  /// From now on, only the calling thread decodes, encodes and converts. Briefly starts a thread for each further core.
   void (*use_one_thread)();
   /// Version of OpenImageIO, such as "2.4.7".
   std::string (*version)();

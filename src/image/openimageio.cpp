@@ -220,7 +220,10 @@ void apply_view(const std::string& file, const std::string& wanted_display, cons
     throw std::runtime_error("cannot be applied: " + pixels.geterror());
 }
 
-void use_one_thread() { OIIO::attribute("exr_threads", -1); }
+void use_one_thread() {
+  OIIO::attribute("exr_threads", -1);
+  OIIO::attribute("threads", 1);
+}
 
 std::string version() {
   const int number = OIIO::openimageio_version();  // of the library loaded at run time

@@ -66,9 +66,13 @@ TEST_F(Robustness, ThreadsThatCannotBeHadAreDoneWithout) {
     const Ending ending = run_limited(least, {"info", "all.exr"});
     if (ending.exit_code == 0) break;
     EXPECT_EQ(ending.exit_code, 2) << least << " signal " << ending.signal << ending.err;
-    EXPECT_TRUE(contains(ending.err, "start up to")) << ending.err;
+    EXPECT_TRUE(contains(ending.err, "images cannot be read: the libraries that read them start threads"))
+        << ending.err;
     EXPECT_EQ(run_limited(least, {"info", "tiny.pbrt"}).exit_code, 0);
   }
+  const Ending serving = run_limited(2, {"serve", "tiny.pbrt", "--port", "0"});
+  EXPECT_EQ(serving.exit_code, 2) << serving.err;
+  EXPECT_TRUE(contains(serving.err, "the system allows no further threads")) << serving.err;
   for (int limit = least; limit < least + 6; ++limit) {
     const Ending ending = run_limited(limit, render({"-o", "few.exr", "-p", "2", "--threads", "4"}));
     EXPECT_EQ(ending.exit_code, 0) << limit << ", at least " << least << ": " << ending.err;

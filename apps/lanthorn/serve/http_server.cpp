@@ -41,7 +41,12 @@ class Counted {
 HttpServer::HttpServer(const std::string& address, std::uint16_t port, HttpHandler handler)
     : handler_(std::move(handler)), reception_(address, port) {
   workers_.reserve(threads);
-  for (unsigned i = 0; i < threads; ++i) workers_.emplace_back([this] { work(); });
+  try {
+    for (unsigned i = 0; i < threads; ++i) workers_.emplace_back([this] { work(); });
+  } catch (...) {
+    reception_.stop();  // ends the workers that have started
+    throw;
+  }
 }
 
 HttpServer::~HttpServer() { reception_.stop(); }
