@@ -3,7 +3,6 @@
 // Declarations shared by the parts of the Python module. Each file binds one theme.
 #pragma once
 
-#include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 
 #include <optional>
@@ -54,22 +53,6 @@ std::vector<Vec3> vectors_of(py::handle data, const char* name);
 inline const Vec3& of_all(const std::vector<Vec3>& values, std::size_t i) { return values[values.size() == 1 ? 0 : i]; }
 /// Rays from arrays of which one row stands for all.
 std::vector<SceneRay> rays_of(const py::object& origins, const py::object& directions);
-
-/// `values` as an array that shares the memory of `owner`, which holds them.
-template <class Scalar, class T>
-py::array writable_array(const std::vector<T>& values, py::handle owner) {
-  // NOLINTNEXTLINE(bugprone-sizeof-expression): T may be Scalar
-  constexpr auto count = static_cast<py::ssize_t>(sizeof(T) / sizeof(Scalar));
-  std::vector<py::ssize_t> shape{static_cast<py::ssize_t>(values.size())};
-  if (count > 1) shape.push_back(count);
-  return py::array_t<Scalar>(shape, reinterpret_cast<const Scalar*>(values.data()), owner);
-}
-template <class Scalar, class T>
-py::array shared_array(const std::vector<T>& values, py::handle owner) {
-  py::array array = writable_array<Scalar>(values, owner);
-  array.attr("flags").attr("writeable") = false;
-  return array;
-}
 
 void bind_error(py::module_& module);
 void bind_picture(py::module_& module);

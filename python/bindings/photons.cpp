@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "arrays.h"
 #include "bindings.h"
 
 namespace lanthorn::python {
@@ -41,8 +42,9 @@ Photons trace(const SeenScene& scene, const py::object& origins, const py::objec
 }
 
 template <class Scalar, auto member>
-py::array column(const py::object& self) {
-  return shared_array<Scalar>(self.cast<const Photons&>().*member, self);
+py::object column(const py::object& self) {
+  const auto& values = self.cast<const Photons&>().*member;
+  return array_in(values.data(), layout_of<Scalar>(values), self, /*writable=*/false);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 
+#include "arrays.h"
 #include "bindings.h"
 #include "lanthorn/error.h"
 #include "lanthorn/text.h"
@@ -51,9 +52,15 @@ std::vector<std::size_t> channels_of(const Image& image, const std::string& laye
   return {};
 }
 
+// All channels: shape (height, width, channels).
+ArrayLayout whole_layout(const Image& image) {
+  return {type_text_of<float>(),
+          {static_cast<std::size_t>(image.height), static_cast<std::size_t>(image.width), image.channel_count()}};
+}
+
 // An array of shape (height, width, channels), or (height, width) for one channel. It shares the picture's memory,
 // which requires that the channels of a layer are equally spaced.
-py::array layer_array(const py::object& owner, const std::string& layer) {
+py::object layer_array(const py::object& owner, const std::string& layer) {
   const Image& image = owner.cast<const Picture&>().image;
   const std::vector<std::size_t> channels = channels_of(image, layer);
   if (channels.empty()) {
@@ -62,29 +69,35 @@ py::array layer_array(const py::object& owner, const std::string& layer) {
     for (const std::string& name : known) all += (all.empty() ? "" : ", ") + name;
     throw Error("the picture has no layer " + in_quotes(layer) + did_you_mean(layer, known) + " (it has " + all + ")");
   }
-  const auto count = static_cast<py::ssize_t>(image.channel_count());
-  const auto bytes = static_cast<py::ssize_t>(sizeof(float));
-  std::vector<py::ssize_t> shape{image.height, image.width}, strides{image.width * count * bytes, count * bytes};
+  constexpr auto bytes = static_cast<std::ptrdiff_t>(sizeof(float));
+  const auto pixel_bytes = static_cast<std::ptrdiff_t>(image.channel_count()) * bytes;
+  ArrayLayout layout = whole_layout(image);
+  layout.shape.pop_back();
+  layout.strides = {image.width * pixel_bytes, pixel_bytes};
   if (channels.size() > 1) {
-    const auto step = static_cast<py::ssize_t>(channels[1]) - static_cast<py::ssize_t>(channels[0]);
-    shape.push_back(static_cast<py::ssize_t>(channels.size()));
-    strides.push_back(step * bytes);
+    const auto step = static_cast<std::ptrdiff_t>(channels[1]) - static_cast<std::ptrdiff_t>(channels[0]);
+    layout.shape.push_back(channels.size());
+    layout.strides.push_back(step * bytes);
     for (std::size_t i = 2; i < channels.size(); ++i)
-      if (static_cast<py::ssize_t>(channels[i]) - static_cast<py::ssize_t>(channels[i - 1]) != step)
+      if (static_cast<std::ptrdiff_t>(channels[i]) - static_cast<std::ptrdiff_t>(channels[i - 1]) != step)
         throw Error("the channels of the layer " + in_quotes(layer) + " are not equally spaced");
   }
-  py::array_t<float> array(shape, strides, image.pixels.data() + channels[0], owner);
-  array.attr("flags").attr("writeable") = false;
-  return array;
+  return array_in(image.pixels.data() + channels[0], layout, owner, /*writable=*/false);
 }
 
-py::array whole_array(const py::object& owner) {
+py::object whole_array(const py::object& owner) {
   const Image& image = owner.cast<const Picture&>().image;
-  py::array_t<float> array(
-      std::vector<py::ssize_t>{image.height, image.width, static_cast<py::ssize_t>(image.channel_count())},
-      image.pixels.data(), owner);
-  array.attr("flags").attr("writeable") = false;
-  return array;
+  return array_in(image.pixels.data(), whole_layout(image), owner, /*writable=*/false);
+}
+
+// For numpy.asarray(picture). numpy 2 passes `copy`: None copies if necessary, False forbids it.
+py::object color_array(const py::object& self, const py::object& dtype, const py::object& copy) {
+  const py::object array = layer_array(self, "color");
+  const bool is_same = dtype.is_none() || py::module_::import("numpy").attr("dtype")(dtype).equal(array.attr("dtype"));
+  if (is_same) return !copy.is_none() && copy.cast<bool>() ? array.attr("copy")() : array;
+  if (!copy.is_none() && !copy.cast<bool>())
+    throw py::value_error("a picture's numbers are float32: an array of another dtype must be a copy");
+  return array.attr("astype")(dtype);
 }
 
 Picture picture_of_array(const py::object& data, const std::optional<std::vector<std::string>>& names) {
@@ -165,13 +178,8 @@ void bind_picture(py::module_& module) {
           "__contains__",
           [](const Picture& p, const std::string& layer) { return !channels_of(p.image, layer).empty(); },
           py::arg("layer"), "True if the picture has the layer.")
-      .def(
-          "__array__",
-          [](const py::object& self, const py::object& dtype) -> py::object {
-            const py::array array = layer_array(self, "color");
-            return dtype.is_none() ? py::object(array) : array.attr("astype")(dtype);
-          },
-          py::arg("dtype") = py::none(), "The layer 'color', for numpy.asarray(picture).")
+      .def("__array__", &color_array, py::arg("dtype") = py::none(), py::arg("copy") = py::none(),
+           "The layer 'color', for numpy.asarray(picture).")
       .def_property_readonly("array", &whole_array,
                              "All channels, shape (height, width, len(channels)), float32, read-only, without a copy.")
       .def_property_readonly(

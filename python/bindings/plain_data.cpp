@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "arrays.h"
 #include "lanthorn/error.h"
 
 namespace lanthorn::python {
@@ -12,54 +13,11 @@ namespace lanthorn::python {
 using plain::Array;
 using plain::Dict;
 using plain::List;
-using plain::Scalar;
 using plain::Value;
 
 namespace {
 
 std::string repr_of(py::handle object) { return py::repr(object).cast<std::string>(); }
-
-// Keeps a Python object alive. The last reference may be dropped on a thread that runs no Python code.
-std::shared_ptr<const void> keeper_of(const py::object& object) {
-  return {object.ptr(), [kept = object](const void*) mutable {
-            const py::gil_scoped_acquire acquire;
-            kept = py::object();
-          }};
-}
-
-std::optional<Scalar> scalar_of(const py::dtype& type) {
-  const bool is_wide = type.itemsize() == 8;
-  switch (type.kind()) {
-    case 'f':
-      return is_wide ? Scalar::float64 : Scalar::float32;
-    case 'i':
-      return is_wide                ? Scalar::int64
-             : type.itemsize() == 4 ? Scalar::int32
-             : type.itemsize() == 2 ? Scalar::int16
-                                    : Scalar::int8;
-    case 'u':
-      return is_wide                ? Scalar::uint64
-             : type.itemsize() == 4 ? Scalar::uint32
-             : type.itemsize() == 2 ? Scalar::uint16
-                                    : Scalar::uint8;
-    default:
-      return std::nullopt;
-  }
-}
-
-// Half and long double arrays become double.
-Value value_of_array(const py::array& any) {
-  py::array array = py::array::ensure(any, py::array::c_style);
-  const char kind = array.dtype().kind();
-  const bool is_odd = kind == 'f' && array.itemsize() != 4 && array.itemsize() != 8;
-  if (is_odd || !array.dtype().attr("isnative").cast<bool>())
-    array = py::array_t<double, py::array::c_style | py::array::forcecast>(array);
-  const std::optional<Scalar> scalar = scalar_of(array.dtype());
-  if (!scalar) return plain::Other{repr_of(any)};
-  Array value{*scalar, {}, keeper_of(array), static_cast<const std::byte*>(array.data())};
-  for (py::ssize_t i = 0; i < array.ndim(); ++i) value.shape.push_back(static_cast<std::size_t>(array.shape(i)));
-  return value;
-}
 
 Value value_of_whole(const py::object& whole, py::handle object) {
   int overflow = 0;
@@ -96,10 +54,12 @@ Value value_of_other(py::handle object) {
   }
   const bool has_array = py::hasattr(object, "__array__") || py::hasattr(object, "__array_interface__") ||
                          PyObject_CheckBuffer(object.ptr()) != 0;
-  const py::array array = has_array ? py::array::ensure(object) : py::array();
-  if (has_array && array) return value_of_array(array);
-  PyErr_Clear();
-  return plain::Other{repr_of(object)};
+  if (!has_array) return plain::Other{repr_of(object)};
+  try {
+    return value_of_array(py::reinterpret_borrow<py::object>(object));
+  } catch (const py::error_already_set&) {  // numpy cannot convert it
+    return plain::Other{repr_of(object)};
+  }
 }
 
 }  // namespace
@@ -137,11 +97,7 @@ py::object object_of(const Value& value) {
   if (array == nullptr) return py::none();
   auto* owner = new std::shared_ptr<const void>(array->owner);
   const py::capsule capsule(owner, [](void* kept) { delete static_cast<std::shared_ptr<const void>*>(kept); });
-  return with_type(array->type, [&](const auto* type) -> py::object {
-    using Number = std::decay_t<decltype(*type)>;
-    const std::vector<py::ssize_t> shape(array->shape.begin(), array->shape.end());
-    return py::array_t<Number>(shape, reinterpret_cast<const Number*>(array->data), capsule);
-  });
+  return array_in(array->data, {type_text(array->type), array->shape}, capsule, /*writable=*/true);
 }
 
 }  // namespace lanthorn::python

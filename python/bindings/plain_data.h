@@ -3,7 +3,6 @@
 // Converts Python objects to plain data, and back.
 #pragma once
 
-#include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 
 #include <string>

@@ -5,6 +5,7 @@
 
 #include <pybind11/stl.h>
 
+#include "arrays.h"
 #include "bindings.h"
 #include "plain_data.h"
 
@@ -19,15 +20,8 @@ std::size_t common_size(const std::vector<Vec3>& a, const std::vector<Vec3>& b, 
               " and " + std::to_string(b.size()));
 }
 
-template <class Scalar, class T>
-py::array array_of(std::vector<T>&& values) {
-  auto* const kept = new std::vector<T>(std::move(values));
-  const py::capsule owner(kept, [](void* pointer) { delete static_cast<std::vector<T>*>(pointer); });
-  return writable_array<Scalar>(*kept, owner);
-}
-
-py::array radiance(const SeenScene& scene, const py::object& origins, const py::object& directions,
-                   std::uint32_t samples, std::uint64_t seed, int max_depth) {
+py::object radiance(const SeenScene& scene, const py::object& origins, const py::object& directions,
+                    std::uint32_t samples, std::uint64_t seed, int max_depth) {
   const std::vector<SceneRay> rays = rays_of(origins, directions);
   std::vector<Rgb> light;
   {
@@ -38,7 +32,7 @@ py::array radiance(const SeenScene& scene, const py::object& origins, const py::
 }
 
 template <class Scalar, class T>
-py::array column(const std::vector<RayHit>& hits, T RayHit::*member) {
+py::object column(const std::vector<RayHit>& hits, T RayHit::*member) {
   std::vector<T> values;
   values.reserve(hits.size());
   for (const RayHit& hit : hits) values.push_back(hit.*member);
@@ -61,7 +55,7 @@ py::dict hits_of(const SeenScene& scene, const py::object& origins, const py::ob
   std::vector<std::uint8_t> emits;
   emits.reserve(hits.size());
   for (const RayHit& hit : hits) emits.push_back(hit.emits ? 1 : 0);
-  data["emits"] = array_of<std::uint8_t>(std::move(emits)).attr("astype")("bool");
+  data["emits"] = array_of<bool>(std::move(emits));
   return data;
 }
 
@@ -76,7 +70,7 @@ SurfaceBsdf bsdf_of_material(const py::dict& material) {
 }
 
 template <class Scalar, class Result, class Function>
-py::array over_pairs(const py::object& wi, const py::object& wo, Function&& function) {
+py::object over_pairs(const py::object& wi, const py::object& wo, Function&& function) {
   const std::vector<Vec3> from = vectors_of(wi, "wi"), to = vectors_of(wo, "wo");
   std::vector<Result> results(common_size(from, to, "wi, wo"));
   for (std::size_t i = 0; i < results.size(); ++i) results[i] = function(of_all(from, i), of_all(to, i));
@@ -101,7 +95,7 @@ py::dict samples_of(const SurfaceBsdf& bsdf, const py::object& wi, const py::obj
   data["wo"] = array_of<float>(std::move(wo));
   data["weight"] = array_of<float>(std::move(weight));
   data["pdf"] = array_of<float>(std::move(pdf));
-  data["is_delta"] = array_of<std::uint8_t>(std::move(is_delta)).attr("astype")("bool");
+  data["is_delta"] = array_of<bool>(std::move(is_delta));
   return data;
 }
 

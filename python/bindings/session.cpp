@@ -59,7 +59,7 @@ class PythonSession {
   }
   uint64_t pass_count() const { return session_.pass_count(); }
   std::vector<description::Warning> warnings() const { return session_.warnings(); }
-  const SeenScene& scene() const { return scene_; }
+  SeenScene scene() const { return scene_; }  // a copy, which an assignment of another scene does not change
   const RenderStatistics& statistics() const { return statistics_; }
   uint64_t planned_passes() const { return session_.plan().passes.end - session_.plan().passes.begin; }
 
@@ -99,10 +99,12 @@ class PythonSession {
       raised.emplace();
       is_stopped_ = true;
     };
+    RenderStatistics statistics;
     {
       const py::gil_scoped_release release;
-      statistics_ = session_.render(stop, observer);
+      statistics = session_.render(stop, observer);
     }
+    statistics_ = std::move(statistics);  // with the GIL, because other threads may read it
     if (raised) throw py::error_already_set(std::move(*raised));
   }
 

@@ -10,6 +10,7 @@
 #include <limits>
 #include <memory>
 
+#include "arrays.h"
 #include "bindings.h"
 #include "lanthorn/convergence.h"
 #include "lanthorn/denoise.h"
@@ -63,11 +64,11 @@ constexpr double no_reference = std::numeric_limits<double>::quiet_NaN();
 
 // One column of the points; NaN where there is no reference.
 template <class Value>
-py::array column(const Convergence& convergence, Value&& value) {
-  py::array_t<double> values(static_cast<py::ssize_t>(convergence.points.size()));
-  for (std::size_t i = 0; i < convergence.points.size(); ++i)
-    values.mutable_at(static_cast<py::ssize_t>(i)) = value(convergence.points[i]);
-  return values;
+py::object column(const Convergence& convergence, Value&& value) {
+  std::vector<double> values;
+  values.reserve(convergence.points.size());
+  for (const auto& point : convergence.points) values.push_back(value(point));
+  return array_of<double>(std::move(values));
 }
 
 py::dict converge(const SeenScene& scene, std::uint64_t runs, const std::optional<Picture>& reference,

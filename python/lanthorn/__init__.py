@@ -19,7 +19,31 @@ scenes and options raise `lanthorn.Error`, which says where. docs/python.md has 
 
 import html
 
-from . import _lanthorn
+
+def _problem():
+    """Why the compiled module, which belongs to one version of Python, is not there; None if it is."""
+    import importlib.machinery
+    import pathlib
+    import re
+    import sys
+
+    folder = pathlib.Path(__file__).resolve().parent
+    built = sorted(file.name for file in folder.glob("_lanthorn*.so"))
+    if any("_lanthorn" + suffix in built for suffix in importlib.machinery.EXTENSION_SUFFIXES):
+        return None
+    this = f"this is Python {sys.version.split()[0]} ({sys.executable})"
+    if not built:
+        return f"the compiled module of lanthorn is not in {folder}; {this}"
+    versions = [re.sub(r"_lanthorn\.cpython-(\d)(\d+).*", r"Python \1.\2", name) for name in built]
+    return f"lanthorn was built for {' and '.join(versions)}; {this} (docs/python.md says how to build it)"
+
+
+try:
+    from . import _lanthorn
+except ImportError:
+    if _problem() is None:
+        raise
+    raise ImportError(_problem()) from None
 from ._lanthorn import (
     Bsdf,
     Error,
