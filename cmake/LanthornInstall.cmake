@@ -15,6 +15,15 @@ if(LANTHORN_WHEEL)  # in one folder with its modules, and without links, which w
   set_target_properties(lanthorn PROPERTIES INSTALL_RPATH $ORIGIN VERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
 endif()
 
+# What cmake --install copies from the build folder; scripts/build builds it.
+add_custom_target(installed_files)
+add_dependencies(installed_files lanthorn_program lanthorn lanthorn_openimageio)
+foreach(target IN ITEMS lanthorn_mpi lanthorn_window lanthorn_python blender_addon)
+  if(TARGET ${target})
+    add_dependencies(installed_files ${target})
+  endif()
+endforeach()
+
 install(TARGETS lanthorn_program)
 install(TARGETS lanthorn EXPORT lanthorn LIBRARY COMPONENT library NAMELINK_COMPONENT development)
 install(TARGETS lanthorn_openimageio LIBRARY DESTINATION ${LANTHORN_INSTALL_MODULE_DIR})
@@ -37,12 +46,20 @@ install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT doc PATTERN
 
 install(DIRECTORY include/lanthorn DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development FILES_MATCHING PATTERN *.h)
 install(EXPORT lanthorn NAMESPACE lanthorn:: FILE lanthorn-targets.cmake DESTINATION ${package_dir} COMPONENT development)
+export(EXPORT lanthorn NAMESPACE lanthorn:: FILE lanthorn-targets.cmake)  # for find_package in the build folder
 configure_file(cmake/lanthorn-config.cmake.in lanthorn-config.cmake @ONLY)
 write_basic_package_version_file(lanthorn-config-version.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/lanthorn-config.cmake ${CMAKE_CURRENT_BINARY_DIR}/lanthorn-config-version.cmake
         DESTINATION ${package_dir} COMPONENT development)
+# For pkg-config in the build folder, whose headers are those of the sources.
+set(pc_prefix ${CMAKE_BINARY_DIR})
+set(pc_libdir \${prefix}/lib)
+set(pc_includedir ${PROJECT_SOURCE_DIR}/include)
+configure_file(cmake/lanthorn.pc.in lib/pkgconfig/lanthorn.pc @ONLY)
 # Relative to the file itself, so that it holds for any --prefix.
-cmake_path(RELATIVE_PATH CMAKE_INSTALL_PREFIX BASE_DIRECTORY ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig
-           OUTPUT_VARIABLE pkgconfig_to_prefix)
-configure_file(cmake/lanthorn.pc.in lanthorn.pc @ONLY)
-install(FILES ${CMAKE_CURRENT_BINARY_DIR}/lanthorn.pc DESTINATION ${pkgconfig_dir} COMPONENT development)
+cmake_path(RELATIVE_PATH CMAKE_INSTALL_PREFIX BASE_DIRECTORY ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig OUTPUT_VARIABLE pc_prefix)
+string(PREPEND pc_prefix \${pcfiledir}/)
+set(pc_libdir \${prefix}/${CMAKE_INSTALL_LIBDIR})
+set(pc_includedir \${prefix}/${CMAKE_INSTALL_INCLUDEDIR})
+configure_file(cmake/lanthorn.pc.in installed/lanthorn.pc @ONLY)
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/installed/lanthorn.pc DESTINATION ${pkgconfig_dir} COMPONENT development)
