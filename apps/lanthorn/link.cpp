@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <memory>
@@ -32,11 +33,12 @@ int take_standard_output() {
   return file;
 }
 
-// Watches the pipe and ends the program once the client has closed it, even while a scene is built, which cannot be
-// interrupted.
+// Watches the pipes and ends the program once the client has closed one of them, even while a scene is built, which
+// cannot be interrupted. The last request may be a "wait" of 10 seconds, whose answer takes time to be read.
 void end_with_client(int output) {
+  static constexpr std::chrono::seconds patience{15};
   std::thread([output] {
-    wait_until_unread(output);
+    wait_for_end_of_client(STDIN_FILENO, output, patience);
     std::_Exit(0);
   }).detach();
 }
@@ -70,7 +72,7 @@ void add_link(CLI::App& app) {
       "  lanthorn link <requests >answers";
   add_command(app, {"link",
                     "Render for another program, which sends the scene through a pipe",
-                    {threads_option(a->threads, "the picture")},
+                    {threads_option(a->threads)},
                     footer,
                     [a] { run_link(*a); }});
 }

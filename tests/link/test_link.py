@@ -257,6 +257,20 @@ class LinkTest(unittest.TestCase):
         self.assert_refused(f"expected a spread of more than 0 and at most 180 degrees, got {spread}", "start",
                             options={"integrator": "path", "passes": 1})
 
+    def test_a_layer_that_is_named_often_is_sent_once(self):
+        self.start(scene())
+        last_picture(self.client)
+        answer = self.client.request("wait", layers=["color"] * 200000 + ["depth", "color"] + [str(i) for i in range(1000)])
+        self.assertEqual(answer["channels"], ["R", "G", "B", "depth.Z"])
+
+    def test_requests_are_answered_although_no_more_will_come(self):
+        self.start(scene(), passes=1000000000)
+        self.send({"request": "wait", "after": 10**9, "patience": 1})
+        self.send({"request": "stop"})
+        self.client.process.stdin.close()
+        self.assertEqual([self.receive()["answer"], self.receive()["answer"]], ["wait", "stop"])
+        self.assertEqual(self.client.process.wait(timeout=20), 0)
+
     def test_goes_on_until_it_is_told_to_end(self):
         self.client.request("update", set=scene())
         self.client.request("start", options={"integrator": "path"})

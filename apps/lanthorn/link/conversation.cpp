@@ -6,6 +6,7 @@
 #include <array>
 #include <chrono>
 #include <new>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -81,13 +82,15 @@ nlohmann::json texts_of(const std::vector<description::Warning>& warnings) {
   return texts;
 }
 
-// The requested layers that exist, one after the other; without a request, all but the noise layers.
+// The requested layers that exist, one after the other, each once; without a request, all but the noise layers.
 Image layers_of(const Image& image, const std::optional<std::vector<std::string>>& wanted) {
   Image names;
   std::copy_if(image.channels.begin(), image.channels.end(), std::back_inserter(names.channels),
                [](const std::string& channel) { return !is_noise_channel(channel); });
   std::optional<Image> all;
+  std::set<std::string> seen;
   for (const std::string& name : wanted ? *wanted : layer_names(names)) {
+    if (!seen.insert(name).second) continue;
     std::optional<Image> layer = select_layer(image, name);
     if (!layer) continue;
     all = all ? with_layers(*all, *layer) : std::move(*layer);

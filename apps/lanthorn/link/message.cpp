@@ -3,6 +3,7 @@
 #include "message.h"
 
 #include <poll.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -68,6 +69,11 @@ void check(const Header& header) {
                 std::to_string(most_data_bytes) + " bytes of arrays");
 }
 
+bool has_unread_bytes(int file) {
+  int count = 0;
+  return ::ioctl(file, FIONREAD, &count) == 0 && count > 0;
+}
+
 void write_all(int file, const void* bytes, std::size_t count) {
   const auto* next = static_cast<const char*>(bytes);
   while (count > 0) {
@@ -104,9 +110,16 @@ void write_answer(int file, const nlohmann::json& body, std::span<const float> n
   write_all(file, numbers.data(), numbers.size_bytes());
 }
 
-void wait_until_unread(int file) {
-  pollfd wanted{.fd = file, .events = 0, .revents = 0};
-  while (::poll(&wanted, 1, -1) <= 0) {
+void wait_for_end_of_client(int input, int output, std::chrono::milliseconds patience) {
+  std::array<pollfd, 2> ends{
+      {{.fd = output, .events = 0, .revents = 0}, {.fd = input, .events = POLLRDHUP, .revents = 0}}};
+  while (::poll(ends.data(), ends.size(), -1) <= 0) {
+  }
+  constexpr int step = 100;  // milliseconds
+  std::chrono::milliseconds waited{0};
+  while (ends[0].revents == 0 && waited < patience) {
+    ::poll(ends.data(), 1, step);
+    waited = has_unread_bytes(input) ? std::chrono::milliseconds(0) : waited + std::chrono::milliseconds(step);
   }
 }
 

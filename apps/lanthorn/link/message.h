@@ -3,6 +3,7 @@
 // Protocol messages (docs/protocol.md) on a pipe: a header, a JSON object, and the bytes of its arrays.
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -28,7 +29,8 @@ std::optional<LinkRequest> read_request(int file);
 /// Writes a message. Throws Error if the client has closed the pipe.
 void write_answer(int file, const nlohmann::json& body, std::span<const float> numbers);
 
-/// Waits until the client no longer reads from the pipe. Never returns for a regular file.
-void wait_until_unread(int file);
+/// Waits until the client has ended: it no longer reads `output`, or it has closed `input`, has no request left in it,
+/// and had `patience` for the answer to the last one. Never returns for regular files.
+void wait_for_end_of_client(int input, int output, std::chrono::milliseconds patience);
 
 }  // namespace lanthorn::program
