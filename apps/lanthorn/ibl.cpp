@@ -337,7 +337,7 @@ OptionTable ibl_options(IblCommand& a) {
        .value = flag(a.settings.windowed),
        .brief = "Window the harmonics of irradiance, so that none is negative"},
       {.names = "--sheen", .value = flag(a.sheen), .brief = "Third channel of the table: albedo of Charlie sheen"},
-      threads_option(a.threads, "The files do not depend"),
+      threads_option(a.threads, "The files do not depend on it."),
       max_pixels_option(a.max_pixels),
       {.names = "--json", .value = flag(a.print_report), .brief = "Print report.json, too"},
       {.names = "-q,--quiet", .value = flag(a.quiet), .brief = "Print no progress"}};

@@ -23,12 +23,12 @@ Option max_pixels_option(std::uint64_t& max_pixels) {
           .otherwise = "2^30"};
 }
 
-Option threads_option(unsigned& threads, const std::string& what) {
+Option threads_option(unsigned& threads, const std::string& independence) {
   return {.names = "-T,--threads",
           .value = into(threads, count_type({0, most_threads})),
           .brief = "Number of threads; 0 uses all cores",
-          .details = what +
-                     " on it. All cores are those that CPU affinity and the quota of a control group (container) "
+          .details = independence +
+                     " All cores are those that CPU affinity and the quota of a control group (container) "
                      "leave to the program; 'lanthorn info --machine' shows them.",
           .otherwise = "0"};
 }
@@ -129,7 +129,7 @@ OptionTable render_options(RenderArguments& a) {
        .value = into(o.integrator, text_type("INTEGRATOR")),
        .brief = "Rendering method; 'lanthorn list' shows them",
        .otherwise = "auto, or the scene file's if it names a method that only Lanthorn has"},
-      threads_option(a.threads, "The picture does not depend"),
+      threads_option(a.threads),
       {.names = "-s,--seed",
        .value = into(o.seed, count_type()),
        .brief = "Seed of all random numbers",

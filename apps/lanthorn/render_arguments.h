@@ -28,7 +28,7 @@ ValueType<float> environment_rotation_type();
 ValueType<float> environment_scale_type();
 /// --max-pixels: limit for each picture that is read.
 Option max_pixels_option(std::uint64_t& max_pixels);
-/// --threads. `what`: what does not depend on it, such as the picture or the files.
-Option threads_option(unsigned& threads, const std::string& what);
+/// --threads. `independence`: a sentence about what does not depend on it.
+Option threads_option(unsigned& threads, const std::string& independence = "The picture does not depend on it.");
 
 }  // namespace lanthorn::program

@@ -16,6 +16,7 @@
 #include "json_text.h"
 #include "lanthorn/file.h"
 #include "lanthorn/image_file.h"
+#include "lanthorn/number_text.h"
 #include "lanthorn/state.h"
 #include "lanthorn/text.h"
 #include "output.h"
@@ -36,7 +37,8 @@ std::string text_of(const nlohmann::json& value) {
 std::string limit_text(double cut_share) {
   constexpr double least = 1e-4;
   if (cut_share < least) return {};
-  return fmt::format("ended paths that still had {:.2g} % of the throughput: light may be missing", 100 * cut_share);
+  return fmt::format("ended paths that still had {} % of the throughput: light may be missing",
+                     short_number(100 * cut_share));
 }
 
 void print_line(const char* name, const std::string& text) { print("{:<10} {}\n", name, text); }
@@ -102,12 +104,16 @@ bool is_error(const nlohmann::json& error) {
 }
 
 std::string error_line(const nlohmann::json& error) {
-  const auto percent = [&](const char* member) { return 100 * error.at(member).get<double>(); };
+  const auto percent = [&](const char* member) { return short_number(100 * error.at(member).get<double>()); };
   ErrorEstimate e;
   e.bound = error.at("bound").get<double>();
   e.doubt = text_of(error.at("doubt"));
-  return fmt::format("{} with 90 % confidence; noise {:.2g} %, bias {:.2g} %", describe_error(e), percent("noise"),
-                     percent("bias"));
+  if (e.is_known())
+    return fmt::format("{} with 90 % confidence; noise {} %, bias {} %", describe_error(e), percent("noise"),
+                       percent("bias"));
+  // An error of 1, the largest one, stands for nothing measured.
+  const std::string measured = fmt::format("; noise about {} %, bias about {} %", percent("noise"), percent("bias"));
+  return describe_error(e) + (error.at("error").get<double>() < 1 ? measured : "");
 }
 
 nlohmann::json state_json(const StateSummary& state, const ErrorEstimate& error,

@@ -16,6 +16,7 @@
 #include "lanthorn/file.h"
 #include "lanthorn/image_file.h"
 #include "lanthorn/methods.h"
+#include "lanthorn/number_text.h"
 #include "lanthorn/text.h"
 #include "lanthorn/threads.h"
 #include "output_check.h"
@@ -90,9 +91,9 @@ void warn_of_limit(const StateSummary& state) {
   if (state.cut_share < much) return;
   const nlohmann::json settings = nlohmann::json::parse(state.settings);
   warn(
-      "the limit of {} scattering events ended paths that still had {:.2g} % of the throughput: light may be missing "
+      "the limit of {} scattering events ended paths that still had {} % of the throughput: light may be missing "
       "where paths are long; a higher --max-depth finds it",
-      settings.at("identity").at("max_depth").get<int>(), 100 * state.cut_share);
+      settings.at("identity").at("max_depth").get<int>(), short_number(100 * state.cut_share));
 }
 
 void write_report(const std::string& path, const Scene& scene, StatePicture& picture,

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/parallel.h"
+#include "lanthorn/number_text.h"
 
 namespace lanthorn {
 
@@ -359,7 +360,7 @@ class ErrorMeasurement {
 }  // namespace
 
 std::string describe_error(const ErrorEstimate& estimate) {
-  return estimate.is_known() ? fmt::format("below {:.2g} %", 100 * estimate.bound)
+  return estimate.is_known() ? fmt::format("below {} %", short_number(100 * estimate.bound))
                              : fmt::format("not known: {}", estimate.doubt);
 }
 

@@ -11,6 +11,7 @@
 
 #include "base/memory.h"
 #include "lanthorn/error.h"
+#include "lanthorn/number_text.h"
 #include "path/path_draw.h"
 #include "photon/photon_pass.h"
 
@@ -58,7 +59,7 @@ std::string too_many_photons(const RenderSettings& settings, const MemoryUse& us
   return fmt::format(
       "{} light paths{} take {} of memory{}, beside {} for the picture, but {}: choose fewer with --photons{}",
       has_blocks ? use.photon_block : settings.photons, of, memory_text(bytes),
-      per_path.photons > 0 ? fmt::format(" ({:.2g} photons each)", per_path.photons) : "", memory_text(film),
+      per_path.photons > 0 ? fmt::format(" ({} photons each)", short_number(per_path.photons)) : "", memory_text(film),
       limit.words,
       use.photon_block == MemoryUse{}.photon_block
           ? ", or a method that does not need all of them at a time (probppm, vcm, bpm, auto)"

@@ -19,6 +19,7 @@
 
 #include "base/parallel.h"
 #include "lanthorn/error.h"
+#include "lanthorn/number_text.h"
 #include "math/hash.h"
 #include "scene/area_lights.h"
 #include "scene/media.h"
@@ -253,10 +254,10 @@ void SceneBuilder::note_coarse_steps(const Bounds& box, const SourceLocation& lo
 void SceneBuilder::warn_of_coarse_steps() {
   if (coarse_.count == 0) return;
   warn_once(data_.description, coarse_.first,
-            fmt::format("this shape{} has a size of {:.2g} m, but coordinates around {:.2g} m, which are rounded to "
+            fmt::format("this shape{} has a size of {} m, but coordinates around {} m, which are rounded to "
                         "{:.1g} m: its surface and its shadows are rough. Model the scene nearer to the origin",
-                        coarse_.count > 1 ? fmt::format(", the first of {} such,", coarse_.count) : "", coarse_.size,
-                        coarse_.reach, coarse_.step));
+                        coarse_.count > 1 ? fmt::format(", the first of {} such,", coarse_.count) : "",
+                        short_number(coarse_.size), short_number(coarse_.reach), coarse_.step));
 }
 
 void SceneBuilder::place(PlacedInstance placed) {

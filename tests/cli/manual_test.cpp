@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdio>
+#include <regex>
 #include <sstream>
 
 #include "cli_fixture.h"
@@ -149,6 +150,16 @@ TEST_F(Manual, DetailsAreInTheWholeHelpAndInThePage) {
   EXPECT_TRUE(contains(page, ".SS Camera and light\n")) << page;
   // A command of few options has all of them, with their defaults.
   EXPECT_TRUE(contains(unwrapped(succeed({"ibl", "--help"}).out), "Default: square"));
+}
+
+// Other sentences may begin with the name of a value.
+TEST_F(Manual, SentencesOfTheHelpAreWhole) {
+  const std::regex mangled("[^.][.] (the|a|an|it|its|this|these|each|all|every|if|in|of|on|with) ");
+  for (const std::string& command : commands()) {
+    const std::string help = unwrapped(succeed({command, "--help", "--all"}).out);
+    std::smatch found;
+    EXPECT_FALSE(std::regex_search(help, found, mangled)) << command << ": " << found.str() << found.suffix();
+  }
 }
 
 TEST_F(Manual, DoesNotNameTheCommandThatWritesIt) {

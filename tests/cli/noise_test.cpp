@@ -90,7 +90,13 @@ TEST_F(Noise, InfoTellsTheError) {
   EXPECT_EQ(nlohmann::json::parse(succeed({"info", "--json", "a.exr"}).out)["settings"]["error"],
             json("a.json")["error"]);
   succeed(render({"-i", "vcm", "-p", "2", "-o", "few.state"}));
-  EXPECT_TRUE(contains(succeed({"info", "few.state"}).out, "not known: there are too few passes"));
+  const std::string few = succeed({"info", "few.state"}).out;
+  EXPECT_TRUE(contains(few, "\nerror      not known: there are too few passes; noise about ")) << few;
+  succeed(render({"-i", "vcm", "-p", "1", "-o", "one.state", "-o", "one.exr"}));
+  for (const char* file : {"one.state", "one.exr"}) {
+    const std::string one = succeed({"info", file}).out;
+    EXPECT_TRUE(contains(one, "\nerror      not known: there are too few passes\n")) << one;
+  }
 }
 
 // The reported error is the same whether it is measured together with an .exr's layers or alone.

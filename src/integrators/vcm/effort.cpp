@@ -10,6 +10,8 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "lanthorn/number_text.h"
+
 namespace lanthorn {
 
 Effort::Effort(std::uint64_t light_paths, const PixelWindow& window, int columns, std::vector<PlaceEffort> blocks,
@@ -41,9 +43,9 @@ std::string Effort::describe() const {
   const std::string shorter =
       report_.short_part > 0 ? fmt::format("; in {}, eye paths end at their first merge", percent(report_.short_part))
                              : "";
-  return fmt::format("{}: {:.2g} light paths a pixel, merged in {} and connected in {} of the picture{}", found,
-                     report_.light_paths_per_pixel, percent(report_.merged_part), percent(report_.connected_part),
-                     shorter);
+  return fmt::format("{}: {} light paths a pixel, merged in {} and connected in {} of the picture{}", found,
+                     short_number(report_.light_paths_per_pixel), percent(report_.merged_part),
+                     percent(report_.connected_part), shorter);
 }
 
 std::string Effort::findings() const {
