@@ -66,7 +66,7 @@ PassReport ProbabilisticProgressivePhotonMapper::render_pass(const RenderJob& jo
     report += photons.report;
     report.rays += trace_eye_paths(
         job, {pass, {job.settings.max_depth, 3}, &partial}, film,
-        [&](Sampler& sampler) { return draw.of_path(sampler); },
+        [&](Sampler& sampler, const PixelPlace& place) { return draw.of_eye_path(sampler, place.x, place.y); },
         [&](const PathContext& path, const EyeStart& start, const PixelPlace& place, LightLayers& layers) {
           const auto gather = [&](const SurfaceVertex& vertex, const LobeSplit& split) {
             return photons.gather([&](const PhotonMap<HashGrid>& map, int flux_class) {

@@ -129,21 +129,22 @@ PassReport StochasticProgressivePhotonMapper<Radius>::render_pass(const RenderJo
     Radius& radius = radii_[std::size_t{place.index} * hits_.count + hit];
     Sampler walk_sampler = eye_sampler(job, place, hits_.path(pass, hit));
     Sampler fresh = eye_sampler(job, place, pass * hits_.count + hit);
-    const EyeStart start = start_eye_path(job.view, place, draw.of_path(fresh).time, walk_sampler);
+    const PathDraw own = draw.of_eye_path(fresh, place.x, place.y);
+    const EyeStart start = start_eye_path(job.view, place, own.time, walk_sampler);
     const auto gather = [&](const SurfaceVertex& vertex, const LobeSplit& split) {
       typename Radius::Tally tally(radius, schedule_);
       const GatheredLight light = photons.gather([&](const PhotonMap<HashGrid>& map, int flux_class) {
         const float factor = first_radius_.class_factor(flux_class, place.index, radius.radius());
         const GatherSettings how{schedule_.kernel, radius.radius() * factor, split};
-        return gather_photons(map, vertex, how, draw.w, radius.reach(schedule_) * factor, [&](const MetPhoton& photon) {
+        return gather_photons(map, vertex, how, own.w, radius.reach(schedule_) * factor, [&](const MetPhoton& photon) {
           tally.see(in_disc_of_first_class(photon, factor), vertex.at.shading);
         });
       });
       radius.update(tally, schedule_);
       return light;
     };
-    LightLayers layers(draw.w);
-    const PathContext path{job.scene, draw.w, walk_sampler, counts, {job.settings.max_depth, 3}};
+    LightLayers layers(own.w);
+    const PathContext path{job.scene, own.w, walk_sampler, counts, {job.settings.max_depth, 3}};
     const PathContext at_hits = path.with(fresh);
     with_gather_visitor(photons, PathVisitor{at_hits, layers}, gather, [&](const auto& visitor) {
       walk_from_camera(path, start.camera, job.view.medium, FreshAfterHit{visitor, walk_sampler, fresh});

@@ -25,7 +25,7 @@ Spectrum clamped_albedo(const Spectrum& s) {
 float index_at_hero(const SpectrumCurve& eta, const Wavelengths& w) {
   // Closer to 1, rounding destroys the half vector of refraction, i + eta o, of light that goes nearly straight on.
   constexpr float nearest = 1e-5f;
-  const float value = eta.at(w.lambda[0]);
+  const float value = eta.at(w.lambda[w.hero]);
   return value > 0 && std::fabs(value - 1) >= nearest ? value : 1.0f;
 }
 

@@ -72,7 +72,7 @@ End light_end(const Bidirectional& pass, const LightVertex& v, const Direction& 
   return {{cos, value.pdf_reverse, v.depth > 1 ? pass.merging_at(v.at) : 0.0f, v.flight},
           value.f * (cos * shading_flux_ratio(v.at, v.wi, v.wi_local)),
           value.pdf,
-          is_dispersive(v.at.bsdf)};
+          is_dispersive(v.at.bsdf) && !v.has_own_dispersion};
 }
 
 LightVertex keep_at(const SurfacePoint& at, const Direction& wi, const Vec3& wi_local,
@@ -242,10 +242,10 @@ std::optional<LightBeam> keep_beam(const PathContext& path, const FlownSegment& 
   const float length = scattering_length(medium, {way.origin, way.direction, flight.reach}, path.w);
   if (!(length > 0)) return {};
   const int depth = state.depth + 1;
-  return LightBeam{
-      way.origin,         way.direction,          length,          time,  state.medium,
-      state.beta / share, subpath.depart(flight), subpath.start(), depth, depth > 1 && state.non_delta == 0,
-      state.dispersed};
+  const auto [beta, dispersed] = LightToMeet::of(state.beta / share, state.dispersed, path.w);
+  return LightBeam{way.origin, way.direction,          length,          time,  state.medium,
+                   beta,       subpath.depart(flight), subpath.start(), depth, depth > 1 && state.non_delta == 0,
+                   dispersed};
 }
 
 Spectrum hit_emitter(const PathContext& path, const Bidirectional& pass, const SurfaceVertex& v,

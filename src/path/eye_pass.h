@@ -102,7 +102,7 @@ struct EyePass {
   PartialLight* partial = nullptr;  ///< null: one trace finds all light
 };
 
-/// Adds one sample to each pixel: `draw(sampler)` gives the eye path its time and wavelengths, and
+/// Adds one sample to each pixel: `draw(sampler, place)` gives the eye path its time and wavelengths, and
 /// `trace(path, start, place, layers)` follows it and collects its light. With `EyePass::partial`, the last trace adds
 /// the samples.
 template <class Draw, class Trace>
@@ -112,11 +112,12 @@ RayCounts trace_eye_paths(const RenderJob& job, const EyePass& pass, const FilmP
   const RayCounts rays = for_each_pixel(job.view.window, [&](const PixelPlace& place, RayCounts& counts) {
     film.prefetch(place.index);
     Sampler sampler = eye_sampler(job, place, pass.pass);
-    const PathDraw draw = draw_path(sampler);
+    const PathDraw draw = draw_path(sampler, place);
     const EyeStart start = start_eye_path(job.view, place, draw.time, sampler);
     const PathContext path{job.scene, draw.w, sampler, counts, pass.limits};
     LightLayers whole(draw.w);
     LightLayers& layers = partial ? partial->of(place) : whole;
+    layers.use(draw.w);
     trace(path, start, place, layers);
     if (!partial || partial->is_last_trace())
       film.add(place.index, layers.sample(start.filter_weight, job.view.sensor));
@@ -127,7 +128,9 @@ RayCounts trace_eye_paths(const RenderJob& job, const EyePass& pass, const FilmP
 /// The same for eye paths that each draw their own time and wavelengths.
 template <class Trace>
 RayCounts trace_eye_paths(const RenderJob& job, const EyePass& pass, const FilmPass& film, Trace&& trace) {
-  return trace_eye_paths(job, pass, film, OwnPathDraw(job), trace);
+  const OwnPathDraw draw(job);
+  return trace_eye_paths(
+      job, pass, film, [&](Sampler& sampler, const PixelPlace&) { return draw(sampler); }, trace);
 }
 
 }  // namespace lanthorn

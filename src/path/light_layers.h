@@ -19,7 +19,10 @@ class LightLayers {
  public:
   static constexpr std::size_t most_parts = 4;  ///< of a decomposition
 
-  explicit LightLayers(const Wavelengths& w) : w_(w) {}
+  /// `w` must outlive it, or its next `use`.
+  explicit LightLayers(const Wavelengths& w) : w_(&w) {}
+  /// The path goes on with another object for the same four wavelengths.
+  void use(const Wavelengths& w) { w_ = &w; }
 
   /// `radiance` is in the path's colour mode. `dispersed`: the path is valid at the hero wavelength only.
   void add(PathClass path_class, const Spectrum& radiance, bool dispersed) {
@@ -36,7 +39,7 @@ class LightLayers {
   }
 
   /// Adds the estimated bias of light that is added separately.
-  void add_bias(const Spectrum& bias, bool dispersed) { bias_ += dispersed ? bias * w_.dispersed : bias; }
+  void add_bias(const Spectrum& bias, bool dispersed) { bias_ += dispersed ? bias * w_->dispersed : bias; }
 
   /// Light that the walk finds by hitting an emitter at this vertex; `part` as above.
   void add_hit(const SurfaceVertex& v, const Spectrum& radiance, std::optional<std::size_t> part = {}) {
@@ -73,7 +76,7 @@ class LightLayers {
     if (!features_.depth) features_.depth = std::sqrt(distance_squared(vertex.state.previous, vertex.at.position));
     if (seen_ || !has_non_delta(vertex.at.bsdf)) return;
     seen_ = true;
-    features_.albedo = w_.to_rgb(albedo(vertex.at.bsdf, vertex.wi_local));
+    features_.albedo = w_->to_rgb(albedo(vertex.at.bsdf, vertex.wi_local));
     features_.normal = vertex.at.shading.n;
     features_.position = {vertex.at.position};
   }
@@ -87,14 +90,14 @@ class LightLayers {
   PixelSample sample(float weight, const Sensor& sensor) {
     limit(sensor);
     PixelSample result{.features = features_};
-    for (std::size_t c = 0; c < path_class_count; ++c) result.light[c] = w_.to_rgb(sums_[c]);
-    if (has_media_) result.light[media_layer] = w_.to_rgb(media_);
-    if (!bias_.is_black()) result.bias = w_.to_rgb(bias_);
-    for (std::size_t p = 0; p < parts_.size() && has_parts_; ++p) result.parts[p] = w_.to_rgb(parts_[p]);
-    if (w_.mode == ColorMode::spectral) {
+    for (std::size_t c = 0; c < path_class_count; ++c) result.light[c] = w_->to_rgb(sums_[c]);
+    if (has_media_) result.light[media_layer] = w_->to_rgb(media_);
+    if (!bias_.is_black()) result.bias = w_->to_rgb(bias_);
+    for (std::size_t p = 0; p < parts_.size() && has_parts_; ++p) result.parts[p] = w_->to_rgb(parts_[p]);
+    if (w_->mode == ColorMode::spectral) {
       Spectrum sum;
       for (const Spectrum& part : sums_) sum += part;
-      result.spectrum = SpectralRadiance(sum, w_);
+      result.spectrum = SpectralRadiance(sum, *w_);
     }
     result.weight = weight;
     return result;
@@ -106,7 +109,7 @@ class LightLayers {
     if (state.non_delta == 0) from_medium_ = medium;
   }
   Spectrum add_to_class(PathClass path_class, const Spectrum& radiance, bool dispersed) {
-    const Spectrum light = dispersed ? radiance * w_.dispersed : radiance;
+    const Spectrum light = dispersed ? radiance * w_->dispersed : radiance;
     sums_[static_cast<std::size_t>(path_class)] += light;
     if (from_medium_) {
       media_ += light;
@@ -130,7 +133,7 @@ class LightLayers {
     if (!sensor.path_limit) return;
     Spectrum all;
     for (const Spectrum& sum : sums_) all += sum;
-    const float factor = sensor.path_factor(w_.to_rgb(all - directly_seen_));
+    const float factor = sensor.path_factor(w_->to_rgb(all - directly_seen_));
     if (factor == 1) return;
     for (Spectrum& sum : sums_) sum *= factor;
     for (Spectrum& part : parts_) part *= factor;
@@ -140,7 +143,7 @@ class LightLayers {
     if (part_of_directly_seen_) parts_[*part_of_directly_seen_] += (1 - factor) * directly_seen_;
   }
 
-  const Wavelengths& w_;
+  const Wavelengths* w_;
   std::array<Spectrum, path_class_count> sums_{};
   std::array<Spectrum, most_parts> parts_{};
   Spectrum media_, bias_;

@@ -32,7 +32,20 @@ struct LightVertex {
   int depth = 0;
   bool caustic = false;  ///< the path has scattered by delta lobes only
   bool dispersed = false;
-  std::uint8_t flux_class = 0;  ///< where photons are merged by classes of flux
+  bool has_own_dispersion = false;  ///< see `meet_others`
+  std::uint8_t flux_class = 0;      ///< where photons are merged by classes of flux
+
+  /// Prepares it for eye paths whose heroes differ from that of its path, `w` (`LightToMeet`). In spectral mode its
+  /// beta then has the factor of its path's dispersion, including that of its own surface: this light is a part of what
+  /// arrives, and the mean over the heroes is the same.
+  void meet_others(const Wavelengths& w) {
+    if (w.mode == ColorMode::rgb) return;
+    has_own_dispersion = true;
+    const bool disperses = dispersed || (!phase && is_dispersive(at.bsdf));
+    const LightToMeet own = LightToMeet::of(beta, disperses, w);
+    beta = own.light;
+    dispersed = own.dispersed;
+  }
 };
 
 /// A flight of a light path through a medium, up to the next surface.

@@ -104,21 +104,45 @@ inline Wavelengths wavelengths_of_pass(std::uint64_t seed, ColorMode mode, const
   return wavelengths_in_order(own, mode, place.number, disperses);
 }
 
+/// The hero of a pixel's eye paths, as an index: the four pixels of a square of two by two have all four, in an order
+/// that differs from square to square. `x`, `y`: in the full film.
+inline unsigned hero_of_pixel(int x, int y) {
+  const auto square = [](int i) { return static_cast<std::uint64_t>(static_cast<unsigned>(i) / 2); };
+  const auto place = static_cast<unsigned>(x % 2 + 2 * (y % 2));
+  return place ^ static_cast<unsigned>(hash_words({square(x), square(y)}) % 4);
+}
+
 /// Values that the paths of a pass share in methods that cache light paths: their wavelengths, and a part of the
-/// shutter interval. Every path has its own time in that part. A photon is seen by eye paths of other times, but of the
-/// same part. Over 16 passes the parts cover the interval once, over the next 64 once more in quarters of these, and so
-/// on: the time between photon and eye tends to 0, and any number of passes is spread over the whole interval.
+/// shutter interval. Every path has its own time in that part, and in spectral mode its own hero among the wavelengths
+/// if something disperses: dispersed light would otherwise tint a whole pass with a single wavelength. A photon is seen
+/// by eye paths of other times, but of the same part. Over 16 passes the parts cover the interval once, over the next
+/// 64 once more in quarters of these, and so on: the time between photon and eye tends to 0, and any number of passes
+/// is spread over the whole interval.
 struct PassDraw {
   float begin = 0, length = 0;  ///< times, s; length 0 also if nothing depends on the time
-  Wavelengths w;
+  Wavelengths w;  ///< with the hero of pixels whose `hero_of_pixel` is 0, and of all paths if they share it
+  bool heroes_differ = false;
 
   /// True if all paths have the same time.
   bool is_of_one_time() const { return length == 0; }
-  /// Draws the time from the sampler's group 1.
+  /// Draws the time from the sampler's first number of group 1, and the hero from the second.
   PathDraw of_path(Sampler& sampler) const {
-    if (is_of_one_time()) return {begin, w};
+    if (!heroes_differ) return {time_of_path(sampler), w};
     sampler.seek(1);
-    return {begin + length * sampler.next(), w};
+    const float time = begin + length * sampler.next();
+    return {time, w.with_hero(static_cast<unsigned>(4 * sampler.next()))};
+  }
+  /// The same for the eye path of a pixel, whose hero does not depend on the sampler. Over the passes, the hero of a
+  /// pixel follows `wavelengths_in_order`, shifted by a number of its own.
+  PathDraw of_eye_path(Sampler& sampler, int x, int y) const {
+    return {time_of_path(sampler), heroes_differ ? w.with_hero(hero_of_pixel(x, y)) : w};
+  }
+
+ private:
+  float time_of_path(Sampler& sampler) const {
+    if (is_of_one_time()) return begin;
+    sampler.seek(1);
+    return begin + length * sampler.next();
   }
 };
 
@@ -144,7 +168,8 @@ inline PassDraw draw_for_pass(const RenderJob& job, std::uint32_t pass) {
   const float open = job.view.camera.time(part.begin);
   return {open, depends_on_time(job) ? job.view.camera.time(part.begin + part.length) - open : 0.0f,
           wavelengths_of_pass(job.settings.seed, job.settings.color, place_in_half(pass, job.settings.parts),
-                              job.scene.has_dispersion())};
+                              job.scene.has_dispersion()),
+          job.settings.color == ColorMode::spectral && job.scene.has_dispersion()};
 }
 
 }  // namespace lanthorn

@@ -32,9 +32,9 @@ inline float shading_flux_ratio(const SurfacePoint& at, const Direction& wi, con
 namespace walk_detail {
 
 /// The magnitude of a throughput for Russian roulette: its mean over the channels that still carry light.
-inline float magnitude(const Spectrum& beta, bool dispersed, ColorMode mode) {
-  if (mode == ColorMode::rgb) return beta[0] + beta[1] + beta[2];
-  return dispersed ? 4 * beta[0] : sum_of(beta);
+inline float magnitude(const Spectrum& beta, bool dispersed, const Wavelengths& w) {
+  if (w.mode == ColorMode::rgb) return beta[0] + beta[1] + beta[2];
+  return dispersed ? 4 * beta[w.hero] : sum_of(beta);
 }
 
 /// Correction of a light walk's throughput for shading normals: sampling has multiplied by the shading cosine of wo,
@@ -132,8 +132,8 @@ bool scatter(const PathContext& path, const SurfaceVertex& v, const Answer& answ
     // Russian roulette ignores two factors. Refraction scales radiance by 1 / eta^2, and the next interface undoes it;
     // the flux of photons is not scaled. A guide's density lowers the throughput of directions that it samples often.
     const float squeeze = transport == Transport::radiance ? s->eta * s->eta : 1.0f;
-    const float before = magnitude(state.beta, state.dispersed, path.w.mode);
-    const float after = magnitude(beta, state.dispersed, path.w.mode) * squeeze * closure_ratio(*s);
+    const float before = magnitude(state.beta, state.dispersed, path.w);
+    const float after = magnitude(beta, state.dispersed, path.w) * squeeze * closure_ratio(*s);
     survival *= std::min(1.0f, after / before);
   }
   if (!(survival > 0) || (survival < 1 && sampler.next() >= survival)) return false;
@@ -159,8 +159,8 @@ inline bool scatter(const PathContext& path, const MediumVertex& v, const Spectr
   const PhaseSample s = sample_phase(v.phase, v.wi, u);
   float survival = 1;
   if (state.depth >= path.limits.roulette_depth) {
-    const ColorMode mode = path.w.mode;
-    survival = std::min(1.0f, magnitude(state.beta, state.dispersed, mode) / magnitude(before, state.dispersed, mode));
+    const Wavelengths& w = path.w;
+    survival = std::min(1.0f, magnitude(state.beta, state.dispersed, w) / magnitude(before, state.dispersed, w));
     if (!(survival > 0) || path.sampler.next() >= survival) return false;
   }
   state.beta *= 1 / survival;
@@ -356,7 +356,7 @@ inline void note_end(const PathContext& path, const WalkState& end, const Spectr
   if (end.depth <= path.limits.max_depth) return;
   constexpr float most = 1 << 10;
   const float share =
-      walk_detail::magnitude(end.beta, end.dispersed, path.w.mode) / walk_detail::magnitude(start, false, path.w.mode);
+      walk_detail::magnitude(end.beta, end.dispersed, path.w) / walk_detail::magnitude(start, false, path.w);
   if (share > 0) ends.cut += static_cast<std::uint64_t>(PathEnds::unit * static_cast<double>(std::min(share, most)));
 }
 

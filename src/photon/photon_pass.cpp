@@ -12,12 +12,12 @@ namespace lanthorn {
 
 namespace {
 
-// Flags of a photon at the walk's next vertex, whose depth this is.
-PhotonFlags flags_of(const WalkState& state, int depth, const PhotonRule& rule, bool from_delta_light) {
+// Flags of a photon at the walk's next vertex, whose depth this is. `dispersed`: see LightToMeet.
+PhotonFlags flags_of(const WalkState& state, int depth, bool dispersed, const PhotonRule& rule, bool from_delta_light) {
   const bool caustic = depth > 1 && state.non_delta == 0;
   return {.eye_scatterings = rule.max_depth - depth,
           .caustic = caustic,
-          .dispersed = state.dispersed,
+          .dispersed = dispersed,
           .from_delta_light = caustic && from_delta_light,
           .direct = depth == 1};
 }
@@ -32,10 +32,11 @@ struct StoreVisitor {
 
   Continuation operator()(const SurfaceVertex& vertex) const {
     const WalkState& state = vertex.state;
-    const PhotonFlags flags = flags_of(state, state.depth, rule, is_delta(start.light));
+    const LightToMeet kept = LightToMeet::of(state.beta, state.dispersed, w);
+    const PhotonFlags flags = flags_of(state, state.depth, kept.dispersed, rule, is_delta(start.light));
     if ((rule.caustics_alone ? flags.caustic : state.depth >= rule.first_depth) && has_non_delta(vertex.at.bsdf))
       chunks[static_cast<std::size_t>(rule.classes.of(flux_of(state.beta, state.dispersed, w) * paths))][chunk]
-          .push_back({state.beta, vertex.at.position, vertex.wi, vertex.at.normal, flags,
+          .push_back({kept.light, vertex.at.position, vertex.wi, vertex.at.normal, flags,
                       std::sqrt(distance_squared(vertex.at.position, state.previous))});
     if (!rule.caustics_alone) return Continuation::go_on();
     const bool may_be_caustic = state.non_delta == 0 && lobe_weights(vertex.at.bsdf, vertex.wi_local).delta > 0;
@@ -52,10 +53,11 @@ struct MediumPointVisitor : StoreVisitor {
   using StoreVisitor::operator();
   Continuation operator()(const MediumVertex& vertex) const {
     const WalkState& state = vertex.state;
-    if (state.depth >= rule.first_medium_depth)
-      in_media.push_back({{state.beta, vertex.position, vertex.wi, vertex.wi,
-                           flags_of(state, state.depth, rule, is_delta(start.light))},
-                          state.medium});
+    if (state.depth < rule.first_medium_depth) return Continuation::go_on();
+    const LightToMeet kept = LightToMeet::of(state.beta, state.dispersed, w);
+    in_media.push_back({{kept.light, vertex.position, vertex.wi, vertex.wi,
+                         flags_of(state, state.depth, kept.dispersed, rule, is_delta(start.light))},
+                        state.medium});
     return Continuation::go_on();
   }
 };
@@ -76,8 +78,9 @@ struct BeamVisitor : StoreVisitor {
     const float reach = are_short && knows_passing(medium) ? way.length : flight.reach;
     const float length = scattering_length(medium, {way.origin, way.direction, reach}, path.w);
     if (!(length > 0)) return;
-    in_media.push_back({{state.beta / share, way.origin, -way.direction, -way.direction,
-                         flags_of(state, state.depth + 1, rule, is_delta(start.light))},
+    const LightToMeet kept = LightToMeet::of(state.beta / share, state.dispersed, path.w);
+    in_media.push_back({{kept.light, way.origin, -way.direction, -way.direction,
+                         flags_of(state, state.depth + 1, kept.dispersed, rule, is_delta(start.light))},
                         state.medium,
                         length});
   }
@@ -101,10 +104,10 @@ void PhotonTracer::trace(const Scene& scene, LightPass pass, const PhotonRule& r
   const float beam_share = share_of_beams(paths.total());
   const WalkLimits limits{rule.max_depth - 1, rule.roulette_depth};
   rays_ = paths.for_each([&](const LightPath& start, Sampler& sampler, RayCounts& counts, std::size_t chunk) {
-    const PathContext path{scene, draw.w, sampler, counts, limits};
-    const float time = draw.of_path(sampler).time;
-    const StoreVisitor store{rule, start, static_cast<float>(paths.total()), draw.w, photons_, chunk};
-    const auto follow = [&](auto visitor) { walk_from_light(path, start, time, std::move(visitor)); };
+    const PathDraw own = draw.of_path(sampler);
+    const PathContext path{scene, own.w, sampler, counts, limits};
+    const StoreVisitor store{rule, start, static_cast<float>(paths.total()), own.w, photons_, chunk};
+    const auto follow = [&](auto visitor) { walk_from_light(path, start, own.time, std::move(visitor)); };
     switch (records) {
       case MediumRecords::none:
         return with_directions(guide, store, follow);

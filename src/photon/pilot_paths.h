@@ -23,8 +23,9 @@ void for_each_pilot_path(const RenderJob& job, const PassDraw& draw, const Pixel
     const std::uint32_t pixel = job.view.pixel_key(static_cast<int>(raster.x), static_cast<int>(raster.y));
     Sampler sampler = Sampler::for_pixel(job.settings.seed, Stream::pilot_camera, pixel, 0);
     const Vec2 lens = sampler.next2();
-    const CameraRay start = eye_ray(job.view, raster, lens, draw.of_path(sampler).time);
-    const PathContext path{job.scene, draw.w, sampler, counts, {job.settings.max_depth, 3}};
+    const PathDraw own = draw.of_path(sampler);
+    const CameraRay start = eye_ray(job.view, raster, lens, own.time);
+    const PathContext path{job.scene, own.w, sampler, counts, {job.settings.max_depth, 3}};
     walk_from_camera(path, start, job.view.medium, make_visitor(path, start.ray, place.index));
   });
 }

@@ -28,7 +28,7 @@ std::optional<WavelengthSets> wavelength_sets(const nlohmann::json& settings) {
   if (seed == identity->end() || !seed->is_number_unsigned()) return {};
   if (sets == identity->end() || !sets->is_number_unsigned()) return {};
   const WavelengthSets found{seed->get<std::uint64_t>(), sets->get<std::uint64_t>(),
-                             identity->contains("heroes_in_blocks")};
+                             identity->contains("heroes_of_paths")};
   constexpr std::uint64_t most_sets = 16;
   return found.per_pass > 0 && found.per_pass <= most_sets ? std::optional(found) : std::nullopt;
 }

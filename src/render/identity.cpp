@@ -148,7 +148,7 @@ nlohmann::json identity(const Scene& scene, const ViewDescription& view, const R
   // Named after the density of wavelengths: passes drawn with another density have another colour balance.
   if (plan.integrator->passes_share_wavelengths() && s.color == ColorMode::spectral) {
     result["plateau_wavelength_sets"] = s.parts;
-    if (scene.has_dispersion()) result["heroes_in_blocks"] = true;  // by `wavelengths_in_order`
+    if (scene.has_dispersion()) result["heroes_of_paths"] = true;  // by `wavelengths_in_order` and `PassDraw`
   }
   if (window != crop)
     result["margin"] = {crop.x0 - window.x0, crop.y0 - window.y0, window.x1 - crop.x1, window.y1 - crop.y1};

@@ -104,17 +104,17 @@ Photons trace_photons(const Scene& scene, const ViewDescription& view, const Ren
       const auto number = static_cast<std::uint32_t>(i);
       Sampler sampler = Sampler::for_light_path(settings.seed, stream_of("sent photons"), 0, pass, number);
       RayCounts counts;
-      const PathContext path{scene, draw.w, sampler, counts, limits};
+      const PathDraw own = draw.of_path(sampler);
+      const PathContext path{scene, own.w, sampler, counts, limits};
       Ray ray = rays[i];
-      ray.time = draw.of_path(sampler).time;
+      ray.time = own.time;
       WalkState state;
-      state.beta = evaluate_illuminant(starts[i].power, draw.w);
+      state.beta = evaluate_illuminant(starts[i].power, own.w);
       state.previous = ray.origin;
       state.medium = media.around(ray.origin, ray.time).value_or(MediumId::vacuum);
       if (state.beta.is_black()) continue;
       walk<Transport::importance>(
-          path, ray, state,
-          SentPhotonVisitor{parts[chunk], number, direct ? 1 : 2, draw.w, scene.description().origin});
+          path, ray, state, SentPhotonVisitor{parts[chunk], number, direct ? 1 : 2, own.w, scene.description().origin});
     }
   });
   Photons photons{.light_paths = starts.size(), .pass = pass};

@@ -17,7 +17,6 @@
 #include "integrators/mlt/mlt_settings.h"
 #include "path/emission_pass.h"
 #include "path/mis.h"
-#include "path/path_draw.h"
 #include "path/splat.h"
 
 namespace lanthorn {
@@ -70,13 +69,12 @@ class MetropolisLightTransport final : public Integrator {
   };
 
   PathPass begin_pass(const RenderJob& job, std::uint32_t number) const {
-    return {
-        job, draw_for_pass(job, number).w, FilmRegion(job.view), {job.settings.max_depth, settings_.roulette_depth}};
+    return {job, draw_for_pass(job, number), FilmRegion(job.view), {job.settings.max_depth, settings_.roulette_depth}};
   }
   State evaluate(const PathPass& pass, int scatterings, PathSamples& samples, RayCounts& counts) const {
     const FilmLight path = settings_.multiplexed ? connect_path(pass, *lights_, scatterings, samples, counts)
                                                  : trace_path(pass, samples, counts);
-    return {path, scatterings, importance(path, pass.w), 0};
+    return {path, scatterings, importance(path, pass.draw.w), 0};
   }
   // Number of scatterings of a bootstrap path, stratified over the paths.
   int scatterings_of(const Bootstrap& bootstrap, std::size_t index) const;
@@ -150,7 +148,7 @@ void MetropolisLightTransport::add(const PathPass& pass, const State& state, flo
   const float factor = over_balanced(weight, density);
   for (std::size_t c = 0; c < path_class_count; ++c)
     if (!state.path.light[c].is_black())
-      splat(film, pass.job.view, pass.w, state.path.raster, state.path.light[c] * factor,
+      splat(film, pass.job.view, pass.draw.w, state.path.raster, state.path.light[c] * factor,
             {static_cast<PathClass>(c), state.path.from_medium});
 }
 

@@ -14,15 +14,18 @@ namespace lanthorn {
 
 namespace {
 
-// The start of an eye path: film and lens in group 0, time in group 1.
+// The start of an eye path: film and lens in group 0, time and hero in group 1.
 struct EyeSample {
   Vec2 raster;
   CameraRay ray;
 };
 
-float draw_time(const PathPass& pass, Sampler& sampler) {
+// Both subpaths have the same time and hero.
+PathDraw draw_path(const PathPass& pass, Sampler& sampler) {
   sampler.seek(1);
-  return pass.job.view.camera.time(sampler.next());
+  const float time = pass.job.view.camera.time(sampler.next());
+  if (!pass.draw.heroes_differ) return {time, pass.draw.w};
+  return {time, pass.draw.w.with_hero(static_cast<unsigned>(4 * sampler.next()))};
 }
 
 EyeSample start_anywhere(const PathPass& pass, float time, Sampler& sampler) {
@@ -114,7 +117,7 @@ class MultiplexedPath {
     const auto techniques = static_cast<float>(scatterings + 2);
     light_vertices_ = std::min(static_cast<int>(light_.next() * techniques), scatterings + 1);
     factor_ = techniques * pass.region.area();
-    time_ = draw_time(pass, eye_);
+    draw_ = draw_path(pass, eye_);
   }
 
   FilmLight light() {
@@ -128,12 +131,12 @@ class MultiplexedPath {
   int eye_vertices() const { return scatterings_ + 1 - light_vertices_; }
   // Without Russian roulette: paths end by their number of scatterings only.
   PathContext path(Sampler& sampler) {
-    return {pass_.job.scene, pass_.w, sampler, counts_, {scatterings_, scatterings_ + 1}};
+    return {pass_.job.scene, draw_.w, sampler, counts_, {scatterings_, scatterings_ + 1}};
   }
 
   FilmLight hit() {
-    const EyeSample start = start_anywhere(pass_, time_, eye_);
-    LightLayers layers(pass_.w);
+    const EyeSample start = start_anywhere(pass_, draw_.time, eye_);
+    LightLayers layers(draw_.w);
     const PathContext eye = path(eye_);
     HitVisitor visitor{eye, bidirectional_, scatterings_, layers, Subpath(bidirectional_.techniques)};
     visitor.subpath.begin_at_lens(pass_.job.view.camera);
@@ -151,7 +154,8 @@ class MultiplexedPath {
     const float probability = lights_.emission.of_lights()[index];
     const PathContext light = path(light_);
     walk_from_light(
-        light, {light.scene.lights()[index], index, 1 / (probability * bidirectional_.techniques.light_paths)}, time_,
+        light, {light.scene.lights()[index], index, 1 / (probability * bidirectional_.techniques.light_paths)},
+        draw_.time,
         SubpathVisitor<End>{light, last, end, Subpath(bidirectional_.techniques), bidirectional_.emission, index});
   }
 
@@ -166,7 +170,7 @@ class MultiplexedPath {
       result.raster = seen->raster;
       const PathLayers layers = layers_of_splat(v);
       result.from_medium = layers.from_medium;
-      result.of(layers.path_class) = seen->light * (seen->dispersed ? pass_.w.dispersed : Spectrum(1)) *
+      result.of(layers.path_class) = seen->light * (seen->dispersed ? draw_.w.dispersed : Spectrum(1)) *
                                      (factor_ * weight_of_seen(bidirectional_, v, subpath, *seen));
     });
     return result;
@@ -178,8 +182,8 @@ class MultiplexedPath {
       walk_light(light_vertices_ - 1, [&](const auto& v, const Subpath& subpath) { other = keep_vertex(v, subpath); });
       if (!other) return {};
     }
-    const EyeSample start = start_anywhere(pass_, time_, eye_);
-    LightLayers layers(pass_.w);
+    const EyeSample start = start_anywhere(pass_, draw_.time, eye_);
+    LightLayers layers(draw_.w);
     const PathContext eye = path(eye_);
     const auto end = [&](const auto& v, const Subpath& subpath) {
       const DirectLight found =
@@ -205,7 +209,7 @@ class MultiplexedPath {
   RayCounts& counts_;
   int light_vertices_ = 0;
   float factor_ = 1;
-  float time_ = 0;
+  PathDraw draw_;
 };
 
 }  // namespace
@@ -221,10 +225,10 @@ LightChoice::LightChoice(const Scene& scene) : emission(scene), table(emission.o
 
 FilmLight trace_path(const PathPass& pass, PathSamples& samples, RayCounts& counts) {
   Sampler sampler(samples.eye);
-  const float time = draw_time(pass, sampler);
-  const EyeSample start = start_anywhere(pass, time, sampler);
-  LightLayers layers(pass.w);
-  radiance_along(pass.path(sampler, counts), start.ray, pass.job.view.medium, layers);
+  const PathDraw draw = draw_path(pass, sampler);
+  const EyeSample start = start_anywhere(pass, draw.time, sampler);
+  LightLayers layers(draw.w);
+  radiance_along({pass.job.scene, draw.w, sampler, counts, pass.limits}, start.ray, pass.job.view.medium, layers);
   return without_emission(start.raster, layers, pass.region.area());
 }
 

@@ -9,6 +9,7 @@
 #include "math/distribution.h"
 #include "path/emission_densities.h"
 #include "path/path_class.h"
+#include "path/path_draw.h"
 #include "path/render_job.h"
 #include "path/walk.h"
 #include "scene/scene.h"
@@ -38,14 +39,12 @@ struct FilmRegion {
 };
 
 /// State shared by the paths of a pass. Wavelengths are drawn once per pass: if each path drew its own, each would have
-/// its own tint.
+/// its own tint. Only the hero is a path's own.
 struct PathPass {
   const RenderJob& job;
-  Wavelengths w;
+  PassDraw draw;
   FilmRegion region;
   WalkLimits limits;
-
-  PathContext path(Sampler& sampler, RayCounts& counts) const { return {job.scene, w, sampler, counts, limits}; }
 };
 
 /// The choice of a light for light paths.

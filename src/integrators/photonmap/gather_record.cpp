@@ -62,11 +62,12 @@ class FillVisitor {
 template <class See>
 void follow_eye_path(const GatherFill& fill, const PixelPlace& place, RayCounts& counts, See&& see) {
   Sampler sampler = eye_sampler(fill.job, place, fill.pass);
-  const EyeStart start = start_eye_path(fill.job.view, place, fill.maps.draw.of_path(sampler).time, sampler);
+  const PathDraw draw = fill.maps.draw.of_eye_path(sampler, place.x, place.y);
+  const EyeStart start = start_eye_path(fill.job.view, place, draw.time, sampler);
   const auto see_from = [&](const SurfaceVertex& vertex, std::size_t cache, float length) {
     see(start.camera.ray, vertex, cache, length);
   };
-  const PathContext path{fill.job.scene, fill.maps.draw.w, sampler, counts, {fill.job.settings.max_depth, 3}};
+  const PathContext path{fill.job.scene, draw.w, sampler, counts, {fill.job.settings.max_depth, 3}};
   walk_from_camera(path, start.camera, fill.job.view.medium, FillVisitor(fill, see_from));
 }
 
@@ -75,11 +76,11 @@ void follow_eye_path(const GatherFill& fill, const PixelPlace& place, RayCounts&
 HemisphereRay gather_ray(const GatherFill& fill, std::uint32_t key, const SurfaceVertex& vertex, const Frame& frame,
                          int cell, RayCounts& counts) {
   const int depth = vertex.state.depth;
-  const Wavelengths& w = fill.maps.draw.w;
   const std::uint64_t own_key = hash_words({key, static_cast<std::uint64_t>(depth)});
   Sampler own =
       Sampler::for_pixel(fill.job.settings.seed, Stream::irradiance, static_cast<std::uint32_t>(own_key),
                          fill.pass * static_cast<std::uint32_t>(fill.grid.cells()) + static_cast<std::uint32_t>(cell));
+  const Wavelengths w = fill.maps.draw.of_path(own).w;
   own.seek(walk_dimensions(depth));
   const Vec3 local = fill.grid.direction(cell, own.next2());
   LightLayers layers(w);

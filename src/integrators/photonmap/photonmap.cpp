@@ -145,7 +145,8 @@ PassReport PhotonMapper::render_pass(const RenderJob& job, std::uint32_t pass, c
   report.radius = settings_.estimates.global.radius;
   std::atomic<std::uint64_t> misses{0};
   report.rays += trace_eye_paths(
-      job, {pass, {job.settings.max_depth, 3}}, film, [&](Sampler& sampler) { return maps.draw.of_path(sampler); },
+      job, {pass, {job.settings.max_depth, 3}}, film,
+      [&](Sampler& sampler, const PixelPlace& place) { return maps.draw.of_eye_path(sampler, place.x, place.y); },
       [&](const PathContext& path, const EyeStart& start, const PixelPlace& place, LightLayers& layers) {
         const TwoPassContext context{job,    settings_.estimates, maps, job.view.pixel_key(place.x, place.y), pass,
                                      &misses};

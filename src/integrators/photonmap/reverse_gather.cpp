@@ -48,12 +48,15 @@ RayCounts ReverseGather::render_block(const PixelWindow& block) const {
   const RayCounts rays = for_each_pixel(block, [&](const PixelPlace& place, RayCounts& counts) {
     OpenPixel& pixel = pixels[place.index];
     Sampler sampler = eye_sampler(job, place, pass);
-    const EyeStart start = start_eye_path(job.view, place, maps.draw.of_path(sampler).time, sampler);
+    const PathDraw draw = maps.draw.of_eye_path(sampler, place.x, place.y);
+    const EyeStart start = start_eye_path(job.view, place, draw.time, sampler);
     pixel.filter_weight = start.filter_weight;
-    const PathContext path{job.scene, maps.draw.w, sampler, counts, {job.settings.max_depth, 3}};
+    const PathContext path{job.scene, draw.w, sampler, counts, {job.settings.max_depth, 3}};
     const std::uint32_t key = job.view.pixel_key(place.x, place.y);
     const TwoPassContext context{job, settings, maps, key, pass, nullptr, &reverse[place.index]};
+    pixel.layers.use(draw.w);
     walk_from_camera(path, start.camera, job.view.medium, TwoPassVisitor({path, pixel.layers}, context));
+    pixel.layers.use(maps.draw.w);
   });
   distribute(photons, settings.global.kernel, maps.draw.w, reverse);
   parallel_for(std::size_t{0}, count, [&](std::size_t i) {

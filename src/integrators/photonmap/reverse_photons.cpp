@@ -16,12 +16,12 @@
 
 namespace lanthorn {
 
-void ReversePhotons::add(const SurfaceVertex& vertex, const LobeSplit& split, Term term) {
+void ReversePhotons::add(const SurfaceVertex& vertex, const Wavelengths& w, const LobeSplit& split, Term term) {
   const SurfacePoint& at = vertex.at;
   const WalkState& state = vertex.state;
   const Spectrum* reflectance = lambertian_reflectance(at.bsdf);
   if (reflectance == nullptr || at.is_hair || state.dispersed) {
-    others.push_back({state, at, vertex.wi, vertex.wi_local, {split}, term});
+    others.push_back({state, at, vertex.wi, vertex.wi_local, {split}, term, w});
     return;
   }
   const Spectrum throughput = state.beta * *reflectance * inv_pi;
@@ -169,8 +169,7 @@ void distribute_to_diffuse(const InfluencePhotons& photons, const Kernel& kernel
   });
 }
 
-void distribute_to_others(const InfluencePhotons& photons, const Kernel& kernel, const Wavelengths& w,
-                          std::span<ReversePhotons> pixels) {
+void distribute_to_others(const InfluencePhotons& photons, const Kernel& kernel, std::span<ReversePhotons> pixels) {
   const RecordTree tree(pixels, &ReversePhotons::others);
   tree.tree.for_each_leaf_in(photons.reaches, [&](SlotRange range, std::span<const std::uint32_t> numbers) {
     for (ReversePhoton* r : tree.of(range)) {
@@ -181,7 +180,7 @@ void distribute_to_others(const InfluencePhotons& photons, const Kernel& kernel,
         const float dist2 = distance_squared(ball.centre, r->at.position), support2 = sqr(ball.radius);
         if (dist2 > support2) continue;
         const std::optional<Spectrum> light =
-            reflected_light(photons.photons[number], gather, ball.radius, w, r->share);
+            reflected_light(photons.photons[number], gather, ball.radius, r->w, r->share);
         if (light) r->light += *light * kernel.weight(dist2, support2);
       }
       r->light *= r->state.beta;
@@ -206,7 +205,7 @@ void distribute(const InfluencePhotons& photons, const Kernel& kernel, const Wav
     }
   };
   to_diffuse();
-  distribute_to_others(photons, kernel, w, pixels);
+  distribute_to_others(photons, kernel, pixels);
 }
 
 }  // namespace lanthorn

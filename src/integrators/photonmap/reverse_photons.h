@@ -32,6 +32,7 @@ struct ReversePhoton {
   Vec3 wi_local;
   MapShare share;
   Term term;
+  Wavelengths w;     ///< of the eye path
   Spectrum light{};  ///< radiance from photons towards the eye, times the eye path's beta
 
   SurfaceVertex vertex() const { return {state, at, wi, wi_local, true}; }
@@ -50,8 +51,8 @@ struct DiffuseReversePhoton {
 /// The reverse photons of a pixel.
 class ReversePhotons {
  public:
-  /// `split` leaves a part of the vertex's light to the map.
-  void add(const SurfaceVertex& vertex, const LobeSplit& split, Term term);
+  /// `split` leaves a part of the vertex's light to the map. `w`: of the eye path.
+  void add(const SurfaceVertex& vertex, const Wavelengths& w, const LobeSplit& split, Term term);
 
   /// Calls `visit(term, light)` for each: diffuse ones first, each group in the order of the eye path.
   template <class Visit>

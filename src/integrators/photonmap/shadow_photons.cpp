@@ -45,8 +45,8 @@ ShadowPhotons ShadowPhotons::trace(const Scene& scene, const LightPass& pass, co
   const LightPaths paths(scene, pass);
   std::vector<Chunk> chunks(paths.chunk_count());
   counts += paths.for_each([&](const LightPath& start, Sampler& sampler, RayCounts& rays, std::size_t chunk) {
-    const float time = draw.of_path(sampler).time;
-    follow(PathContext{scene, draw.w, sampler, rays}, start, time, chunks[chunk]);
+    const PathDraw own = draw.of_path(sampler);
+    follow(PathContext{scene, own.w, sampler, rays}, start, own.time, chunks[chunk]);
   });
   std::vector<Point> positions;
   std::vector<Record> records;

@@ -88,7 +88,7 @@ NarrowContinuation TwoPassVisitor::read_map(const SurfaceVertex& vertex) {
 void TwoPassVisitor::add_photons(const SurfaceVertex& vertex, const LobeSplit& split) {
   add_unlit_emission(path, vertex, split, layers);
   if (context_.reverse != nullptr) {
-    context_.reverse->add(vertex, split, static_cast<Term>(layers.part()));
+    context_.reverse->add(vertex, path.w, split, static_cast<Term>(layers.part()));
     return;
   }
   std::optional<Spectrum> light = precomputed(vertex);

@@ -183,7 +183,7 @@ void Pilot::trace_light(const VcmPass& pass) {
         TechniqueSum weighed;
         Bidirectional there = pass.bidirectional_at(seen.raster, effort);
         there.weighed = &weighed;
-        const float found = light.weight(there, seen) * flux_of(seen.light, seen.dispersed, pass.draw.w);
+        const float found = light.weight(there, seen) * flux_of(seen.light, seen.dispersed, light.w);
         if (!(found > 0)) return;
         seen_[chunk].push_back({static_cast<std::uint32_t>(blocks_.block_of(seen.raster)), found,
                                 light.layers.path_class == PathClass::caustic, spread_of(job_.view, seen.raster),
@@ -243,8 +243,9 @@ float Pilot::trace_eye_path(const VcmPass& pass, const VcmPass& other, std::size
   const int width = measured_.grid.cells().width(), x = static_cast<int>(cell) % width,
             y = static_cast<int>(cell) / width;
   Sampler sampler = Sampler::for_pixel(pass.job.settings.seed, Stream::pilot_camera, index, pass.number);
-  const PathDraw draw = pass.draw_of_eye_path(sampler);
-  const EyeStart start = start_eye_path(pass.job.view, measured_.grid.pixel_of({x, y, index}), draw.time, sampler);
+  const PixelPlace place = measured_.grid.pixel_of({x, y, index});
+  const PathDraw draw = pass.draw_of_eye_path(sampler, place);
+  const EyeStart start = start_eye_path(pass.job.view, place, draw.time, sampler);
   LightLayers layers(draw.w), other_layers(draw.w);
   RayCounts counts;
   const PathContext path{pass.job.scene, draw.w, sampler, counts, {pass.max_depth(), settings_.roulette_depth}};

@@ -38,15 +38,14 @@ RayCounts trace_light_paths(const VcmPass& pass, const FilmPass& film) {
   const View& view = pass.job.view;
   return trace_light_paths(
       pass, &film, [&](const LightArrival& light, const LensLight& seen, const PlaceEffort& there, std::size_t) {
-        splat(film, view, pass.draw.w, seen, light.layers,
-              light.weight(pass.bidirectional_at(seen.raster, there), seen));
+        splat(film, view, light.w, seen, light.layers, light.weight(pass.bidirectional_at(seen.raster, there), seen));
       });
 }
 
 RayCounts trace_eye_paths(const VcmPass& pass, PartialLight& partial, const FilmPass& film) {
   return trace_eye_paths(
       pass.job, {pass.number, {pass.max_depth(), pass.settings.roulette_depth}, &partial}, film,
-      [&](Sampler& sampler) { return pass.draw_of_eye_path(sampler); },
+      [&](Sampler& sampler, const PixelPlace& place) { return pass.draw_of_eye_path(sampler, place); },
       [&](const PathContext& path, const EyeStart& start, const PixelPlace&, LightLayers& layers) {
         walk_from_camera(path, start.camera, pass.job.view.medium, EyeVisitor(path, pass, start.raster, layers));
       });
@@ -76,7 +75,7 @@ void count_photons(VcmPass& pass) {
     pass.build_merges(unused);
     for_each_pixel(job.view.window, [&](const PixelPlace& place, RayCounts& counts) {
       Sampler sampler = eye_sampler(job, place, pass.number);
-      const PathDraw draw = pass.draw_of_eye_path(sampler);
+      const PathDraw draw = pass.draw_of_eye_path(sampler, place);
       const EyeStart start = start_eye_path(job.view, place, draw.time, sampler);
       LightLayers layers(draw.w);
       const PathContext path{job.scene, draw.w, sampler, counts, {pass.max_depth(), pass.settings.roulette_depth}};

@@ -105,15 +105,17 @@ std::span<const LightVertex> VcmPass::light_path(std::size_t path) const {
   return vertices.path(path - first);
 }
 
-PathDraw VcmPass::draw_of_eye_path(Sampler& sampler) const {
-  if (draw.is_of_one_time()) return draw.of_path(sampler);
+PathDraw VcmPass::draw_of_eye_path(Sampler& sampler, const PixelPlace& place) const {
+  PathDraw own = draw.of_eye_path(sampler, place.x, place.y);
+  if (draw.is_of_one_time()) return own;
   const std::size_t path = partner(sampler);
   if (blocks.count() > 1 && light_paths.total() > 0) {  // the light path may be one of another block
     Sampler of_light_path = light_paths.sampler_of(path);
-    return draw.of_path(of_light_path);
+    own.time = draw.of_path(of_light_path).time;
+  } else if (const std::span<const LightVertex> met = light_path(path); !met.empty()) {
+    own.time = met.front().at.time;
   }
-  const std::span<const LightVertex> met = light_path(path);
-  return met.empty() ? draw.of_path(sampler) : PathDraw{met.front().at.time, draw.w};
+  return own;
 }
 
 }  // namespace lanthorn

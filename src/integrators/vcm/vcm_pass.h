@@ -15,6 +15,7 @@
 #include "integrators/vcm/vcm_settings.h"
 #include "integrators/vcm/volume_merge.h"
 #include "path/connections.h"
+#include "path/eye_pass.h"
 #include "path/light_pass.h"
 #include "path/light_vertices.h"
 #include "path/path_draw.h"
@@ -85,8 +86,9 @@ struct VcmPass {
   std::size_t partner(std::size_t first, int i, int count) const;
   /// The vertices of a light path. None if it belongs to another block.
   std::span<const LightVertex> light_path(std::size_t path) const;
-  /// Time and wavelengths of an eye path, which are equal to those of the light path that it is connected to.
-  PathDraw draw_of_eye_path(Sampler& sampler) const;
+  /// Time and wavelengths of the eye path of a pixel. The time is that of the light path that it is connected to; the
+  /// hero is its own.
+  PathDraw draw_of_eye_path(Sampler& sampler, const PixelPlace& place) const;
 };
 
 }  // namespace lanthorn

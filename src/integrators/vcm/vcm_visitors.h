@@ -23,6 +23,7 @@ namespace lanthorn {
 struct LightArrival {
   const std::variant<const SurfaceVertex*, const MediumVertex*> vertex;
   const Subpath& subpath;
+  const Wavelengths& w;
   PathLayers layers;
 
   /// `bidirectional`: of the place on the film that receives the light.
@@ -77,6 +78,7 @@ class LightVisitor {
   void keep(const Vertex& v) {
     LightVertex& kept = chunk_.vertices.emplace_back(keep_vertex(v, subpath_));
     kept.flux_class = pass_.class_of_flux(flux_of(v.state.beta, v.state.dispersed, path_.w));
+    kept.meet_others(path_.w);
     if (!pass_.sees || !pass_.shows(v.state.depth + 1, 1)) return;
     const auto lens = find_lens(path_, pass_.job.view, v);
     if (!lens) return;
@@ -84,7 +86,7 @@ class LightVisitor {
     if (!there.sees) return;
     if (film_) film_->prefetch_splats(pass_.job.view.window.pixel_at(lens->raster));
     if (const auto seen = connect_to_lens(path_, pass_.job.view, v, *lens))
-      see_(LightArrival{&v, subpath_, layers_of_splat(v)}, *seen, there);
+      see_(LightArrival{&v, subpath_, path_.w, layers_of_splat(v)}, *seen, there);
   }
 
   const PathContext& path_;
@@ -283,12 +285,12 @@ RayCounts trace_light_paths(const VcmPass& pass, const FilmPass* film, const See
   const WalkLimits limits{.max_depth = pass.max_depth()};
   return pass.light_paths.for_each([&](const LightPath& start, Sampler& sampler, RayCounts& counts, std::size_t c) {
     LightVertices::Chunk& chunk = pass.vertices.chunk(c);
-    const PathContext path{pass.job.scene, pass.draw.w, sampler, counts, limits};
-    const float time = pass.draw.of_path(sampler).time;
+    const PathDraw own = pass.draw.of_path(sampler);
+    const PathContext path{pass.job.scene, own.w, sampler, counts, limits};
     const auto see_in_chunk = [&](const LightArrival& light, const LensLight& seen, const PlaceEffort& there) {
       see(light, seen, there, c);
     };
-    walk_from_light(path, start, time, LightVisitor(path, pass, start.index, time, film, chunk, see_in_chunk));
+    walk_from_light(path, start, own.time, LightVisitor(path, pass, start.index, own.time, film, chunk, see_in_chunk));
     chunk.ends.push_back(static_cast<std::uint32_t>(chunk.vertices.size()));
   });
 }

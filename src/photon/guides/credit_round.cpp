@@ -61,10 +61,10 @@ CreditRound trace_round(const RenderJob& job, std::uint32_t number, const LightG
   paths.for_each([&](const LightPath& start, Sampler& sampler, RayCounts& counts, std::size_t chunk) {
     CreditRound& round = chunks[chunk];
     round.starts.push_back({start.index, emission_numbers(start, sampler).at});
-    const PathContext path{job.scene, draw.w, sampler, counts, limits};
-    with_directions(&guide, PilotPhotonVisitor{round, in_media}, [&](auto visitor) {
-      walk_from_light(path, start, draw.of_path(sampler).time, std::move(visitor));
-    });
+    const PathDraw own = draw.of_path(sampler);
+    const PathContext path{job.scene, own.w, sampler, counts, limits};
+    with_directions(&guide, PilotPhotonVisitor{round, in_media},
+                    [&](auto visitor) { walk_from_light(path, start, own.time, std::move(visitor)); });
   });
   CreditRound all;
   for (const CreditRound& chunk : chunks) all.append(chunk);

@@ -82,8 +82,9 @@ PilotLight trace_light(const RenderJob& job, const PassDraw& draw) {
   paths.for_each([&](const LightPath& start, Sampler& sampler, RayCounts& counts, std::size_t chunk) {
     PilotLight& pilot = chunks[chunk];
     pilot.paths.push_back({.radiance = infinity});
-    walk_from_light(PathContext{job.scene, draw.w, sampler, counts, {job.settings.max_depth - 1, 1}}, start,
-                    draw.of_path(sampler).time, LandingVisitor{pilot, !is_delta(start.light)});
+    const PathDraw own = draw.of_path(sampler);
+    walk_from_light(PathContext{job.scene, own.w, sampler, counts, {job.settings.max_depth - 1, 1}}, start, own.time,
+                    LandingVisitor{pilot, !is_delta(start.light)});
   });
   PilotLight all;
   for (const PilotLight& chunk : chunks) {

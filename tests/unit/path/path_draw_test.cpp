@@ -191,5 +191,52 @@ TEST(WavelengthsOfPass, ColoursDoNotFollowTime) {
   EXPECT_EQ(met.size(), 32u);
 }
 
+// The four pixels of a square have four heroes, so that even a small part of a pass has the colour of all.
+TEST(HeroesOfPaths, EachSquareOfPixelsHasAll) {
+  std::set<unsigned> of_corner;
+  for (int y = 0; y < 32; y += 2)
+    for (int x = 0; x < 32; x += 2) {
+      const std::set<unsigned> heroes{hero_of_pixel(x, y), hero_of_pixel(x + 1, y), hero_of_pixel(x, y + 1),
+                                      hero_of_pixel(x + 1, y + 1)};
+      EXPECT_EQ(heroes, (std::set<unsigned>{0, 1, 2, 3}));
+      of_corner.insert(hero_of_pixel(x, y));
+    }
+  EXPECT_EQ(of_corner.size(), 4u) << "no pattern that repeats";
+}
+
+TEST(HeroesOfPaths, LightPathsHaveAllEquallyOften) {
+  const Wavelengths w = Wavelengths::spectral(0.1f);
+  for (const float length : {0.0f, 1.0f}) {
+    const PassDraw draw{0, length, w, true};
+    std::array<int, 4> count{};
+    for (std::uint32_t path = 0; path < 4096; ++path) {
+      Sampler sampler = Sampler::for_light_path(0, Stream::light, 0, 0, path);
+      const Wavelengths own = draw.of_path(sampler).w;
+      EXPECT_EQ(own.lambda, w.lambda);
+      EXPECT_EQ(own.dispersed.v[own.hero], 4);
+      ++count[own.hero];
+    }
+    EXPECT_EQ(count, (std::array<int, 4>{1024, 1024, 1024, 1024})) << length;
+  }
+}
+
+// The mean over the heroes of both paths, whichever of them is dispersed.
+TEST(HeroesOfPaths, LightThatMeetsKeepsItsMean) {
+  const Wavelengths w = Wavelengths::spectral(0.1f);
+  const Spectrum light(0.5f, 1, 2, 3);
+  for (const bool of_light : {false, true})
+    for (const bool of_eye : {false, true}) {
+      Spectrum mean;
+      for (unsigned hero_of_light = 0; hero_of_light < 4; ++hero_of_light)
+        for (unsigned hero_of_eye = 0; hero_of_eye < 4; ++hero_of_eye) {
+          const LightToMeet kept = LightToMeet::of(light, of_light, w.with_hero(hero_of_light));
+          const bool is_dispersed = of_eye || kept.dispersed;
+          mean += 0.0625f * (is_dispersed ? kept.light * w.with_hero(hero_of_eye).dispersed : kept.light);
+        }
+      EXPECT_EQ(mean, light) << of_light << of_eye;
+    }
+  EXPECT_TRUE(LightToMeet::of(light, true, Wavelengths::rgb(0.5f)).dispersed);
+}
+
 }  // namespace
 }  // namespace lanthorn::path_draw_test
