@@ -159,6 +159,13 @@ struct Film {
   }
 };
 
+void explain_coarse(const CoarsePicture& coarse) {
+  warn(
+      "the render ended within its first pass: the picture is coarse, rendered with {} x {} pixels and enlarged; a "
+      "whole pass takes about {}, and the render cannot be resumed from a state of this picture",
+      coarse.width, coarse.height, format_duration(coarse.pass_seconds));
+}
+
 std::optional<float> exposure_measured(const RenderCommand& a, const Session& session) {
   if (!a.output.measures_exposure.value_or(summarize(session.state()).measures_exposure)) return {};
   return measured_exposure(picture_without_error(session.state()));
@@ -240,12 +247,14 @@ void render_view(const RenderCommand& a, Team* team, const Prepared& prepared, c
   StopRule stop = session.plan();
   stop.interrupted = &stop_requested();
   stop.drop = &drop_requested();
+  stop.keeps_coarse = true;
   stop.team = team;
   DenoisedLooks looks(stop.noise.value_or(0));
   if (stop.noise && a.output.denoise) stop.error_of = std::ref(looks);
   if (team) plan_gathering(onlookers, a, *team);
   const RenderStatistics statistics = session.render(stop, make_observer(a, onlookers));
   onlookers.progress.finish();
+  if (statistics.coarse) explain_coarse(*statistics.coarse);
   if (session.pass_count() == 0) {
     if (statistics.out_of_memory) throw std::bad_alloc();
     say("lanthorn: no pass was rendered: nothing to save\n");

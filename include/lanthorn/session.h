@@ -32,20 +32,30 @@ enum class Undo : std::uint8_t {
 };
 
 /// When to stop: at whichever limit is reached first. Any thread or signal handler may set the flags at any time.
+///
+/// There is always a picture. A render without a team that begins with no passes, of 4096 pixels or more, first renders
+/// pictures of few pixels if its time is limited. If the time does not allow a pass of the whole picture, such a
+/// picture, as fine as the time allows, takes its place (`RenderStatistics::coarse`). The next call begins anew. Other
+/// renders complete at least one pass in each call.
 struct StopRule {
-  PassRange passes{0, 1};           ///< passes to complete; end may be "never" (the largest number)
-  std::optional<double> seconds{};  ///< wall-clock time of this call
+  PassRange passes{0, 1};  ///< passes to complete; end may be "never" (the largest number)
+  /// Wall-clock time of this call. No pass begins that is expected to end later than 5 % or half a second after it, and
+  /// passes that can be abandoned are abandoned 10 % or half a second after it.
+  std::optional<double> seconds{};
   /// Bound of the picture's error (`ErrorEstimate::is_below`). Checked only at predetermined numbers of passes, so that
   /// the picture does not depend on the machine's speed.
   std::optional<double> noise{};
   /// Estimates the error that `noise` bounds; empty: the error of the noisy picture is used. `DenoisedLooks` estimates
   /// the error of the denoised picture. Called after every third of the predetermined numbers of passes.
   std::function<ErrorEstimate(const RenderState&)> error_of{};
-  /// Stops after the running passes; at least one pass is rendered.
+  /// Stops after the running passes.
   const std::atomic<bool>* interrupted = nullptr;
   /// Stops immediately: the running passes are abandoned without a trace if `undo` allows it, and completed otherwise.
   const std::atomic<bool>* drop = nullptr;
   Undo undo = Undo::if_cheap;
+  /// If `drop` ends the first pass, a coarse picture takes its place, too. Without a limit of time, only renders of
+  /// 2^20 pixels or more make one.
+  bool keeps_coarse = false;
   /// Processes that share the passes (lanthorn/team.h). Ranks other than 0 follow the rule of rank 0. Until the render
   /// ends, `Session::picture` has only the passes of this process.
   Team* team = nullptr;

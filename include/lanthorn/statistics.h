@@ -58,6 +58,12 @@ struct StageSeconds {
   double seconds = 0;
 };
 
+/// A picture of fewer pixels that takes the place of a first pass, enlarged.
+struct CoarsePicture {
+  int width = 0, height = 0;  ///< pixels, of the part that is shown
+  double pass_seconds = 0;    ///< guess of the duration of a pass of the whole picture
+};
+
 /// Sums over the passes of one call of `Session::render`.
 struct RenderStatistics {
   std::uint64_t passes = 0;
@@ -78,6 +84,8 @@ struct RenderStatistics {
   /// time, unless `StopRule::noise` requires them.
   std::optional<ErrorEstimate> error{};
   std::uint64_t error_passes = 0;
+  /// The limit of the stop rule did not allow a pass: the picture is coarse, and `passes` are its passes.
+  std::optional<CoarsePicture> coarse{};
   bool out_of_memory = false;  ///< a pass needed more memory than is available and was abandoned
 };
 

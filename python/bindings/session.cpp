@@ -33,7 +33,7 @@ class PythonSession {
     const std::lock_guard lock = locked();
     StopRule stop = session_.plan();
     if (passes || seconds || noise) {
-      const uint64_t done = session_.pass_count();
+      const uint64_t done = statistics_.coarse ? 0 : session_.pass_count();
       stop.passes.end = passes ? stop.passes.begin + done + *passes : std::numeric_limits<uint64_t>::max();
       stop.seconds = seconds;
       stop.noise = noise;
@@ -77,6 +77,7 @@ class PythonSession {
   void resume(const std::filesystem::path& path) {
     const std::lock_guard lock = locked();
     session_.resume(open_state(path), path.string());
+    statistics_ = {};
   }
 
  private:
@@ -144,6 +145,7 @@ py::dict statistics_as_dict(const PythonSession& session) {
   data["light_paths"] = s.light_paths;
   data["photons_stored"] = s.photons_stored;
   data["radius"] = s.radius;
+  if (s.coarse) data["coarse"] = py::make_tuple(s.coarse->width, s.coarse->height);
   return data;
 }
 
@@ -212,7 +214,9 @@ void bind_session(py::module_& module) {
           "warnings", [](const PythonSession& s) { return texts_of(s.warnings()); },
           "list of str: unsupported features of the scene, and light that the method cannot render.")
       .def_property_readonly("statistics", &statistics_as_dict,
-                             "dict: passes, seconds, rays, photons ... of the last call of `render`.")
+                             "dict: passes, seconds, rays, photons ... of the last call of `render`; `coarse`, if the "
+                             "time did not\nsuffice for a pass: width and height of the picture before it was "
+                             "enlarged.")
       .def("__repr__", &session_text);
 }
 

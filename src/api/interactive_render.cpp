@@ -34,7 +34,6 @@ constexpr double first_coarse_pixels = 96 * 96, fewest_coarse_pixels = 48 * 48;
 constexpr double coarse_seconds = 0.06;  // for a coarse pass, so that more than ten a second fit while the camera moves
 constexpr double patient_seconds = 1.5;  // slower full passes get intermediate pictures after the coarse one
 constexpr double largest_growth = 6;     // of the pixel count from one of these pictures to the next
-constexpr double fewest_coarse_photons = 8000;
 constexpr Clock::duration moving_time = 300ms;      // full passes wait this long for the next edit
 constexpr Clock::duration picture_interval = 40ms;  // between pictures of full passes
 constexpr int picture_share = 8;                    // making pictures takes at most 1/8 of the time
@@ -48,15 +47,6 @@ PixelWindow window_of(const ViewDescription& view, const RenderOptions& options)
   return make_view(view, options).window;
 }
 double pixels_of(const PixelWindow& window) { return static_cast<double>(window.width()) * window.height(); }
-
-// The options for a single pass of a picture scaled by `share` in width and height.
-RenderOptions coarse_options(RenderOptions options, const description::Film& film, double share, double photons) {
-  static_cast<ViewOptions&>(options) = scaled(options, film, share);
-  options.photons = static_cast<std::uint64_t>(
-      std::min(std::max(fewest_coarse_photons, photons * share * share), std::max(1.0, photons)));
-  options.pass_range.reset();
-  return options;
-}
 
 // Denoising needs passes in both halves, since their difference is the noise.
 bool has_both_halves(const InteractivePicture& picture) {

@@ -16,6 +16,7 @@
 #include "render/picture.h"
 #include "render/plan.h"
 #include "render/render.h"
+#include "render/stand_in.h"
 #include "render/state.h"
 #include "scene/scene.h"
 
@@ -182,6 +183,7 @@ const RenderState& Session::state() const { return impl_->plan.state; }
 
 void Session::resume(const std::shared_ptr<RenderState>& state, const std::string& name) {
   RenderPlan& plan = impl_->plan;
+  remove_stand_in(plan);
   require_same_identity(*state, plan.state.settings, name);
   // The settings are text in the file and need not match its film.
   const Film &film = state->film, &expected = plan.state.film;

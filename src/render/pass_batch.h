@@ -26,6 +26,8 @@ class BatchSize {
   /// Number of passes in the next batch, at most `most`. `seconds_left`: time until the render must end; none: no
   /// limit.
   std::size_t next(std::uint64_t most, std::optional<double> seconds_left) const;
+  /// Duration of a pass of the last batch; 0 before the first.
+  double seconds_of_pass() const { return seconds_of_pass_.value_or(0); }
 
  private:
   const RenderPlan& plan_;

@@ -57,10 +57,10 @@ bool PassUndo::copy(const Film& film) try {
 
 void PassUndo::restore(RenderState& state) {
   Film& film = state.film;
-  if (rule_ == Undo::never)
-    state.passes.clear();
-  else if (state.pass_count() == 0)
+  if (state.pass_count() == 0)
     clear(film);
+  else if (rule_ == Undo::never)
+    state.passes.clear();
   else
     film = std::move(*copy_);
   copy_.reset();

@@ -14,6 +14,7 @@
 #include "render/identity.h"
 #include "render/memory_need.h"
 #include "render/method_of_file.h"
+#include "render/scaled_view.h"
 #include "scene/medium_around.h"
 
 namespace lanthorn {
@@ -153,6 +154,12 @@ RenderPlan plan_render(const Scene& scene, const ViewDescription& view, const Re
   state.integrator = info.name;
   state.shardable = plan.integrator->passes_are_independent();
   state.settings = describe_render(scene, view, plan);
+  const auto photons = static_cast<double>(plan.settings.photons * plan.settings.parts);
+  RenderOptions exact = options;  // whose height may have been left open
+  exact.resolution = {plan.view.camera.width(), plan.view.camera.height()};
+  plan.coarse = [view, exact, photons](const Scene& same, double share) {
+    return plan_render(same, view, coarse_options(exact, view.film, share, photons));
+  };
   return plan;
 }
 

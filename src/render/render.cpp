@@ -19,9 +19,11 @@
 #include "base/parallel.h"
 #include "integrators/integrator.h"
 #include "lanthorn/error.h"
+#include "render/deadline.h"
 #include "render/looks.h"
 #include "render/pass_batch.h"
 #include "render/pass_undo.h"
+#include "render/stand_in.h"
 #include "render/team/member.h"
 
 namespace lanthorn {
@@ -58,12 +60,42 @@ bool is_reached(const StopRule& stop, const RenderStatistics& statistics) {
   return stop.noise && statistics.error && statistics.error->is_below(*stop.noise);
 }
 
-bool must_stop(const StopRule& stop, const RenderStatistics& statistics) {
-  if (is_set(stop.drop) || is_reached(stop, statistics)) return true;
-  // At least one pass is rendered, however early the stop, because there must be a picture.
-  if (statistics.passes == 0) return false;
-  return is_set(stop.interrupted) || (stop.seconds && statistics.seconds >= *stop.seconds);
+// How late a render may end, s: by a share of its limit, but no less than users notice.
+double tolerance(double share, double limit) { return std::max(share * limit, 0.5); }
+
+// `pass_seconds`: expected duration of the next pass.
+bool is_over(const StopRule& stop, const RenderStatistics& statistics, double pass_seconds) {
+  if (!stop.seconds) return false;
+  return statistics.seconds >= *stop.seconds ||
+         statistics.seconds + pass_seconds > *stop.seconds + tolerance(0.05, *stop.seconds);
 }
+
+// `needs_pass`: at least one pass is rendered, however early the stop, because there must be a picture.
+bool must_stop(const StopRule& stop, const RenderStatistics& statistics, bool needs_pass, double pass_seconds) {
+  if (is_set(stop.drop) || is_reached(stop, statistics)) return true;
+  if (needs_pass && statistics.passes == 0) return false;
+  return is_set(stop.interrupted) || is_over(stop, statistics, pass_seconds);
+}
+
+// When running passes are abandoned.
+std::optional<Clock::time_point> end_of(const StopRule& stop, Clock::time_point start) {
+  if (!stop.seconds || stop.team) return {};
+  const double seconds = std::min(*stop.seconds + tolerance(0.1, *stop.seconds), 1e9);
+  return start + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
+}
+
+// A call of `render`.
+struct Call {
+  const Scene& scene;
+  RenderPlan& plan;
+  const StopRule& stop;
+  const Observer& observer;
+  Clock::time_point start;
+  bool has_stand_in = false;  ///< the time may end it before its first pass is complete
+
+  RenderJob job() const { return plan.job(scene); }
+  double seconds() const { return seconds_between(start, Clock::now()); }
+};
 
 // Looks at the picture's error now and then.
 class ErrorLooks {
@@ -124,13 +156,15 @@ void load_integrator_state(RenderPlan& plan) try {
 }
 
 // False if it was given up.
-bool prepare(RenderPlan& plan, const RenderJob& job, const StopRule& stop, const Observer& observer) {
+bool prepare(const Call& call, const RenderJob& job, const std::atomic<bool>* flag) {
+  RenderPlan& plan = call.plan;
+  const Observer& observer = call.observer;
   if (plan.is_prepared) return true;
   RenderState& state = plan.state;
   state.film.set_sensor(job.view.sensor);
   state.film.set_window(job.view.window, job.view.camera.width());
-  observer.can_drop(stop.drop != nullptr);
-  if (!run_unless_stopped(stop.drop, [&] { plan.integrator->prepare(job); })) return false;
+  observer.can_drop(call.stop.drop != nullptr);
+  if (!run_unless_stopped(flag, [&] { plan.integrator->prepare(job); })) return false;
   job.scene.require_textures();
   load_integrator_state(plan);
   plan.is_prepared = true;
@@ -160,20 +194,22 @@ void add(RenderState& state, const std::vector<std::uint64_t>& passes, const Bat
 // process has rendered and not yet handed over; rank 0 also holds the sums of all processes.
 class PassLoop {
  public:
-  PassLoop(RenderPlan& plan, const RenderJob& job, const StopRule& stop, const Observer& observer,
-           RenderStatistics& statistics, Clock::time_point start)
-      : plan_(plan),
+  /// `deadline`: the flag that is set when the time is over, and soon after `StopRule::drop`.
+  PassLoop(const Call& call, const RenderJob& job, RenderStatistics& statistics, const std::atomic<bool>* deadline)
+      : plan_(call.plan),
         job_(job),
-        stop_(stop),
-        observer_(observer),
+        stop_(call.stop),
+        observer_(call.observer),
         statistics_(statistics),
-        start_(start),
-        seconds_before_(plan.state.seconds),
-        undo_(stop.undo),
-        looks_(stop, plan.state.film),
-        batch_size_(plan) {
-    if (stop.noise) looks_.look_if_due(plan.state, statistics, statistics.seconds);  // of a state that is resumed
-    if (stop.team && stop.team->link.size > 1) join_team();
+        start_(call.start),
+        deadline_(deadline),
+        needs_pass_(!call.has_stand_in),
+        seconds_before_(call.plan.state.seconds),
+        undo_(call.stop.undo),
+        looks_(call.stop, call.plan.state.film),
+        batch_size_(call.plan) {
+    if (stop_.noise) looks_.look_if_due(plan_.state, statistics, statistics.seconds);  // of a state that is resumed
+    if (stop_.team && stop_.team->link.size > 1) join_team();
   }
 
   void run() {
@@ -203,6 +239,14 @@ class PassLoop {
   const std::atomic<bool>* drop_flag() const {
     return member_ && !member_->is_first() ? member_->give_up() : stop_.drop;
   }
+  // The flag for a pass that can be undone. The time must not end the only pass, nor a pass that takes all earlier ones
+  // with it.
+  const std::atomic<bool>* flag_of_pass() const {
+    if (member_) return drop_flag();
+    const bool is_only = needs_pass_ && statistics_.passes == 0;
+    const bool takes_all = stop_.undo == Undo::never && plan_.state.pass_count() > 0;
+    return is_only || takes_all ? stop_.drop : deadline_;
+  }
 
   RenderPlan& plan_;
   const RenderJob& job_;
@@ -210,6 +254,8 @@ class PassLoop {
   const Observer& observer_;
   RenderStatistics& statistics_;
   Clock::time_point start_;
+  const std::atomic<bool>* deadline_;
+  bool needs_pass_;
   double seconds_before_;
   PassUndo undo_;
   ErrorLooks looks_;
@@ -241,7 +287,7 @@ void PassLoop::join_team() {
 }
 
 PassLoop::Batch PassLoop::next_of_own() {
-  if (is_over_ || must_stop(stop_, statistics_)) return {};
+  if (is_over_ || must_stop(stop_, statistics_, needs_pass_, batch_size_.seconds_of_pass())) return {};
   // The error must be looked at after exactly the number of passes that is fixed for the look.
   const std::uint64_t done = plan_.state.pass_count(),
                       most = stop_.noise ? next_look(done).passes - done : std::numeric_limits<std::uint64_t>::max();
@@ -277,7 +323,9 @@ bool PassLoop::render(const Batch& batch) {
   const std::atomic<bool>* const drop = drop_flag();
   const bool can_undo = undo_.begin(state, batch_seconds_), can_drop = drop && can_undo;
   observer_.can_drop(can_drop);
-  const std::atomic<bool>* const flag = can_drop ? drop : member_ ? member_->discard() : nullptr;
+  const std::atomic<bool>* const flag = can_undo && flag_of_pass() ? flag_of_pass()
+                                        : member_                  ? member_->discard()
+                                                                   : nullptr;
   const Clock::time_point batch_start = Clock::now();
   BatchReport report;
   if (!run_pass(flag, can_undo && stop_.undo != Undo::never, statistics_.out_of_memory, [&] {
@@ -338,14 +386,58 @@ void PassLoop::give_up() {
 
 }  // namespace
 
+namespace {
+
+RenderStatistics render_passes(const Call& call) {
+  const RenderJob job = call.job();
+  const Deadline deadline(call.stop.drop, end_of(call.stop, call.start));
+  RenderStatistics statistics;
+  const double before = call.seconds();
+  const bool is_prepared = prepare(call, job, call.has_stand_in ? deadline.flag() : call.stop.drop);
+  statistics.seconds = call.seconds();
+  if (!is_prepared) return statistics;
+  statistics.prepare_seconds = statistics.seconds - before;
+  PassLoop(call, job, statistics, deadline.flag()).run();
+  return statistics;
+}
+
+bool needs_stand_in(const RenderPlan& plan, const StopRule& stop) {
+  constexpr double large = 1 << 20;  // pixels
+  const double pixels = plan.state.film.pixel_count();
+  if (stop.team || !plan.coarse || plan.state.pass_count() > 0 || pixels < StandIn::fewest_pixels) return false;
+  return stop.seconds || (stop.keeps_coarse && pixels >= large);
+}
+
+}  // namespace
+
 RenderStatistics render(const Scene& scene, RenderPlan& plan, const StopRule& stop, const Observer& observer) {
   if (stop.noise) check_error_bound(*stop.noise);
-  const RenderJob job = plan.job(scene);
+  remove_stand_in(plan);
+  Call call{scene, plan, stop, observer, Clock::now()};
+  if (!needs_stand_in(plan, stop)) return render_passes(call);
+
+  observer.can_drop(stop.drop != nullptr);
+  const Deadline deadline(stop.drop, end_of(stop, call.start));
+  const Observer nobody;
+  StandIn stand_in(scene, plan, [&](RenderPlan& coarse, const StopRule& rule, bool may_be_none) {
+    return render_passes({scene, coarse, rule, nobody, Clock::now(), may_be_none});
+  });
+  const auto seconds_left = [&]() -> std::optional<double> {
+    if (!stop.seconds) return {};
+    return *stop.seconds + tolerance(0.05, *stop.seconds) - call.seconds();
+  };
   RenderStatistics statistics;
-  const Clock::time_point start = Clock::now();
-  if (!prepare(plan, job, stop, observer)) return statistics;
-  statistics.prepare_seconds = statistics.seconds = seconds_between(start, Clock::now());
-  PassLoop(plan, job, stop, observer, statistics, start).run();
+  const bool allows_pass = stand_in.allows_pass(seconds_left, stop.drop, deadline.flag());
+  call.has_stand_in = stand_in.has_picture();
+  if (allows_pass || !call.has_stand_in)
+    statistics = render_passes(call);
+  else
+    stand_in.refine(*seconds_left(), stop);
+  const bool is_dropped = is_set(stop.drop) && !stop.keeps_coarse;
+  if (plan.state.pass_count() > 0 || !call.has_stand_in || is_dropped || statistics.out_of_memory) return statistics;
+  statistics.seconds = call.seconds();
+  stand_in.put_into(plan, statistics);
+  observer.progress(plan.state, statistics);
   return statistics;
 }
 

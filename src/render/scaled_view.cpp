@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 
 namespace lanthorn {
 
@@ -18,6 +19,15 @@ ViewOptions scaled(ViewOptions options, const description::Film& film, double sh
     const int left = std::min(scale(x0), width - 1), top = std::min(scale(y0), height - 1);
     options.crop = {left, top, std::clamp(scale(x1), left + 1, width), std::clamp(scale(y1), top + 1, height)};
   }
+  return options;
+}
+
+RenderOptions coarse_options(RenderOptions options, const description::Film& film, double share, double photons) {
+  constexpr double fewest = 8000;
+  static_cast<ViewOptions&>(options) = scaled(options, film, share);
+  options.photons =
+      static_cast<std::uint64_t>(std::min(std::max(fewest, photons * share * share), std::max(1.0, photons)));
+  options.pass_range.reset();
   return options;
 }
 

@@ -10,4 +10,7 @@ namespace lanthorn {
 /// The options for a picture of the same part of the scene with `share` times the width and the height.
 ViewOptions scaled(ViewOptions options, const description::Film& film, double share);
 
+/// The options for a pass of such a picture. `photons`: light paths of a pass of the whole picture.
+RenderOptions coarse_options(RenderOptions options, const description::Film& film, double share, double photons);
+
 }  // namespace lanthorn

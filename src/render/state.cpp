@@ -83,6 +83,7 @@ std::string field_name(const std::vector<std::string>& path) {
   if (field == "margin") return "the margin that --denoise adds to --crop";
   if (field == "filter") return excerpt(fmt::format("the scene's {}", fmt::join(path, ".")));
   if (field == "max_depth") return "--max-depth";
+  if (field == "coarse") return "the pixels of a coarse picture, for whose passes there was no time";
   for (const char* option : {"integrator", "resolution", "crop", "seed", "color", "photons"})
     if (field == option && path.size() == 1) return "--" + field;
   return excerpt(fmt::format("{}", fmt::join(path, ".")));
