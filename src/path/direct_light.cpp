@@ -87,14 +87,21 @@ Passage passage_to(const PathContext& path, const Vertex& vertex, const NextEven
   return passage(path, ray, medium, dimensions);
 }
 
-// Multiplies the sample's radiance by the fraction that arrives; nullopt if none does.
+// Multiplies the sample's radiance by the fraction that arrives; empties it if none does. In place: each copy of such a
+// result makes the processor wait.
 template <class Vertex>
-std::optional<NextEvent> visible(const PathContext& path, const Vertex& vertex, std::optional<NextEvent> e) {
-  if (!e) return e;
+void see_light(const PathContext& path, const Vertex& vertex, std::optional<NextEvent>& e) {
+  if (!e) return;
   const Passage way = passage_to(path, vertex, *e);
   e->radiance *= way.transmittance;
   e->optical_depth = way.optical_depth;
   if (e->radiance.is_black()) e.reset();
+}
+
+template <class Vertex>
+std::optional<NextEvent> sample_visible(const PathContext& path, const Vertex& vertex) {
+  std::optional<NextEvent> e = sample_light(path, vertex);
+  see_light(path, vertex, e);
   return e;
 }
 
@@ -116,16 +123,18 @@ DirectLight weighted(const NextEvent& event, float pdf_walk) {
 }
 
 std::optional<NextEvent> sample_next_event(const PathContext& path, const SurfaceVertex& vertex) {
-  return visible(path, vertex, sample_light(path, vertex));
+  return sample_visible(path, vertex);
 }
 
 std::optional<NextEvent> sample_next_event(const PathContext& path, const MediumVertex& vertex) {
-  return visible(path, vertex, sample_light(path, vertex));
+  return sample_visible(path, vertex);
 }
 
 std::optional<NextEvent> sample_next_event_of(const PathContext& path, const MediumVertex& vertex,
                                               const SampledLight& light) {
-  return visible(path, vertex, sample_chosen(path, vertex, light, Vec2(0.5f)));
+  std::optional<NextEvent> e = sample_chosen(path, vertex, light, Vec2(0.5f));
+  see_light(path, vertex, e);
+  return e;
 }
 
 Spectrum detail::hit_light(const PathContext& path, const SurfaceVertex& vertex, std::uint32_t index) {

@@ -64,7 +64,7 @@ constexpr float closure_ratio(const GuidedSample& s) { return s.closure_ratio; }
 /// may magnify the surfaces seen in them. So do light paths, because the camera may see their vertices.
 inline float spread_of(float pdf) {
   constexpr float rays = 256, most = 1.0f / 16;
-  return std::fmin(most, 1 / std::sqrt(rays * pi * pdf));
+  return std::min(most, 1 / std::sqrt(rays * pi * pdf));
 }
 
 template <Transport transport>
