@@ -79,6 +79,7 @@ std::optional<std::vector<Image>> render_run(const Scene& scene, const ViewDescr
                             reference->height, window.width(), window.height()));
   plan.stop.drop = settings.stop;
   plan.stop.undo = Undo::never;
+  plan.coarse = nullptr;  // whole passes are measured
   std::vector<Image> images;
   Observer observer;
   observer.progress = [&](const RenderState& state, const RenderStatistics&) {

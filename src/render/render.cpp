@@ -432,7 +432,7 @@ RenderStatistics render(const Scene& scene, RenderPlan& plan, const StopRule& st
   if (allows_pass || !call.has_stand_in)
     statistics = render_passes(call);
   else
-    stand_in.refine(*seconds_left(), stop);
+    stand_in.refine(*stop.seconds - call.seconds(), stop);
   const bool is_dropped = is_set(stop.drop) && !stop.keeps_coarse;
   if (plan.state.pass_count() > 0 || !call.has_stand_in || is_dropped || statistics.out_of_memory) return statistics;
   statistics.seconds = call.seconds();
