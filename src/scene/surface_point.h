@@ -19,6 +19,8 @@ namespace lanthorn {
 
 /// A point on a surface with all data that light transport needs.
 struct SurfacePoint {
+  // With a defaulted constructor, `optional::emplace` would set the whole point to zero first.
+  SurfacePoint() {}  // NOLINT(modernize-use-equals-default)
   Point position{0};
   Vec3 position_error{0};  ///< bound of the rounding error of `position`, per axis, metres
   Normal normal{0, 0, 1};  ///< geometric, unit; on the side that the shape's orientation calls outside

@@ -10,11 +10,16 @@
 
 namespace lanthorn {
 
+namespace detail {
+inline constexpr Bsdf no_closure{};
+}
+
 /// The closure at a point: the material's own closure if that is the same everywhere, as in most materials, otherwise
 /// one made for the point. Converts to `Bsdf`. The scene must outlive it.
 class PointBsdf {
  public:
-  PointBsdf() : own_() {}
+  /// Any closure, to be replaced. It is not made in place, because points are default-constructed often.
+  PointBsdf() : of_material_(&detail::no_closure) {}
   /// A closure made for the point.
   template <class Closure>
   requires std::constructible_from<Bsdf, const Closure&> PointBsdf(const Closure& closure) : own_(closure) {}
