@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
@@ -82,6 +84,51 @@ TEST(PhotonMap, PrecomputedIrradianceLeavesTheMean) {
   const Scene scene = test::scene_from_text(camera + box);
   const std::vector<Image> estimated = runs(scene, "photonmap:irradiance=estimated", 1, "term.D");
   EXPECT_TRUE(test::runs_agree(test::paired_ratio(runs(scene, "photonmap", 1, "term.D"), estimated), 1, 0.015, 0.02));
+}
+
+// Radiance of a ceiling 3 m above a floor, x metres from the axis of a spotlight that lights a disc on the floor:
+// irradiance I cos³/h² there, scattered once by the floor and once by the ceiling (both of reflectance 1/2).
+double radiance_of_ceiling(double x, double cone_degrees) {
+  constexpr double intensity = 100, lamp = 2.9, ceiling = 3;
+  constexpr int rings = 200, sectors = 64;
+  const double radius = lamp * std::tan(cone_degrees * std::numbers::pi / 180), step = radius / rings;
+  double irradiance = 0;
+  for (int i = 0; i < rings; ++i)
+    for (int j = 0; j < sectors; ++j) {
+      const double s = (i + 0.5) * step, angle = 2 * std::numbers::pi * j / sectors;
+      const double cos = lamp / std::hypot(lamp, s),
+                   floor = 0.5 / std::numbers::pi * intensity * cos * cos * cos / (lamp * lamp);
+      const double d2 = ceiling * ceiling + s * s + x * x - 2 * s * x * std::cos(angle);
+      irradiance += floor * ceiling * ceiling / (d2 * d2) * s * step * 2 * std::numbers::pi / sectors;
+    }
+  return 0.5 / std::numbers::pi * irradiance;
+}
+
+// A spot lights a small part of a floor, and the ceiling sees it: records hold up to the edge of the light only. Beyond
+// the edge, the largest radius is up to a quarter of the spot's.
+TEST(PhotonMap, PrecomputedIrradianceEndsAtTheEdgeOfTheLight) {
+  for (const double cone : {10.0, 3.0}) {
+    const Scene scene = test::scene_from_text(
+        "LookAt 0 1.5 0  0 3 0  0 0 1\nCamera \"perspective\" \"float fov\" [4]\n"
+        "Film \"rgb\" \"integer xresolution\" [8] \"integer yresolution\" [8]\n"
+        "PixelFilter \"box\" \"float xradius\" [0.5] \"float yradius\" [0.5]\nWorldBegin\n"
+        "LightSource \"spot\" \"rgb I\" [100 100 100] \"point3 from\" [0 2.9 0] \"point3 to\" [0 0 0] "
+        "\"float coneangle\" [" +
+        std::to_string(cone) +
+        "] \"float conedeltaangle\" [0.001]\n"
+        "Material \"diffuse\" \"rgb reflectance\" [.5 .5 .5]\n" +
+        test::patch("-3 0 -3  3 0 -3  -3 0 3  3 0 3") + test::patch("-3 3 -3  3 3 -3  -3 3 3  3 3 3"));
+    for (const char* integrator :
+         {"photonmap", "photonmap:nearest=0", "photonmap:final-gather=cached", "reversephotonmap"}) {
+      RenderOptions options = options_of(integrator + std::string(":gather=256"), 1);
+      options.max_depth = 2;
+      const std::vector<Image> found = test::independent_renders(scene, options, 16, 100);
+      // At most 5 cm from the axis, where radiance changes by 0.1 %.
+      EXPECT_TRUE(test::runs_agree(test::mean_of_means(test::select_layers(found, "color")),
+                                   radiance_of_ceiling(0.025, cone), 0.01, 0.05))
+          << integrator << ' ' << cone;
+    }
+  }
 }
 
 // An infinitely thin wall between a lit room and a dark one. The floor ends at the wall.

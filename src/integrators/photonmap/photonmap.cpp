@@ -110,7 +110,7 @@ TwoPassMaps PhotonMapper::trace(const RenderJob& job, std::uint32_t pass, const 
     std::copy_if(chunk.begin(), chunk.end(), std::back_inserter(caustics),
                  [](const Photon& photon) { return photon.flags.caustic; });
   maps.caustic = TwoPassMaps::Map::build(caustics, settings.color);
-  if (settings_.precomputes_irradiance)
+  if (settings_.precomputes_irradiance && IrradiancePhotons::has_records_for(settings_.estimates.global))
     maps.irradiance = IrradiancePhotons::build(maps.global, tracer->chunks(), settings_.estimates.global, maps.draw.w);
   if (settings_.shows_shadows() || (settings_.spares_shadow_rays && !scene.has_media()))
     maps.shadows =

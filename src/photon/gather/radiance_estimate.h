@@ -63,9 +63,11 @@ inline ChosenNearest choose_nearest(std::span<Neighbour> found, std::size_t want
 /// Density of the photons' light at a point. `bring(photon, reach)` returns the light of one photon, W or W/sr; nullopt
 /// if the photon does not belong to the surface although it is within `reach` (m), see `lies_on`. Such photons are left
 /// out of the sum, of the number of photons and of the search for the radius. The dark side of a thin wall stays dark,
-/// and corners are not darkened.
-template <class Map, class Bring>
-DensityEstimate estimate_density(const Map& map, const Point& p, const EstimateSettings& settings, Bring&& bring) {
+/// and corners are not darkened. `note(position, light, radius)` is called for each photon of the sum, with the
+/// disc's radius (m).
+template <class Map, class Bring, class Note>
+DensityEstimate estimate_density(const Map& map, const Point& p, const EstimateSettings& settings, Bring&& bring,
+                                 Note&& note) {
   constexpr std::size_t most = EstimateSettings::most_nearest;
   DensityEstimate result;
   if (settings.nearest == 0) {
@@ -74,6 +76,7 @@ DensityEstimate estimate_density(const Map& map, const Point& p, const EstimateS
     map.for_each_near(p, result.radius, [&](const auto& photon, float dist2) {
       const std::optional<Spectrum> light = bring(photon, result.radius);
       if (!light) return;
+      note(photon.position(), *light, result.radius);
       result.light += *light * settings.kernel.weight(dist2, support2);
       ++result.photons;
     });
@@ -84,6 +87,7 @@ DensityEstimate estimate_density(const Map& map, const Point& p, const EstimateS
   const std::size_t wanted = std::min(settings.nearest, most);
   std::array<Neighbour, most> memory, accepted;
   std::array<Spectrum, most> light;
+  std::array<std::uint32_t, most> slots;
   for (std::size_t asked = wanted;; asked = std::min(2 * asked, most)) {
     const std::span<const Neighbour> found = map.nearest(p, settings.radius, std::span(memory).first(asked));
     const bool has_all = found.size() < asked;
@@ -92,6 +96,7 @@ DensityEstimate estimate_density(const Map& map, const Point& p, const EstimateS
     for (const Neighbour& n : found)
       if (const std::optional<Spectrum> brought = bring(map[n.slot], reach)) {
         light[count] = *brought;
+        slots[count] = n.slot;
         accepted[count] = {n.dist2, static_cast<std::uint32_t>(count)};
         ++count;
       }
@@ -102,10 +107,16 @@ DensityEstimate estimate_density(const Map& map, const Point& p, const EstimateS
     if (!disc) return result;
     result.radius = std::sqrt(disc->support2);
     result.photons = disc->counted.size();
-    for (const Neighbour& n : disc->counted)
+    for (const Neighbour& n : disc->counted) {
+      note(map[slots[n.slot]].position(), light[n.slot], result.radius);
       result.light += light[n.slot] * settings.kernel.weight(n.dist2, disc->support2);
+    }
     return result;
   }
+}
+template <class Map, class Bring>
+DensityEstimate estimate_density(const Map& map, const Point& p, const EstimateSettings& settings, Bring&& bring) {
+  return estimate_density(map, p, settings, bring, [](const Point&, const Spectrum&, float) {});
 }
 
 /// Factor of a photon's light where an eye path reads the global map: the part that `split` leaves to photons. Direct

@@ -348,13 +348,91 @@ TEST(IrradiancePhotons, AreForEyePathsThatMayUseAllTheirPhotons) {
   settings.radius = 0.2f;
   const auto records = IrradiancePhotons::build(map, std::span(&photons, 1), settings, Wavelengths::rgb(0.5f));
   const Normal up(0, 0, 1);
+  int found = 0;
   for (int q = 0; q < 100; ++q) {
-    const Point left = random_point(rng) * Vec3(0.25f, 1, 0), right = Point(1, left.y, 0) - Vec3(left.x, 0, 0);
-    EXPECT_TRUE(records.find(left, up, 0.2f, 3));
+    // Away from the edges of the square, where light is not even.
+    const Point left = Point(0.15f, 0.15f, 0) + random_point(rng) * Vec3(0.1f, 0.7f, 0),
+                right = Point(1 - left.x, left.y, 0);
+    if (records.find(left, up, 0.2f, 3)) ++found;
     EXPECT_FALSE(records.find(left, up, 0.2f, 4));
-    EXPECT_TRUE(records.find(right, up, 0.2f, 2));
+    if (records.find(right, up, 0.2f, 2)) ++found;
     EXPECT_FALSE(records.find(right, up, 0.2f, 3));
     EXPECT_FALSE(records.find(left, -up, 0.2f, 1));
+  }
+  EXPECT_GT(found, 160);
+}
+
+// Photons of a square of 1 m² that is lit in part: power 1 where `is_lit`, else `rest`.
+template <class Lit>
+IrradiancePhotons records_of(HashRng& rng, std::size_t count, Lit&& is_lit, float rest,
+                             const EstimateSettings& settings) {
+  std::vector<Photon> photons;
+  while (photons.size() < count) {
+    const Point p = random_point(rng) * Vec3(1, 1, 0);
+    const float power = is_lit(p) ? 1.0f : rest;
+    if (power > 0)
+      photons.push_back(
+          {Spectrum(power, power, power, 0), p, Direction(0, 0, 1), Normal(0, 0, 1), {.eye_scatterings = 9}});
+  }
+  const auto map = PhotonMap<BucketKdTree>::build(photons, ColorMode::rgb);
+  return IrradiancePhotons::build(map, std::span(&photons, 1), settings, Wavelengths::rgb(0.5f));
+}
+
+struct Found {
+  double share = 0, irradiance = 0;  // share of points with a record, mean of the records
+};
+// At random points of the rectangle.
+Found found_in(const IrradiancePhotons& records, HashRng& rng, float radius, const Point& low, const Point& high) {
+  constexpr int points = 4000;
+  Found result;
+  int count = 0;
+  for (int i = 0; i < points; ++i)
+    if (const auto e = records.find(low + random_point(rng) * (high - low), {0, 0, 1}, radius, 1)) {
+      ++count;
+      result.irradiance += static_cast<double>((*e)[0]);
+    }
+  return {static_cast<double>(count) / points, count > 0 ? result.irradiance / count : 0};
+}
+
+// The largest radius is ten times that of the estimates. Points beyond the edge of the light must not get its light,
+// however near the edge, and whether they are dark or dim.
+TEST(IrradiancePhotons, EndWhereLightEnds) {
+  for (const std::size_t nearest : {std::size_t{0}, std::size_t{30}, std::size_t{50}, std::size_t{200}})
+    for (const float rest : {0.0f, 0.1f}) {
+      HashRng rng(9);
+      EstimateSettings settings;
+      settings.nearest = nearest;
+      settings.radius = nearest == 0 ? 0.03f : 0.3f;
+      const IrradiancePhotons records = records_of(
+          rng, 20'000, [](const Point& p) { return p.x < 0.5f; }, rest, settings);
+      const double lit = rest > 0 ? 20'000 : 40'000;  // photons per m²
+      const auto found = [&](float from, float to) {
+        return found_in(records, rng, settings.radius, {from, 0.1f, 0}, {to, 0.9f, 0});
+      };
+      const Found inside = found(0.1f, 0.4f), outside = found(0.502f, 0.9f);
+      EXPECT_GT(inside.share, 0.8) << nearest;
+      EXPECT_NEAR(inside.irradiance, lit, 0.03 * lit) << nearest;
+      if (rest == 0)
+        EXPECT_LT(outside.share, 0.002) << nearest;
+      else
+        EXPECT_NEAR(outside.irradiance, static_cast<double>(rest) * lit, 0.005 * lit) << nearest;
+    }
+}
+
+// Spots and lines of light that are narrower than the estimates that find them: symmetric, but not even.
+TEST(IrradiancePhotons, LeaveOutNarrowLines) {
+  EstimateSettings settings;
+  settings.nearest = 0;
+  settings.radius = 0.05f;
+  HashRng rng(10);
+  const auto is_on_line = [](const Point& p) { return std::fabs(p.x - 0.5f) < 0.01f; };
+  const auto is_in_spot = [](const Point& p) { return distance_squared(p, Point(0.5f, 0.5f, 0)) < sqr(0.02f); };
+  const auto share = [&](const auto& is_lit, float rest, const Point& low, const Point& high) {
+    return found_in(records_of(rng, 4'000, is_lit, rest, settings), rng, 0.3f, low, high).share;
+  };
+  for (const float rest : {0.0f, 0.05f}) {
+    EXPECT_LT(share(is_on_line, rest, {0.476f, 0.2f, 0}, {0.524f, 0.8f, 0}), 0.05) << rest;
+    EXPECT_LT(share(is_in_spot, rest, {0.476f, 0.476f, 0}, {0.524f, 0.524f, 0}), 0.05) << rest;
   }
 }
 
