@@ -165,8 +165,9 @@ OptionTable render_options(RenderArguments& a) {
        .value = into(o.max_depth, count_type({1, largest_int})),
        .brief = "Largest number of scattering events per path",
        .details =
-           "In media of high albedo the default is higher: the depth at which a thousandth of the light is left. The "
-           "program reports how much light the limit may have cut off.",
+           "In media of high albedo the default is higher: the depth at which a thousandth of the light is left. A "
+           "passage under the surface of skin or wax counts once. The program reports how much light the limit may "
+           "have cut off.",
        .otherwise = "the scene file's, else 64; in media up to 4096"},
       {.names = "--memory",
        .value = into(o.memory, bytes_type()),

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "path/depth.h"
 #include "path/transmittance.h"
 
 namespace lanthorn {
@@ -88,6 +89,7 @@ LightVertex keep_at(const SurfacePoint& at, const Direction& wi, const Vec3& wi_
           subpath.coherence_beyond(),
           state.medium,
           state.depth,
+          state.scatterings(),
           state.non_delta == 0,
           state.dispersed};
 }
@@ -243,8 +245,17 @@ std::optional<LightBeam> keep_beam(const PathContext& path, const FlownSegment& 
   if (!(length > 0)) return {};
   const int depth = state.depth + 1;
   const auto [beta, dispersed] = LightToMeet::of(state.beta / share, state.dispersed, path.w);
-  return LightBeam{way.origin, way.direction,          length,          time,  state.medium,
-                   beta,       subpath.depart(flight), subpath.start(), depth, depth > 1 && state.non_delta == 0,
+  return LightBeam{way.origin,
+                   way.direction,
+                   length,
+                   time,
+                   state.medium,
+                   beta,
+                   subpath.depart(flight),
+                   subpath.start(),
+                   depth,
+                   scatterings_on_flight(path.scene, state),
+                   depth > 1 && state.non_delta == 0,
                    dispersed};
 }
 

@@ -25,7 +25,7 @@ struct EmissionVisitor {
   }
   // Emission is not added if a surface with delta and other lobes has scattered the walk by a non-delta lobe.
   Continuation operator()(const SurfaceVertex& vertex) {
-    if (vertex.state.non_delta > 0 || vertex.state.depth > share.scatterings + 1) return rest();
+    if (vertex.state.non_delta > 0 || vertex.state.scatterings() > share.scatterings + 1) return rest();
     layers.see(vertex);
     layers.add_hit(vertex, hit_emitter(path, vertex));
     return lobe_weights(vertex.at.bsdf, vertex.wi_local).delta > 0 ? Continuation::go_on() : rest();
@@ -36,7 +36,9 @@ struct EmissionVisitor {
 
  private:
   // Emission that the walk reaches next is directly visible, or visible by way of delta scatterings alone.
-  bool is_seen(const WalkState& state) const { return state.non_delta == 0 && state.depth <= share.scatterings; }
+  bool is_seen(const WalkState& state) const {
+    return state.non_delta == 0 && state.scatterings() <= share.scatterings;
+  }
   Continuation rest() const { return share.unlit_emission ? Continuation::go_on() : Continuation::stop(); }
 };
 

@@ -30,6 +30,7 @@ struct LightVertex {
   float coherence = 1;                 ///< of its scattering (path/coherence.h); 1 without merging in media
   MediumId medium = MediumId::vacuum;  ///< the medium along the segment to this vertex
   int depth = 0;
+  int scatterings = 0;   ///< as in WalkState
   bool caustic = false;  ///< the path has scattered by delta lobes only
   bool dispersed = false;
   bool has_own_dispersion = false;  ///< see `meet_others`
@@ -58,7 +59,8 @@ struct LightBeam {
   Spectrum beta;        ///< flux at the origin, divided by the number of light paths of the pass that have beams
   Departure departure;  ///< how the subpath left its last vertex for this flight
   PathStart start;
-  int depth = 0;  ///< of a vertex on the flight
+  int depth = 0;        ///< of a vertex on the flight
+  int scatterings = 0;  ///< of such a vertex, as in WalkState
   bool caustic = false;
   bool dispersed = false;
 };

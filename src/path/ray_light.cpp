@@ -5,6 +5,8 @@
 #include <cmath>
 #include <optional>
 
+#include "path/depth.h"
+
 namespace lanthorn {
 
 namespace {
@@ -20,7 +22,8 @@ DirectLight RayLight::along(const PathContext& path, const MediumRay& ray) {
   strength_ = 0;
   const Scene& scene = path.scene;
   const RayLights& lights = scene.ray_lights();
-  if (lights.empty() || ray.state.non_delta > 0 || ray.state.depth >= path.limits.max_depth) return {};
+  if (lights.empty() || ray.state.non_delta > 0 || scatterings_on_flight(scene, ray.state) > path.limits.max_depth)
+    return {};
   const Medium& medium = scene.medium(ray.state.medium);
   if (!scatters(medium)) return {};
   segment_ = ray.segment;
@@ -32,7 +35,7 @@ DirectLight RayLight::along(const PathContext& path, const MediumRay& ray) {
   const auto chosen = lights.sample(segment_, strength_, u.x, u.y);
   if (!chosen) return {};
   WalkState state = ray.state;
-  ++state.depth;
+  come_to_vertex(scene, state);
   const Point position = segment_.origin + chosen->distance * segment_.direction;
   const Spectrum scattered = scattering_at(medium, position, path.w);
   if (scattered.is_black()) return {};

@@ -26,6 +26,7 @@ struct WalkState {
   /// vertex.
   Spectrum beta{1};
   int depth = 0;           ///< scattering events and emission before this vertex: 1 at the first surface
+  int under_surface = 0;   ///< of these, those that the depth limit does not count (path/depth.h)
   int non_delta = 0;       ///< scatterings so far by lobes that are not delta functions
   bool last_delta = true;  ///< the last direction came from a delta lobe or the camera: no other technique samples it
   bool dispersed = false;  ///< met a dispersive interface: valid at the hero wavelength only (see Wavelengths)
@@ -35,6 +36,9 @@ struct WalkState {
   Point previous{0};        ///< position of the previous vertex
   Normal previous_normal{0};  ///< shading normal there; 0 at the camera, on lights without surface and in media
   MediumId medium = MediumId::vacuum;  ///< the medium along the segment to this vertex
+
+  /// As `depth`, by the count of the depth limit.
+  int scatterings() const { return depth - under_surface; }
 };
 
 /// A vertex on a surface.

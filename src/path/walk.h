@@ -13,6 +13,7 @@
 #include "math/sampler.h"
 #include "math/tree_distribution.h"
 #include "medium/medium.h"
+#include "path/depth.h"
 #include "path/path_context.h"
 #include "path/transmittance.h"
 #include "path/vertex.h"
@@ -237,10 +238,9 @@ Crossing cross_medium(const PathContext& path, Ray& ray, const Normal& begin_nor
   state.beta *= flight.weight;
   if (state.beta.is_black()) return Crossing::ended;
   if (!flight.distance) return Crossing::passed;
-  ++state.depth;
+  come_to_vertex(path.scene, state);
   const Point position = ray.origin + *flight.distance * ray.direction;
-  const MediumVertex vertex{
-      state, position, -ray.direction, phase_of(medium), ray.time, state.depth <= path.limits.max_depth};
+  const MediumVertex vertex{state, position, -ray.direction, phase_of(medium), ray.time, may_scatter(path, state)};
   const Continuation continuation = visit(vertex);
   if (!vertex.may_scatter || !continuation.goes_on) return Crossing::ended;
   return scatter(path, vertex, before, state, ray) ? Crossing::scattered : Crossing::ended;
@@ -285,9 +285,9 @@ void walk(const PathContext& path, Ray ray, WalkState& state, Visit&& visit) {
       if (std::isfinite(ray.direction.x + ray.direction.y + ray.direction.z)) visit(EscapeVertex{state, ray.direction});
       return;
     }
-    ++state.depth;
+    come_to_vertex(path.scene, state);
     const Direction wi = -ray.direction;
-    const SurfaceVertex vertex{state, *at, wi, at->shading.to_local(wi), state.depth <= path.limits.max_depth};
+    const SurfaceVertex vertex{state, *at, wi, at->shading.to_local(wi), may_scatter(path, state)};
     const auto answer = visit(vertex);
     if (!vertex.may_scatter || !answer.goes_on) return;
     if (!walk_detail::scatter<transport>(path, vertex, answer, state, ray)) return;
@@ -353,7 +353,7 @@ inline Ray spawn_from_light(const EmissionSample& emission, float time) {
 /// `most` only prevents integer overflow.
 inline void note_end(const PathContext& path, const WalkState& end, const Spectrum& start, PathEnds& ends) {
   ++ends.paths;
-  if (end.depth <= path.limits.max_depth) return;
+  if (may_scatter(path, end)) return;
   constexpr float most = 1 << 10;
   const float share =
       walk_detail::magnitude(end.beta, end.dispersed, path.w) / walk_detail::magnitude(start, false, path.w);

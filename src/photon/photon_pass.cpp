@@ -6,16 +6,18 @@
 #include <utility>
 
 #include "medium/passing.h"
+#include "path/depth.h"
 #include "path/walk.h"
 
 namespace lanthorn {
 
 namespace {
 
-// Flags of a photon at the walk's next vertex, whose depth this is. `dispersed`: see LightToMeet.
-PhotonFlags flags_of(const WalkState& state, int depth, bool dispersed, const PhotonRule& rule, bool from_delta_light) {
+// Flags of a photon at the walk's vertex of this depth. `scatterings`: as in WalkState. `dispersed`: see LightToMeet.
+PhotonFlags flags_of(const WalkState& state, int depth, int scatterings, bool dispersed, const PhotonRule& rule,
+                     bool from_delta_light) {
   const bool caustic = depth > 1 && state.non_delta == 0;
-  return {.eye_scatterings = rule.max_depth - depth,
+  return {.eye_scatterings = rule.max_depth - scatterings,
           .caustic = caustic,
           .dispersed = dispersed,
           .from_delta_light = caustic && from_delta_light,
@@ -32,8 +34,10 @@ struct StoreVisitor {
 
   Continuation operator()(const SurfaceVertex& vertex) const {
     const WalkState& state = vertex.state;
+    if (state.scatterings() > rule.max_depth) return Continuation::stop();
     const LightToMeet kept = LightToMeet::of(state.beta, state.dispersed, w);
-    const PhotonFlags flags = flags_of(state, state.depth, kept.dispersed, rule, is_delta(start.light));
+    const PhotonFlags flags =
+        flags_of(state, state.depth, state.scatterings(), kept.dispersed, rule, is_delta(start.light));
     if ((rule.caustics_alone ? flags.caustic : state.depth >= rule.first_depth) && has_non_delta(vertex.at.bsdf))
       chunks[static_cast<std::size_t>(rule.classes.of(flux_of(state.beta, state.dispersed, w) * paths))][chunk]
           .push_back({kept.light, vertex.at.position, vertex.wi, vertex.at.normal, flags,
@@ -53,10 +57,11 @@ struct MediumPointVisitor : StoreVisitor {
   using StoreVisitor::operator();
   Continuation operator()(const MediumVertex& vertex) const {
     const WalkState& state = vertex.state;
+    if (state.scatterings() > rule.max_depth) return Continuation::stop();
     if (state.depth < rule.first_medium_depth) return Continuation::go_on();
     const LightToMeet kept = LightToMeet::of(state.beta, state.dispersed, w);
     in_media.push_back({{kept.light, vertex.position, vertex.wi, vertex.wi,
-                         flags_of(state, state.depth, kept.dispersed, rule, is_delta(start.light))},
+                         flags_of(state, state.depth, state.scatterings(), kept.dispersed, rule, is_delta(start.light))},
                         state.medium});
     return Continuation::go_on();
   }
@@ -72,7 +77,10 @@ struct BeamVisitor : StoreVisitor {
   using StoreVisitor::operator();
   void operator()(const FlownSegment& flight) const {
     const WalkState& state = flight.state;
-    if (share == 0 || state.medium == MediumId::vacuum || state.depth + 1 < rule.first_medium_depth) return;
+    const int scatterings = scatterings_on_flight(path.scene, state);
+    if (share == 0 || state.medium == MediumId::vacuum || state.depth + 1 < rule.first_medium_depth ||
+        scatterings > rule.max_depth)
+      return;
     const Segment& way = flight.segment;
     const Medium& medium = path.scene.medium(state.medium);
     const float reach = are_short && knows_passing(medium) ? way.length : flight.reach;
@@ -80,7 +88,7 @@ struct BeamVisitor : StoreVisitor {
     if (!(length > 0)) return;
     const LightToMeet kept = LightToMeet::of(state.beta / share, state.dispersed, path.w);
     in_media.push_back({{kept.light, way.origin, -way.direction, -way.direction,
-                         flags_of(state, state.depth + 1, kept.dispersed, rule, is_delta(start.light))},
+                         flags_of(state, state.depth + 1, scatterings, kept.dispersed, rule, is_delta(start.light))},
                         state.medium,
                         length});
   }
@@ -102,7 +110,7 @@ void PhotonTracer::trace(const Scene& scene, LightPass pass, const PhotonRule& r
   medium_photons_.resize(records == MediumRecords::none ? 0 : paths.chunk_count());
   for (std::vector<MediumPhoton>& photons : medium_photons_) photons.clear();
   const float beam_share = share_of_beams(paths.total());
-  const WalkLimits limits{rule.max_depth - 1, rule.roulette_depth};
+  const WalkLimits limits{max_depth_of_photons(scene, rule.max_depth), rule.roulette_depth};
   rays_ = paths.for_each([&](const LightPath& start, Sampler& sampler, RayCounts& counts, std::size_t chunk) {
     const PathDraw own = draw.of_path(sampler);
     const PathContext path{scene, own.w, sampler, counts, limits};

@@ -16,6 +16,7 @@
 #include "render/method_of_file.h"
 #include "render/scaled_view.h"
 #include "scene/medium_around.h"
+#include "scene/subsurface.h"
 
 namespace lanthorn {
 
@@ -23,13 +24,7 @@ namespace {
 
 constexpr std::uint64_t default_passes = 64;
 
-// In a medium of albedo a, a fraction a^k of the light is left after k scatterings. By default, light may scatter until
-// a thousandth is left, within limits; the upper one is for media that absorb nothing.
-int default_max_depth(const Scene& scene) {
-  constexpr double least = 64, most = 4096, rest = 1e-3;
-  const auto albedo = static_cast<double>(scene.largest_medium_albedo());
-  return static_cast<int>(std::clamp(albedo < 1 ? std::ceil(std::log(rest) / std::log(albedo)) : most, least, most));
-}
+int default_max_depth(const Scene& scene) { return scatterings_until_dark(scene.largest_medium_albedo()); }
 
 // pbrt's SPPM limits eye and light paths separately; Lanthorn limits the whole path.
 int scene_max_depth(const Scene& scene) {

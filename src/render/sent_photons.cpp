@@ -13,6 +13,7 @@
 #include "base/parallel.h"
 #include "lanthorn/error.h"
 #include "lanthorn/photons.h"
+#include "path/depth.h"
 #include "path/light_pass.h"
 #include "path/path_draw.h"
 #include "path/walk.h"
@@ -30,6 +31,7 @@ struct SentPhotonVisitor {
   Photons& photons;
   std::uint32_t start;  ///< number of the PhotonStart
   int first_depth;
+  int max_depth;  ///< of the paths that use the photons
   const Wavelengths& w;
   const DVec3& origin;  ///< the scene's origin in the coordinates of the file
 
@@ -45,13 +47,13 @@ struct SentPhotonVisitor {
 
  private:
   void add(const WalkState& state, const Point& position, const Direction& wi, const Normal& normal) const {
-    if (state.depth < first_depth) return;
+    if (state.depth < first_depth || state.scatterings() > max_depth) return;
     const PhotonClass of_scattered = state.non_delta == 0 ? PhotonClass::caustic : PhotonClass::indirect;
     photons.positions.emplace_back(DVec3(position) + origin);
     photons.normals.push_back(normal);
     photons.directions.push_back(wi);
     photons.powers.push_back(w.to_rgb(state.dispersed ? state.beta * w.dispersed : state.beta));
-    photons.depths.push_back(state.depth);
+    photons.depths.push_back(state.scatterings());
     photons.classes.push_back(state.depth == 1 ? PhotonClass::direct : of_scattered);
     photons.starts.push_back(start);
   }
@@ -89,7 +91,7 @@ Photons trace_photons(const Scene& scene, const ViewDescription& view, const Ren
   const RenderPlan plan = plan_render(scene, view, options);
   const RenderSettings& settings = plan.settings;
   const PassDraw draw = draw_for_pass(plan.job(scene), pass * settings.parts);
-  const WalkLimits limits{settings.max_depth - 1};
+  const WalkLimits limits{max_depth_of_photons(scene, settings.max_depth)};
   const MediumFinder media(scene);
   std::vector<Ray> rays;
   rays.reserve(starts.size());
@@ -113,8 +115,9 @@ Photons trace_photons(const Scene& scene, const ViewDescription& view, const Ren
       state.previous = ray.origin;
       state.medium = media.around(ray.origin, ray.time).value_or(MediumId::vacuum);
       if (state.beta.is_black()) continue;
-      walk<Transport::importance>(
-          path, ray, state, SentPhotonVisitor{parts[chunk], number, direct ? 1 : 2, own.w, scene.description().origin});
+      walk<Transport::importance>(path, ray, state,
+                                  SentPhotonVisitor{parts[chunk], number, direct ? 1 : 2, settings.max_depth, own.w,
+                                                    scene.description().origin});
     }
   });
   Photons photons{.light_paths = starts.size(), .pass = pass};

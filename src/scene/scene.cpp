@@ -9,6 +9,7 @@
 
 #include "scene/obstacles.h"
 #include "scene/scene_data.h"
+#include "scene/subsurface.h"
 #include "scene/volume_lights.h"
 
 namespace lanthorn {
@@ -92,7 +93,9 @@ bool Scene::has_scattering_media() const {
 }
 float Scene::largest_medium_albedo() const {
   float largest = 0;
-  for (const Medium& medium : *data_->media) largest = std::max(largest, largest_albedo(medium));
+  for (std::size_t i = 0; i < data_->media->size(); ++i)
+    if (!is_under_surface(*this, static_cast<MediumId>(i + 1)))
+      largest = std::max(largest, largest_albedo((*data_->media)[i]));
   return largest;
 }
 bool Scene::has_emissive_media() const { return data_->has_emissive; }

@@ -83,7 +83,7 @@ class Scene {
   bool has_hidden_shapes() const;
   /// True if any medium scatters.
   bool has_scattering_media() const;
-  /// The largest albedo of a medium (`largest_albedo`); 0 if none scatters.
+  /// The largest albedo of a medium that is not under a surface (`largest_albedo`); 0 if none of these scatters.
   float largest_medium_albedo() const;
   /// True if any medium has volumetric emission.
   bool has_emissive_media() const;

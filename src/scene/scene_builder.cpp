@@ -26,6 +26,7 @@
 #include "scene/medium_around.h"
 #include "scene/scene_data.h"
 #include "scene/scene_memory.h"
+#include "scene/subsurface.h"
 #include "scene/volume_lights.h"
 #include "shape/curves.h"
 #include "shape/displacement.h"
@@ -97,6 +98,7 @@ void SceneBuilder::build() {
   check_displacements();
   load_textures_of_shapes();
   data_.media = std::make_shared<const std::vector<Medium>>(make_media(data_.description, *data_.spectra));
+  find_media_under_surfaces(data_);
   data_.has_emissive =
       std::any_of(data_.media->begin(), data_.media->end(), [](const Medium& m) { return is_emissive(m); });
   add_shapes();

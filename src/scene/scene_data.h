@@ -69,7 +69,9 @@ struct SceneData {
   float largest_radiance = 0;
   bool has_measured_spectra = false, has_dispersion = false, has_interfaces = false, has_emissive = false;
   bool has_hidden_shapes = false;
-  bool has_unlit_emission = false;      ///< some emissive medium is not a light
+  bool has_unlit_emission = false;     ///< some emissive medium is not a light
+  std::vector<bool> is_under_surface;  ///< by medium; empty if none is (scene/subsurface.h)
+  int most_under_surface = 0;
   std::vector<MediumId> endless_media;  ///< around the whole scene
   bool is_edited = false;
   bool has_edited_lights = false;  ///< `lights` point to `spectra`, `light_store` and `textures`

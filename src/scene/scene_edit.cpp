@@ -69,6 +69,8 @@ class SceneEditor {
     const auto started = std::chrono::steady_clock::now();
     keep();
     data_->media = base_->media;
+    data_->is_under_surface = base_->is_under_surface;
+    data_->most_under_surface = base_->most_under_surface;
     data_->has_interfaces = base_->has_interfaces;
     data_->has_hidden_shapes = base_->has_hidden_shapes;
     data_->has_emissive = base_->has_emissive;

@@ -18,6 +18,7 @@
 #include "path/emission_pass.h"
 #include "path/mis.h"
 #include "path/splat.h"
+#include "scene/subsurface.h"
 
 namespace lanthorn {
 
@@ -132,7 +133,7 @@ void MetropolisLightTransport::prepare(const RenderJob& job) {
   const auto mutations = static_cast<float>(chains_ * settings_.chain_length);
   independent_paths_ = static_cast<std::uint64_t>(std::ceil(settings_.bootstrap * static_cast<double>(mutations)));
   lights_.emplace(job.scene);
-  lengths_ = PathLengths(settings.max_depth);
+  lengths_ = PathLengths(settings.max_depth + most_under_surface(job.scene));
   const std::uint64_t key = hash_words({settings.seed, static_cast<std::uint64_t>(Stream::pilot_bootstrap)});
   const PathPass pass = begin_pass(job, 0);
   const auto found = static_cast<float>(draw_independent_paths(pass, key, [](const State&) {}).mean());

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "path/connections.h"
+#include "path/depth.h"
 #include "path/eye_pass.h"
 #include "path/radiance_along.h"
 #include "path/splat.h"
@@ -58,7 +59,7 @@ struct SubpathVisitor {
   Continuation arrive(const Vertex& v, bool scatters) {
     subpath.arrive(path, v);
     if (v.state.depth < last) return Continuation::go_on();
-    if (scatters) end(v, subpath);
+    if (scatters && v.may_scatter) end(v, subpath);
     return Continuation::stop();
   }
 };
@@ -131,7 +132,8 @@ class MultiplexedPath {
   int eye_vertices() const { return scatterings_ + 1 - light_vertices_; }
   // Without Russian roulette: paths end by their number of scatterings only.
   PathContext path(Sampler& sampler) {
-    return {pass_.job.scene, draw_.w, sampler, counts_, {scatterings_, scatterings_ + 1}};
+    const int most = std::min(scatterings_, pass_.limits.max_depth);
+    return {pass_.job.scene, draw_.w, sampler, counts_, {most, scatterings_ + 1}};
   }
 
   FilmLight hit() {
@@ -186,6 +188,7 @@ class MultiplexedPath {
     LightLayers layers(draw_.w);
     const PathContext eye = path(eye_);
     const auto end = [&](const auto& v, const Subpath& subpath) {
+      if (other && !may_connect(eye.scene, v, other->at.position, other->scatterings, pass_.limits.max_depth)) return;
       const DirectLight found =
           other ? connect(eye, bidirectional_, v, subpath, *other) : next_event(eye, bidirectional_, v, subpath);
       layers.add(other ? PathClass::indirect : class_of_next_event(v.state), found.radiance, found.dispersed);

@@ -27,7 +27,7 @@ void ReversePhotons::add(const SurfaceVertex& vertex, const Wavelengths& w, cons
   const Spectrum throughput = state.beta * *reflectance * inv_pi;
   if (throughput.is_black() || vertex.wi_local.z == 0) return;
   diffuse.push_back({throughput, at.position, at.normal, vertex.wi_local.z < 0 ? -at.shading.n : at.shading.n,
-                     state.depth - 1, term});
+                     state.scatterings() - 1, term});
 }
 
 InfluencePhotons InfluencePhotons::of(const PhotonMap<BucketKdTree>& map, std::span<const float> radii) {

@@ -105,7 +105,7 @@ std::optional<Spectrum> TwoPassVisitor::precomputed(const SurfaceVertex& vertex)
   const Normal& normal = vertex.at.normal;
   const auto irradiance =
       context_.maps.irradiance->find(vertex.at.position, dot(vertex.wi, normal) < 0 ? -normal : normal,
-                                     context_.settings.global.radius, vertex.state.depth - 1);
+                                     context_.settings.global.radius, vertex.state.scatterings() - 1);
   if (!irradiance) return {};
   return *reflectance * *irradiance * inv_pi;
 }

@@ -76,9 +76,9 @@ struct TwoPassContext {
 inline const IrradianceCache* cache_for(const TwoPassMaps& maps, const SurfaceVertex& vertex) {
   const Spectrum* reflectance = lambertian_reflectance(vertex.at.bsdf);
   if (reflectance == nullptr || reflectance->is_black() || vertex.at.is_hair || vertex.state.non_delta > 0 ||
-      vertex.state.dispersed || static_cast<std::size_t>(vertex.state.depth) > maps.gathered.size())
+      vertex.state.dispersed || static_cast<std::size_t>(vertex.state.scatterings()) > maps.gathered.size())
     return nullptr;
-  return &maps.gathered[static_cast<std::size_t>(vertex.state.depth - 1)];
+  return &maps.gathered[static_cast<std::size_t>(vertex.state.scatterings() - 1)];
 }
 /// The shading normal on the side of the eye.
 inline Normal normal_of_light(const SurfaceVertex& vertex) {

@@ -25,9 +25,10 @@ struct MergePhoton {
   Direction wi{0, 0, 1};
   float distance = 0;  ///< to the vertex before, m
   VertexDensities densities;
-  std::uint16_t depth = 0;
-  bool caustic = false;
-  bool dispersed = false;
+  std::uint16_t scatterings = 0;  ///< as in WalkState
+  bool direct : 1 = false;        ///< straight from the light
+  bool caustic : 1 = false;
+  bool dispersed : 1 = false;
 };
 
 /// A MergePhoton with its position and the interface of `PhotonMap::Ref`.
@@ -40,15 +41,16 @@ struct PlacedMergePhoton {
   Direction wi() const { return photon.wi; }
   float flight() const { return photon.distance; }
   PhotonFlags flags() const {
-    return {.eye_scatterings = max_depth - photon.depth, .caustic = photon.caustic, .dispersed = photon.dispersed};
+    return {
+        .eye_scatterings = max_depth - photon.scatterings, .caustic = photon.caustic, .dispersed = photon.dispersed};
   }
 };
 
-/// Class of the light that a photon of this depth brings to an eye path in that state. `caustic`: the photon has met
-/// delta lobes only.
-inline PathClass class_of_merge(const WalkState& state, int depth, bool caustic) {
+/// Class of the light that a photon brings to an eye path in that state. `direct`: the photon comes straight from the
+/// light; `caustic`: it has met delta lobes only.
+inline PathClass class_of_merge(const WalkState& state, bool direct, bool caustic) {
   if (state.non_delta > 0) return PathClass::indirect;
-  if (depth == 1) return PathClass::direct;
+  if (direct) return PathClass::direct;
   return caustic ? PathClass::caustic : PathClass::indirect;
 }
 
@@ -71,8 +73,8 @@ class MergeMap {
       for (std::size_t slot = begin; slot < end; ++slot) {
         const LightVertex& v = *merged[built.order[slot]];
         const Spectrum power = v.beta * grazing_gain(geometric_cosine(v.at, v.wi));
-        photons_[slot] = {power,     v.wi,       v.distance, v.densities, static_cast<std::uint16_t>(v.depth),
-                          v.caustic, v.dispersed};
+        photons_[slot] = {power,        v.wi,      v.distance, v.densities, static_cast<std::uint16_t>(v.scatterings),
+                          v.depth == 1, v.caustic, v.dispersed};
       }
     });
   }

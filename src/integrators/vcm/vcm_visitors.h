@@ -11,6 +11,7 @@
 #include "integrators/vcm/moments.h"
 #include "integrators/vcm/vcm_pass.h"
 #include "path/connections.h"
+#include "path/depth.h"
 #include "path/light_layers.h"
 #include "path/splat.h"
 #include "photon/flux_classes.h"
@@ -66,7 +67,7 @@ class LightVisitor {
   }
   void operator()(const FlownSegment& flight) {
     if (flight.state.medium == MediumId::vacuum) return;
-    if (keeps_beams_ && flight.state.depth < pass_.max_depth())
+    if (keeps_beams_ && scatterings_on_flight(path_.scene, flight.state) <= pass_.max_depth())
       if (auto beam = keep_beam(path_, flight, time_, pass_.beam_share, subpath_)) chunk_.beams.push_back(*beam);
     subpath_.fly(flight);
   }
@@ -226,7 +227,9 @@ class EyeVisitor {
     const auto connections = static_cast<int>(bidirectional_.techniques.connections);
     for (int i = 0; i < connections; ++i)
       for (const LightVertex& other : pass_.light_path(pass_.partner(partner_, i, connections))) {
-        if (v.state.depth + other.depth > pass_.max_depth() || !pass_.shows(other.depth + 1, eye_vertices)) continue;
+        if (!may_connect(path_.scene, v, other.at.position, other.scatterings, pass_.max_depth()) ||
+            !pass_.shows(other.depth + 1, eye_vertices))
+          continue;
         const DirectLight light = connect(path_, bidirectional_, v, subpath_, other);
         layers_.add(PathClass::indirect, technique::vc, light.radiance, light.dispersed);
         note(light.radiance, light.dispersed, &TechniqueDensities::connections);
@@ -250,7 +253,7 @@ class EyeVisitor {
       const float weight = bidirectional_.weigh(sum_of_merge(at_eye, at_light, t));
       const Spectrum light = v.state.beta * hit.f * photon.power * (weight * place.density * hit.ratio);
       const bool is_dispersed = gather.is_dispersed(photon.dispersed);
-      layers_.add(class_of_merge(v.state, photon.depth, photon.caustic), technique::vm, light, is_dispersed);
+      layers_.add(class_of_merge(v.state, photon.direct, photon.caustic), technique::vm, light, is_dispersed);
       layers_.add_bias(merge_kernel.bias_share(place.u) * light, is_dispersed);
       note(light, is_dispersed, &TechniqueDensities::merging);
       count(&EyeWork::merges, v.state);

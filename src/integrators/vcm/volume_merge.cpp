@@ -7,6 +7,7 @@
 #include "base/parallel.h"
 #include "integrators/vcm/merge_map.h"
 #include "integrators/vcm/vcm_settings.h"
+#include "path/depth.h"
 #include "photon/flux_classes.h"
 #include "photon/media/volume_estimators.h"
 
@@ -42,7 +43,7 @@ void add_to(std::vector<std::vector<const Item*>>& media, const Item& item) {
 struct Meeting {
   const VolumeArrival &eye, &light;
   Direction to_light;  // towards the previous vertex of the light path
-  int depth;           // of the photon
+  int depth;           // of the photon's vertex
   bool caustic, dispersed;
   Spectrum flux;
 
@@ -64,15 +65,15 @@ struct KernelFactor {
 class MergeSum {
  public:
   MergeSum(const VolumeMergeContext& context, const WalkState& state, const Medium& medium, const Direction& wi,
-           int eye_depth)
+           int eye_scatterings)
       : context_(context),
         state_(state),
         phase_(phase_of(medium)),
         extinction_(mean_extinction(medium, context.path.w)),
         wi_(wi),
-        eye_depth_(eye_depth) {}
+        eye_scatterings_(eye_scatterings) {}
 
-  bool reaches(int photon_depth) const { return eye_depth_ + photon_depth - 1 <= context_.max_depth; }
+  bool reaches(int photon_scatterings) const { return eye_scatterings_ + photon_scatterings - 1 <= context_.max_depth; }
   const PathContext& path() const { return context_.path; }
 
   // Densities of the eye path if it scattered at p, `t` (m) along its flight.
@@ -98,7 +99,7 @@ class MergeSum {
                             before * t.volume.all(collision, by_light, by_eye, sin), t));
     const Spectrum light = state_.beta * m.flux * factor.light * (p * weight);
     const bool is_dispersed = m.dispersed || state_.dispersed;
-    context_.layers.add(class_of_merge(state_, m.depth, m.caustic), technique::vm, light, is_dispersed);
+    context_.layers.add(class_of_merge(state_, m.depth == 1, m.caustic), technique::vm, light, is_dispersed);
     context_.layers.add_bias(factor.bias_share * light, is_dispersed);
     if (!context_.moments) return;
     context_.moments->add(flux_of(light, is_dispersed, context_.path.w), &TechniqueDensities::media);
@@ -118,7 +119,7 @@ class MergeSum {
   const HenyeyGreenstein& phase_;
   float extinction_;  // the medium's `mean_extinction`
   Direction wi_;
-  int eye_depth_;
+  int eye_scatterings_;
 };
 
 // Visitor of an estimator: `take(item, meeting, factor)`.
@@ -129,7 +130,7 @@ struct Visitor {
   const KernelIn& kernel;
   Take take;
 
-  bool wants(std::uint32_t slot) const { return sum.reaches(items[slot]->depth); }
+  bool wants(std::uint32_t slot) const { return sum.reaches(items[slot]->scatterings); }
   void meet(std::uint32_t slot, const VolumeMeeting& m) const {
     take(*items[slot], m, KernelFactor{m.factor * kernel.weight(m.dist2), kernel.bias_share(m.dist2)});
   }
@@ -254,7 +255,8 @@ void VolumeMerges::add_along(const VolumeMergeContext& context, const FlownSegme
   if (i >= media_.size() || (!media_[i].along && !media_[i].crossed)) return;
   const OfMedium& sets = media_[i];
   const EyeRay eye(context.path, flight);
-  const MergeSum sum(context, flight.state, eye.medium, -eye.ray.direction, flight.state.depth + 1);
+  const MergeSum sum(context, flight.state, eye.medium, -eye.ray.direction,
+                     scatterings_on_flight(context.path.scene, flight.state));
   if (sets.along) add_points_along(sum, eye, *sets.along, *kernels_.beam);
   if (sets.crossed) add_beams_along(sum, eye, *sets.crossed, *kernels_.beams);
 }
@@ -264,7 +266,7 @@ void VolumeMerges::add_at(const VolumeMergeContext& context, const MediumVertex&
   if (i >= media_.size() || (!media_[i].around && !media_[i].beams_around)) return;
   const OfMedium& sets = media_[i];
   const VolumeArrival eye{context.subpath.densities(), context.subpath.flight()};
-  const MergeSum sum(context, v.state, context.path.scene.medium(v.state.medium), v.wi, v.state.depth);
+  const MergeSum sum(context, v.state, context.path.scene.medium(v.state.medium), v.wi, v.state.scatterings());
   if (sets.around) add_points_at(sum, v, eye, *sets.around, *kernels_.point);
   if (sets.beams_around) add_beams_at(sum, v, eye, *sets.beams_around, *kernels_.photon_beam);
 }

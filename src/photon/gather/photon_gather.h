@@ -32,7 +32,7 @@ inline float wide_share(const SurfaceVertex& vertex) {
 /// Division of the indirect light at an eye vertex between photons and the walk.
 inline LobeSplit split_lobes(const SurfaceVertex& vertex) {
   // Photon records cannot count more scatterings of the eye path; beyond, the walk alone finds the light.
-  if (vertex.state.depth > PhotonFlags::most_eye_scatterings + 1) return LobeSplit::all_narrow();
+  if (vertex.state.scatterings() > PhotonFlags::most_eye_scatterings + 1) return LobeSplit::all_narrow();
   const float share = wide_share(vertex);
   if (share == 1) return LobeSplit::all_wide();
   return share > 0 ? LobeSplit() : LobeSplit::all_narrow();

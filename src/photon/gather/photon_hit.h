@@ -69,7 +69,7 @@ class GatherVertex {
   const SurfaceVertex& vertex() const { return vertex_; }
 
   /// False if the light path and the eye path together would have too many scatterings.
-  bool admits(const PhotonFlags& flags) const { return flags.eye_scatterings >= vertex_.state.depth - 1; }
+  bool admits(const PhotonFlags& flags) const { return flags.eye_scatterings >= vertex_.state.scatterings() - 1; }
   /// Whether the light that a photon brings is dispersed. `photon`: whether the photon's own path is.
   bool is_dispersed(bool photon) const { return is_dispersed_ || photon; }
 

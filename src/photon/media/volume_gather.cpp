@@ -11,6 +11,7 @@
 #include "lanthorn/error.h"
 #include "lanthorn/text.h"
 #include "medium/passing.h"
+#include "path/depth.h"
 #include "photon/media/volume_estimators.h"
 
 namespace lanthorn {
@@ -134,7 +135,8 @@ void VolumeGather::for_each_along(const PathContext& path, const FlownSegment& f
   if (points == nullptr && beams == nullptr) return;
   const EyeRay eye(path, flight);
   const auto visitor = [&](const auto& map) {
-    return PhotonLight(path, map, phase_of(eye.medium), -eye.ray.direction, flight.state, flight.state.depth, take);
+    return PhotonLight(path, map, phase_of(eye.medium), -eye.ray.direction, flight.state,
+                       scatterings_on_flight(path.scene, flight.state) - 1, take);
   };
   if (points != nullptr) return meet_points_along(eye, points->index(), kernel_.support(), visitor(*points));
   meet_beams_along(
@@ -150,7 +152,7 @@ void VolumeGather::for_each_at(const PathContext& path, const MediumVertex& vert
   if (points == nullptr && beams == nullptr) return;
   const Medium& medium = path.scene.medium(vertex.state.medium);
   const auto visitor = [&](const auto& map) {
-    return PhotonLight(path, map, vertex.phase, vertex.wi, vertex.state, vertex.state.depth - 1, take);
+    return PhotonLight(path, map, vertex.phase, vertex.wi, vertex.state, vertex.state.scatterings() - 1, take);
   };
   if (points != nullptr)
     return meet_points_at(points->index(), vertex.position, scattering_at(medium, vertex.position, path.w),

@@ -35,7 +35,7 @@ class VolumeWalk {
   /// Light at a vertex, and the decision whether the walk is gathered from there on. The walk must continue in either
   /// case. Preconditions: it is not gathered, and the vertex may scatter.
   MediumLight scatter(const PathContext& path, const MediumVertex& vertex, const RayLight& ray_light) {
-    const bool photons_reach = vertex.state.depth <= PhotonFlags::most_eye_scatterings + 1;
+    const bool photons_reach = vertex.state.scatterings() <= PhotonFlags::most_eye_scatterings + 1;
     const float p = photons_reach ? gather_probability(vertex.phase) : 0.0f;
     path.sampler.seek(visitor_dimensions(vertex.state.depth));
     const MediumLight light{ray_light.next_event_at(path, vertex), volume_->at(path, vertex)};
