@@ -52,6 +52,21 @@ test::Mean mean(const Scene& scene, const RenderOptions& o, std::uint64_t first_
   return test::mean_of_means(test::select_layers(test::independent_renders(scene, o, 16, first_seed), "color"));
 }
 
+// A ball of a thousand mean free paths reflects as a half-space does; "reflectance" is that of the material with its
+// interface (pbrt-v4), under which light scatters hundreds of times.
+TEST(Subsurface, HasTheReflectanceThatTheFileSays) {
+  struct Case {
+    float eta, g, reflectance;
+  };
+  for (const auto& [eta, g, reflectance] : {Case{1.33f, 0, .5f}, Case{1.33f, 0, .9f}, Case{1.5f, .7f, .6f}, Case{1.8f, -.3f, .3f}}) {
+    const std::string r = std::to_string(reflectance);
+    const Scene scene = ball_of("\"float mfp\" .002 \"rgb reflectance\" [" + r + ' ' + r + ' ' + r + "] \"float eta\" " +
+                                std::to_string(eta) + " \"float g\" " + std::to_string(g));
+    EXPECT_TRUE(test::runs_agree(mean(scene, options("path", 16)), mean_of_ball(eta, static_cast<double>(reflectance)), .004, .05, test::false_alarm_rate / 4))
+        << reflectance;
+  }
+}
+
 // The file's limit does not cut a passage short: light scatters some 50 times in this ball, but a passage counts once.
 // Nor does the user's own limit.
 TEST(Subsurface, PassagesCountOnce) {

@@ -21,8 +21,9 @@ description::Medium make_medium(const std::string& kind, const ParameterList& li
                                 Context& context);
 
 /// The interior medium of a `subsurface` material, given by "sigma_a" and "sigma_s", a "name", or "reflectance" and
-/// "mfp".
-description::Medium make_subsurface_medium(const ParameterList& list, Context& context);
+/// "mfp". `eta`: of the material's interface.
+description::Medium make_subsurface_medium(const ParameterList& list, const description::SpectrumValue& eta,
+                                           Context& context);
 
 /// `Texture`: appends to the scene's textures and defines the name.
 void add_float_texture(const std::string& name, const std::string& kind, const ParameterList& list,

@@ -200,9 +200,10 @@ constexpr std::array<Builder, 13> builders = {{{"diffuse", diffuse},
 
 // A dielectric interface with the medium inside. pbrt-v4 approximates it by a diffusion profile.
 MaterialNode subsurface(const ParameterList& list, Context& context, Material& material) {
-  context.scene.media.push_back(make_subsurface_medium(list, context));
+  const SpectrumValue eta = index_of_refraction(list, "eta", 1.33f, context);
+  context.scene.media.push_back(make_subsurface_medium(list, eta, context));
   material.interior = static_cast<Index>(context.scene.media.size() - 1);
-  return DielectricMaterial{index_of_refraction(list, "eta", 1.33f, context), roughness(list, "", context)};
+  return DielectricMaterial{eta, roughness(list, "", context)};
 }
 
 // `mix` and `interface` have no displacement or normal map; these parameters are reported as unused.

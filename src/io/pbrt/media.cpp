@@ -8,6 +8,8 @@
 
 #include "io/pbrt/builders.h"
 #include "io/pbrt/values.h"
+#include "medium/half_space.h"
+#include "spectrum/curve.h"
 
 namespace lanthorn::pbrt {
 
@@ -198,27 +200,46 @@ Rgb color(const ParameterList& list, std::string_view name, const SpectrumValue&
   throw list.error(name, "must be a number or of type rgb");
 }
 
-// The single-scattering albedo for which a half-space of the medium has this diffuse reflectance (Kulla & Conty 2017,
-// "Revisiting Physically Based Shading at Imageworks").
-float single_scattering_albedo(float reflectance) {
-  const float a = std::clamp(reflectance, 0.0f, 1.0f);
-  return 1 - std::exp(-5.09406f * a + 2.61188f * a * a - 4.31805f * a * a * a);
+// One index of refraction for the whole spectrum.
+float representative_index(const SpectrumValue& eta) {
+  constexpr float green = 550;  // nm
+  if (const auto* number = std::get_if<float>(&eta)) return *number;
+  if (const auto* rgb = std::get_if<RgbSpectrum>(&eta)) return rgb->rgb.g;
+  if (const auto* named = std::get_if<NamedSpectrum>(&eta)) return named_spectrum(named->name.c_str())->at(green);
+  const auto* samples = std::get_if<SampledSpectrum>(&eta);
+  if (samples == nullptr) return 1.33f;  // a black body has none
+  const auto above = std::upper_bound(samples->nm.begin(), samples->nm.end(), green);
+  return samples->values[static_cast<std::size_t>(std::max(samples->nm.begin() + 1, above) - samples->nm.begin()) - 1];
 }
 
-void read_reflectance(const ParameterList& list, const SpectrumValue& reflectance, Medium& medium, Context& context) {
+// The coefficients, per metre, of a medium of this mean free path for which a half-space behind the interface has the
+// given reflectance, as the BSSRDF of pbrt-v4 does.
+struct Coefficients {
+  float scattering, absorption;
+};
+Coefficients coefficients_of(float reflectance, float mean_free_path, float g, float eta) {
+  const double albedo =
+      half_space_albedo(static_cast<double>(reflectance), static_cast<double>(g), static_cast<double>(eta));
+  const auto length = static_cast<double>(mean_free_path);
+  return {static_cast<float>(albedo / length), static_cast<float>((1 - albedo) / length)};
+}
+
+void read_reflectance(const ParameterList& list, const SpectrumValue& reflectance, float eta, Medium& medium,
+                      Context& context) {
   const Rgb a = color(list, "reflectance", reflectance);
   const SpectrumValue mfp = find_spectrum(list, "mfp", SpectrumRole::unbounded, context).value_or(1.0f);
   const Rgb length = color(list, "mfp", mfp);
   if (!(length.r > 0 && length.g > 0 && length.b > 0)) throw list.error("mfp", "must be positive");
-  const Rgb albedo{single_scattering_albedo(a.r), single_scattering_albedo(a.g), single_scattering_albedo(a.b)};
-  medium.sigma_s = RgbSpectrum{{albedo.r / length.r, albedo.g / length.g, albedo.b / length.b}, ColorSpace::srgb};
-  medium.sigma_a =
-      RgbSpectrum{{(1 - albedo.r) / length.r, (1 - albedo.g) / length.g, (1 - albedo.b) / length.b}, ColorSpace::srgb};
+  const Coefficients r = coefficients_of(a.r, length.r, medium.g, eta),
+                     g = coefficients_of(a.g, length.g, medium.g, eta),
+                     b = coefficients_of(a.b, length.b, medium.g, eta);
+  medium.sigma_s = RgbSpectrum{{r.scattering, g.scattering, b.scattering}, ColorSpace::srgb};
+  medium.sigma_a = RgbSpectrum{{r.absorption, g.absorption, b.absorption}, ColorSpace::srgb};
 }
 
 }  // namespace
 
-Medium make_subsurface_medium(const ParameterList& list, Context& context) {
+Medium make_subsurface_medium(const ParameterList& list, const SpectrumValue& eta, Context& context) {
   Medium medium;
   medium.location = list.place().location();
   medium.sigma_a = RgbSpectrum{{0.0011f, 0.0024f, 0.014f}, ColorSpace::srgb};
@@ -232,7 +253,7 @@ Medium make_subsurface_medium(const ParameterList& list, Context& context) {
                        " keeps its default");
   if (!texture_name(list, "reflectance") && !texture_name(list, "mfp"))
     if (const auto reflectance = find_spectrum(list, "reflectance", SpectrumRole::albedo, context))
-      read_reflectance(list, *reflectance, medium, context);
+      read_reflectance(list, *reflectance, representative_index(eta), medium, context);
   return medium;
 }
 
