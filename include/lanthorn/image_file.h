@@ -84,8 +84,10 @@ enum class ColorEncoding : std::uint8_t {
   srgb,       ///< decode sRGB whatever the format
 };
 
-/// Reads the first part of an image file as linear floats; alpha is never decoded. Throws Error if the file is not a
-/// readable image, has more than `max_pixels` pixels, or does not fit into memory.
+/// Reads the first part of an image file as linear floats; alpha is never decoded. Colours, the layers of channels R, G
+/// and B, become linear Rec.709 if the file states other chromaticities (OpenEXR's attribute, Radiance's PRIMARIES);
+/// its white becomes (1,1,1). Values that are not finite stay. Throws Error if the file is not a readable image, has
+/// more than `max_pixels` pixels, or does not fit into memory.
 Image read_image(const std::filesystem::path& path, ColorEncoding encoding = ColorEncoding::automatic,
                  std::uint64_t max_pixels = FileAccess::default_max_pixels);
 

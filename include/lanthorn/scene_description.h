@@ -110,7 +110,7 @@ struct ImageTexture {
   float scale = 1;
   Rgb tint{1, 1, 1};  ///< additional factor of spectrum textures, linear sRGB
   bool invert = false;
-  ColorSpace space = ColorSpace::srgb;
+  ColorSpace space = ColorSpace::srgb;  ///< of colours in files that do not state their chromaticities
   /// Channel that a float texture reads (0 is red; a grey image has its value in 0 to 2; a missing alpha is 1).
   /// nullopt: see TextureImage::scalar.
   std::optional<int> channel;

@@ -15,6 +15,7 @@
 #include "image/image_encoder.h"
 #include "lanthorn/error.h"
 #include "lanthorn/packed_float.h"
+#include "spectrum/chromaticities.h"
 
 namespace lanthorn {
 
@@ -86,9 +87,7 @@ Bytes header_of(const Image& image, const std::vector<std::size_t>& order,
   const int full_width = window.full_width > 0 ? window.full_width : image.width;
   const int full_height = window.full_height > 0 ? window.full_height : image.height;
   append_attribute(header, "channels", "chlist", list_of_channels(image, order));
-  // Rec.709 and its white point D65: x and y of red, green, blue and white.
-  append_attribute(header, "chromaticities", "chromaticities",
-                   std::array{0.64f, 0.33f, 0.30f, 0.60f, 0.15f, 0.06f, 0.3127f, 0.3290f});
+  append_attribute(header, "chromaticities", "chromaticities", rec709_chromaticities);
   append_attribute(header, "compression", "compression", std::array{compression_zip});
   append_attribute(header, "dataWindow", "box2i",
                    std::array{window.x, window.y, window.x + image.width - 1, window.y + image.height - 1});

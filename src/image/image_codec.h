@@ -3,11 +3,13 @@
 // Decodes image files in a module that alone links OpenImageIO and is loaded on first use.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -36,6 +38,8 @@ struct ImageHeader {
   std::uint64_t pixel_bytes = 0;  ///< of a pixel in memory, in the file's sample type
   bool deep = false;              ///< any number of samples per pixel
   int row_step = 1;               ///< rows that are decoded together: the height of tiles or strips
+  /// CIE 1931 x and y of red, green, blue and white, if the file states them.
+  std::optional<std::array<float, 8>> chromaticities;
   std::vector<ImageAttribute> attributes;
 };
 

@@ -3,6 +3,7 @@
 #include "image/image_file.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -15,6 +16,7 @@
 #include "base/memory.h"
 #include "image/radiance_picture.h"
 #include "lanthorn/text.h"
+#include "spectrum/chromaticities.h"
 
 namespace lanthorn {
 
@@ -137,6 +139,18 @@ void ImageFile::open(std::string_view first_bytes, std::uint64_t max_pixels, con
   if (const auto pixels = announced_pixels(first_bytes, format)) check_pixels(*pixels, 4, max_pixels);
   guarded([&] { image_ = open(); });
   check_header(max_pixels);
+  take_colours();
+}
+
+void ImageFile::take_colours() {
+  const auto& stated = image_.header.chromaticities;
+  states_colours_ = stated && *stated != Chromaticities{};
+  if (!states_colours_) return;
+  to_rec709_ = rec709_from(*stated);
+  if (!to_rec709_)
+    fail(fmt::format("has chromaticities that no colours can have: {}; expected x and y of red, green, blue and white",
+                     fmt::join(*stated, " ")));
+  if (*to_rec709_ == RgbMatrix()) to_rec709_.reset();
 }
 
 void ImageFile::check_pixels(std::uint64_t pixels, std::uint64_t pixel_bytes, std::uint64_t max_pixels) const {

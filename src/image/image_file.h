@@ -8,11 +8,13 @@
 #include <cstdio>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 
 #include "image/image_codec.h"
 #include "lanthorn/error.h"
+#include "spectrum/white_balance.h"
 
 namespace lanthorn {
 
@@ -21,8 +23,8 @@ namespace lanthorn {
 class ImageFile {
  public:
   /// `bytes`: the whole file, which must outlive this object. `what`: its name in messages ('image "a.png"'). Throws
-  /// Error with `where` if the format is unknown, if the file is damaged, deep or a volume, if it has more than
-  /// `max_pixels`, or if it announces more data than 256 MiB plus 4096 times its size.
+  /// Error with `where` if the format is unknown, if the file is damaged, deep or a volume, if its chromaticities are
+  /// impossible, if it has more than `max_pixels`, or if it announces more data than 256 MiB plus 4096 times its size.
   ImageFile(std::string_view bytes, std::string what, SourceLocation where, std::uint64_t max_pixels);
   /// Like the first constructor, for a file on disk, positioned at its start. The file is not read into memory as a
   /// whole (except Radiance pictures).
@@ -31,6 +33,10 @@ class ImageFile {
   const ImageHeader& header() const { return image_.header; }
   /// OpenImageIO's name of the format.
   std::string_view format() const { return format_; }
+  /// True if the file states the chromaticities of its colours; all 0, as Photoshop writes them, do not count.
+  bool states_colours() const { return states_colours_; }
+  /// Maps the file's colours to linear Rec.709. nullopt if they are linear Rec.709, as without a statement.
+  const std::optional<RgbMatrix>& to_rec709() const { return to_rec709_; }
   /// Reads the first `channels` of all pixels. Throws Error if the file is damaged.
   void read(int channels, std::uint8_t* pixels) { read(channels, SampleType::uint8, pixels); }
   void read(int channels, float* pixels) { read(channels, SampleType::float32, pixels); }
@@ -42,6 +48,7 @@ class ImageFile {
   void open(std::string_view first_bytes, std::uint64_t max_pixels, const std::function<OpenImage()>& open);
   void check_pixels(std::uint64_t pixels, std::uint64_t pixel_bytes, std::uint64_t max_pixels) const;
   void check_header(std::uint64_t max_pixels) const;
+  void take_colours();
   void read(int channels, SampleType as, void* pixels);
   /// Calls `body`; turns a library's exceptions into an Error about this file.
   void guarded(const std::function<void()>& body) const;
@@ -53,6 +60,8 @@ class ImageFile {
   SourceLocation where_;
   std::string_view format_;
   OpenImage image_;
+  bool states_colours_ = false;
+  std::optional<RgbMatrix> to_rec709_;
 };
 
 }  // namespace lanthorn

@@ -9,11 +9,14 @@
 #include <dlfcn.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 
 #include "image/image_codec.h"
 #include "image/openimageio_tiles.h"
@@ -75,7 +78,15 @@ int rows_decoded_together(const OIIO::ImageSpec& spec) {
   return std::clamp(rows, 1, std::max(1, spec.height));
 }
 
-ImageHeader header_of(const OIIO::ImageSpec& spec) {
+// Of OpenEXR files, whose attribute this is.
+std::optional<std::array<float, 8>> chromaticities_of(const OIIO::ImageSpec& spec, std::string_view format) {
+  std::array<float, 8> stated{};
+  const OIIO::TypeDesc type(OIIO::TypeDesc::FLOAT, static_cast<int>(stated.size()));
+  if (format != "openexr" || !spec.getattribute("chromaticities", type, stated.data())) return std::nullopt;
+  return stated;
+}
+
+ImageHeader header_of(const OIIO::ImageSpec& spec, std::string_view format) {
   ImageHeader header{.width = spec.width,
                      .height = spec.height,
                      .depth = spec.depth,
@@ -87,6 +98,7 @@ ImageHeader header_of(const OIIO::ImageSpec& spec) {
                      .pixel_bytes = spec.pixel_bytes(true),
                      .deep = spec.deep,
                      .row_step = rows_decoded_together(spec),
+                     .chromaticities = chromaticities_of(spec, format),
                      .attributes = {}};
   for (const OIIO::ParamValue& attribute : spec.extra_attribs) {
     ImageAttribute& own = header.attributes.emplace_back(ImageAttribute{attribute.name().string(), 0});
@@ -144,7 +156,7 @@ OpenImage open_input(const std::shared_ptr<Input>& input, const char* format) {
     throw std::runtime_error(std::string("OpenImageIO was built without ") + format);
   OIIO::ImageInput& file = *input->file;
   if (!file.open(std::string("image.") + format, spec, config)) fail(file);
-  return {header_of(file.spec()),
+  return {header_of(file.spec(), format),
           [input](int channels, SampleType as, void* pixels) {
             if (!input->file->read_image(0, 0, 0, channels, type_of(as), pixels)) fail(*input->file);
           },

@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <stdexcept>
 #include <vector>
 
@@ -85,13 +86,34 @@ Resolution parse_resolution(std::string_view line) {
   return resolution;
 }
 
+std::array<float, 8> parse_primaries(std::string_view text) {
+  std::array<float, 8> primaries{};
+  for (float& number : primaries) {
+    while (text.starts_with(' ')) text.remove_prefix(1);
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    if (error != std::errc()) fail_picture("has PRIMARIES that are not eight numbers");
+    text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+  }
+  return primaries;
+}
+
+struct Header {
+  Resolution resolution;
+  std::optional<std::array<float, 8>> primaries;
+};
+
 // Ignores the header's other variables (EXPOSURE, COLORCORR, …), as other programs do that use these files for
 // lighting.
-Resolution read_header(ByteReader& in) {
-  for (std::string_view line = in.line(); !line.empty(); line = in.line())
-    if (line.starts_with("FORMAT=") && line != "FORMAT=32-bit_rle_rgbe")
+Header read_header(ByteReader& in) {
+  constexpr std::string_view format = "FORMAT=", primaries = "PRIMARIES=";
+  Header header;
+  for (std::string_view line = in.line(); !line.empty(); line = in.line()) {
+    if (line.starts_with(format) && line.substr(format.size()) != "32-bit_rle_rgbe")
       fail_picture("holds pixels that are not 32-bit_rle_rgbe");
-  return parse_resolution(in.line());
+    if (line.starts_with(primaries)) header.primaries = parse_primaries(line.substr(primaries.size()));
+  }
+  header.resolution = parse_resolution(in.line());
+  return header;
 }
 
 // Components one after another, each in runs: n <= 128 literal bytes, or the next byte n - 128 times.
@@ -175,7 +197,7 @@ void read_colors(ByteReader in, const Resolution& resolution, std::size_t channe
 
 OpenImage open_radiance_picture(std::string_view bytes) {
   ByteReader in(bytes);
-  const Resolution resolution = read_header(in);
+  const auto [resolution, primaries] = read_header(in);
   OpenImage image;
   ImageHeader& header = image.header;
   const bool by_rows = resolution.slow.name == 'Y';
@@ -184,7 +206,8 @@ OpenImage open_radiance_picture(std::string_view bytes) {
   header.window = {0, 0, header.width, header.height};
   header.channels = {"R", "G", "B"};
   header.pixel_bytes = 3 * sizeof(float);
-  image.read = [in, resolution](int channels, SampleType /*float32*/, void* pixels) {
+  header.chromaticities = primaries;
+  image.read = [in, resolution = resolution](int channels, SampleType /*float32*/, void* pixels) {
     read_colors(in, resolution, static_cast<std::size_t>(channels), static_cast<float*>(pixels));
   };
   return image;

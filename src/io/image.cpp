@@ -25,6 +25,7 @@
 #include "lanthorn/error.h"
 #include "lanthorn/file.h"
 #include "lanthorn/text.h"
+#include "spectrum/white_balance.h"
 
 namespace lanthorn {
 namespace fs = std::filesystem;
@@ -64,6 +65,23 @@ void decode_srgb(Image& image, const ImageHeader& header) {
   const std::size_t count = image.channel_count();
   for (std::size_t i = 0; i < image.pixels.size(); ++i)
     if (is_color_channel(header, static_cast<int>(i % count))) image.pixels[i] = linear_from_srgb(image.pixels[i]);
+}
+
+// Converts each layer of channels R, G, B. Other channels, such as X, Y, Z of vectors and alpha, are no colours.
+void convert_colours(Image& image, const RgbMatrix& to_rec709) {
+  constexpr std::string_view red = "R";
+  for (std::size_t r = 0; r < image.channels.size(); ++r) {
+    const std::string& name = image.channels[r];
+    if (name != red && !name.ends_with(".R")) continue;
+    const std::string layer = name.substr(0, name.size() - red.size());
+    const auto g = image.find_channel(layer + "G"), b = image.find_channel(layer + "B");
+    if (!g || !b) continue;
+    for (std::size_t pixel = 0; pixel < image.pixels.size(); pixel += image.channels.size()) {
+      float* const at = &image.pixels[pixel];
+      const Rgb c = to_rec709 * Rgb{at[r], at[*g], at[*b]};
+      at[r] = c.r, at[*g] = c.g, at[*b] = c.b;
+    }
+  }
 }
 
 // NaN becomes black.
@@ -227,6 +245,7 @@ Image read_image(const fs::path& path, ColorEncoding encoding, std::uint64_t max
   if (!image.find_channel(depth_channel)) rename_channel(image, depth_in_file, depth_channel);
   const bool integers = header.samples != SampleType::float32 && header.samples != SampleType::half;
   if (encoding == ColorEncoding::srgb || (encoding == ColorEncoding::automatic && integers)) decode_srgb(image, header);
+  if (file.to_rec709()) convert_colours(image, *file.to_rec709());
   return image;
 }
 

@@ -2,16 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // References:
 //   CIE 15:2004, eq. 3.1 and 3.2 (chromaticity of daylight).
-//   Lam 1985, "Metamerism and Colour Constancy", PhD thesis, University of Bradford (the cone space).
 #include "spectrum/white_balance.h"
 
-#include "spectrum/cie.h"
+#include "spectrum/cone_space.h"
 
 namespace lanthorn {
 
 namespace {
-
-constexpr Matrix3 cones_from_xyz{{{{0.8951, 0.2664, -0.1614}, {-0.7502, 1.7135, 0.0367}, {0.0389, -0.0685, 1.0296}}}};
 
 // XYZ of the white of this colour temperature, with Y = 1.
 Tristimulus white_of(double kelvin) {
@@ -28,20 +25,11 @@ Tristimulus white_of(double kelvin) {
   return {x / y, 1, (1 - x - y) / y};
 }
 
-RgbMatrix to_rgb_matrix(const Matrix3& m) {
-  RgbMatrix result;
-  for (std::size_t i = 0; i < 3; ++i)
-    result.rows[i] = {static_cast<float>(m.row[i].x), static_cast<float>(m.row[i].y), static_cast<float>(m.row[i].z)};
-  return result;
-}
-
 }  // namespace
 
 RgbMatrix white_balance(float kelvin, ColorSpace space) {
-  const Tristimulus from = cones_from_xyz * white_of(kelvin);
-  const Tristimulus to = cones_from_xyz * to_xyz(illuminant_of(space));
-  const Matrix3 gains{{{{to.x / from.x, 0, 0}, {0, to.y / from.y, 0}, {0, 0, to.z / from.z}}}};
-  return to_rgb_matrix(xyz_to_rec709 * inverse(cones_from_xyz) * gains * cones_from_xyz * rgb_to_xyz(ColorSpace::srgb));
+  const Matrix3 adapted = adaptation(white_of(kelvin), to_xyz(illuminant_of(space)));
+  return to_rgb_matrix(xyz_to_rec709 * adapted * rgb_to_xyz(ColorSpace::srgb));
 }
 
 RgbMatrix rec709_to_xyz() { return to_rgb_matrix(rgb_to_xyz(ColorSpace::srgb)); }

@@ -139,6 +139,7 @@ TextureImage::TextureImage(const ImageSource& source, const FileAccess& access, 
                            const SourceLocation& location) {
   TexelReader reader(source, access, wish.colours, true, location);
   format_ = reader.format();
+  to_rec709_ = reader.to_rec709();
   channels_ = format_.channels;
   const auto stride = static_cast<std::size_t>(channels_);
   const int levels = levels_for(format_, wish);
@@ -164,6 +165,7 @@ TextureImage::TextureImage(const ImageSource& source, const FileAccess& access, 
     : cache_(std::move(cache)) {
   TexelReader reader(source, access, wish.colours, false, location);
   format_ = reader.format();
+  to_rec709_ = reader.to_rec709();
   levels_ = levels_for(format_, wish);
   bool is_opaque = true;
   cached_ = &cache_->add(
@@ -287,8 +289,10 @@ Rgb TextureImage::texel(int x, int y) const {
 LightTexels TextureImage::take_colours() && {
   if (floats_.empty()) return {std::move(bytes_), static_cast<std::size_t>(channels_), format_.decode};
   std::vector<Rgb> colours(floats_.size() / static_cast<std::size_t>(channels_));
-  for (std::size_t i = 0; i < colours.size(); ++i)
-    colours[i] = colour_of(Texel<float>{floats_.data() + i * static_cast<std::size_t>(channels_), *this}, channels_);
+  for (std::size_t i = 0; i < colours.size(); ++i) {
+    const Texel<float> texel{floats_.data() + i * static_cast<std::size_t>(channels_), *this};
+    colours[i] = colour(colour_of(texel, channels_));
+  }
   floats_ = {};
   return colours;
 }

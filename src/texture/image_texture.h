@@ -16,6 +16,7 @@
 #include "light/light_texels.h"
 #include "math/vec.h"
 #include "spectrum/spectrum.h"
+#include "spectrum/white_balance.h"
 #include "texture/texel_reader.h"
 #include "texture/texture_cache.h"
 #include "texture/texture_format.h"
@@ -65,15 +66,19 @@ class TextureImage {
   static Need need(const ImageSource& source, const FileAccess& access, const ImageWish& wish,
                    const SourceLocation& location);
 
-  /// Value at texture coordinates (s, t), t upwards: the nearest texel of a level, or bilinear interpolation of four.
+  /// Samples at texture coordinates (s, t), t upwards: the nearest texel of a level, or bilinear interpolation of four.
+  /// `colour` makes them a colour.
   Rgb rgb(const Vec2& st, const WrapModes& wrap, description::ImageFilter filter, int level = 0) const;
   /// Scalar value: `channel` (see description::ImageTexture) if given; else the only channel, the alpha channel if it
   /// is not 1 everywhere, or the mean of three channels.
   float scalar(const Vec2& st, const WrapModes& wrap, description::ImageFilter filter,
                std::optional<int> channel = {}) const;
 
-  /// Colour of one texel; row 0 is the top.
+  /// Samples of one texel; row 0 is the top.
   Rgb texel(int x, int y) const;
+  /// Linear Rec.709 of samples, whose primaries and white the file may state. Samples that are not colours, such as
+  /// normals, stay as they are. Negative outside the gamut.
+  Rgb colour(const Rgb& samples) const { return to_rec709_ && has_colour() ? *to_rec709_ * samples : samples; }
 
   /// Moves out the colours of all texels, which must be in memory.
   LightTexels take_colours() &&;
@@ -126,6 +131,7 @@ class TextureImage {
   std::vector<std::size_t> level_begins_;  // texels
   std::vector<std::uint8_t> bytes_;
   std::vector<float> floats_;
+  std::optional<RgbMatrix> to_rec709_;
   std::shared_ptr<TextureCache> cache_;
   const TextureCache::Image* cached_ = nullptr;
 };

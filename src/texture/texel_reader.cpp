@@ -50,10 +50,13 @@ TexelReader::TexelReader(const ImageSource& source, const FileAccess& access, co
     file_.emplace(stream, what_, location, access.max_pixels);
   else
     file_.emplace(source.bytes() != nullptr ? *source.bytes() : bytes_, what_, location, access.max_pixels);
+  if (file_->states_colours()) colours_.space = ColorSpace::srgb;
   const ImageHeader& header = file_->header();
   format_.width = header.width;
   format_.height = header.height;
-  format_.channels = header.channels.size() >= 4 ? 4 : header.channels.size() >= 3 ? 3 : 1;
+  // The fourth channel of OpenEXR files may be a depth, for example.
+  const bool may_have_alpha = file_->format() != "openexr" || header.alpha_channel == 3;
+  format_.channels = header.channels.size() >= 4 && may_have_alpha ? 4 : header.channels.size() >= 3 ? 3 : 1;
   const bool is_8_bit = header.samples == SampleType::uint8;
   read_as_ = is_8_bit ? SampleType::uint8 : SampleType::float32;
   is_integer_ = is_8_bit || header.samples == SampleType::uint16;

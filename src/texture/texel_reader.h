@@ -36,8 +36,8 @@ class ImageSource {
 /// How the samples of a file become linear colours.
 struct TexelColours {
   description::Encoding encoding = description::Encoding::automatic;
-  float gamma = 1;  ///< for Encoding::gamma
-  ColorSpace space = ColorSpace::srgb;
+  float gamma = 1;                      ///< for Encoding::gamma
+  ColorSpace space = ColorSpace::srgb;  ///< of files that do not state their own chromaticities
 };
 
 /// An image that is read as texels of a format that follows from the file.
@@ -49,6 +49,9 @@ class TexelReader {
               const SourceLocation& location);
 
   const TextureFormat& format() const { return format_; }
+  /// Maps texels that are colours to linear Rec.709 (`ImageFile::to_rec709`). Not applied here, because texels can be
+  /// other quantities, such as normals or roughnesses.
+  const std::optional<RgbMatrix>& to_rec709() const { return file_->to_rec709(); }
   /// The name in messages: image "a.png".
   const std::string& what() const { return what_; }
   /// All texels, format().row_bytes() times height bytes. Throws Error if the file is damaged.

@@ -123,10 +123,16 @@ auto combined(const DotsTexture<Input>& t, const TexturePoint& at, const Get& ge
 
 }  // namespace
 
-Rgb ImageInput::rgb(const TexturePoint& at, int level) const {
-  const Rgb c = scale * tint * image->rgb(plane_point(mapping, at), wrap, filter, level);
+Rgb ImageInput::samples(const TexturePoint& at, int level) const {
+  return image->rgb(plane_point(mapping, at), wrap, filter, level);
+}
+
+Rgb ImageInput::changed(const Rgb& samples) const {
+  const Rgb c = scale * tint * samples;
   return invert ? Rgb{1, 1, 1} + -1.0f * c : c;
 }
+
+Rgb ImageInput::rgb(const TexturePoint& at, int level) const { return changed(image->colour(samples(at, level))); }
 
 int ImageInput::level(const Footprint& footprint) const {
   if (image->levels() == 1 || !(footprint.uv.x > 0)) return 0;
@@ -499,7 +505,7 @@ bool TextureGraph::has_levels(const SpectrumInput& input) const {
 }
 
 Normal TextureGraph::evaluate(const NormalMapInput& map, const TexturePoint& at) {
-  const Rgb c = map.image.rgb(at);
+  const Rgb c = map.image.vector(at);
   const Vec3 n(map.strength * (2 * c.r - 1), map.strength * (2 * c.g - 1), 2 * c.b - 1);
   const float length = std::sqrt(length_squared(n));
   return length > 0 ? n / length : Normal(0, 0, 1);

@@ -52,11 +52,17 @@ struct ImageInput {
   std::optional<int> channel;        ///< of float nodes, like `threshold`
   std::optional<float> threshold;
 
-  /// Colour times `scale` and `tint`, then inverted if requested.
+  /// Colour (linear Rec.709) times `scale` and `tint`, then inverted if requested.
   Rgb rgb(const TexturePoint& at, int level = 0) const;
+  /// The same of samples that are not a colour.
+  Rgb vector(const TexturePoint& at) const { return changed(samples(at, 0)); }
   /// The coarsest level at which a square of 4 x 4 texels still lies within the footprint: finer than a picture can
   /// show.
   int level(const Footprint& footprint) const;
+
+ private:
+  Rgb samples(const TexturePoint& at, int level) const;
+  Rgb changed(const Rgb& samples) const;
 };
 struct NormalMapInput {
   ImageInput image;

@@ -24,6 +24,7 @@
 #include "lanthorn/image_file.h"
 #include "lanthorn/threads.h"
 #include "support/error_text.h"
+#include "support/exr_colours.h"
 #include "support/jpeg.h"
 #include "support/temporary_dir.h"
 
@@ -145,6 +146,39 @@ TEST_F(ImageFormats, OtherProgramsKnowColoursAndDepthOfOpenExr) {
   const Image again = read_image(dir_.path() / "b.exr");
   ASSERT_TRUE(again.find_channel("depth.Z"));
   EXPECT_EQ(again.at(1, 0, *again.find_channel("depth.Z")), 8);
+}
+
+// The colour of the issue: .5 .2 .1 in ACEScg is .7198 .1620 .0775, by the Academy's matrix.
+TEST_F(ImageFormats, ColoursOfOpenExrBecomeRec709) {
+  Image image(1, 1, {"R", "G", "B", "A", "diffuse.R", "diffuse.G", "diffuse.B", "normal.X", "normal.Y", "normal.Z"});
+  image.pixels = {0.5f, 0.2f, 0.1f, 0.4f, 1, 0.4f, 0.2f, 0.5f, 0.2f, 0.1f};
+  const auto read_as = [&](const std::string& bytes) { return read_image(dir_.write("c.exr", bytes)); };
+  const auto value = [](const Image& read, const char* channel) { return read.at(0, 0, *read.find_channel(channel)); };
+  const Image read = read_as(test::exr_of(image, test::acescg));
+  constexpr std::array<float, 3> expected{0.71984f, 0.16198f, 0.07750f};
+  for (std::size_t c = 0; c < 3; ++c) {
+    const std::string component(1, "RGB"[c]);
+    EXPECT_NEAR(value(read, component.c_str()), expected[c], 2e-5f) << component;
+    EXPECT_NEAR(value(read, ("diffuse." + component).c_str()), 2 * expected[c], 4e-5f) << component;
+  }
+  EXPECT_EQ(value(read, "A"), 0.4f);
+  EXPECT_EQ(value(read, "normal.X"), 0.5f);
+  EXPECT_EQ(value(read, "normal.Z"), 0.1f);
+  // Written again, it states Rec.709 and keeps its colours. A file without a statement is Rec.709.
+  write_exr(dir_.path() / "again.exr", read);
+  const Image again = read_image(dir_.path() / "again.exr");
+  const Image unstated = read_as(test::exr_without_chromaticities(image)), zeros = read_as(test::exr_of(image, {}));
+  for (const std::string& channel : image.channels) {
+    EXPECT_EQ(value(again, channel.c_str()), value(read, channel.c_str())) << channel;
+    EXPECT_EQ(value(unstated, channel.c_str()), image.at(0, 0, *image.find_channel(channel))) << channel;
+    EXPECT_EQ(value(zeros, channel.c_str()), image.at(0, 0, *image.find_channel(channel))) << channel;
+  }
+  const auto problem = [&](const std::array<float, 8>& chromaticities) {
+    return error_text([&] { read_as(test::exr_of(image, chromaticities)); });
+  };
+  EXPECT_NE(problem({0.6f, 0.3f, 0.6f, 0.3f, 0.1f, 0.1f, 0.3f, 0.3f}).find("chromaticities that no colours can have"),
+            std::string::npos);
+  EXPECT_NE(problem({NAN, 0.3f, 0.2f, 0.7f, 0.1f, 0.1f, 0.3f, 0.3f}).find("has chromaticities"), std::string::npos);
 }
 
 // A gradient, which JPEG keeps within a few steps.
@@ -315,6 +349,23 @@ TEST_F(RadiancePicture, PixelsMayBeRepeated) {
   // 2 and then 256 times 1.
   const Image long_run = read(with_header("-Y 1 +X 260", a + repeat(2) + repeat(1) + b));
   for (int x = 0; x < 260; ++x) EXPECT_EQ(long_run.at(x, 0, 0), x < 259 ? 1 : 0.5f) << x;
+}
+
+// Primaries of DCI-P3 with Rec.709's white: white stays, and red leaves the gamut of Rec.709.
+TEST_F(RadiancePicture, ItsPrimariesAreThoseOfItsColours) {
+  const auto colour = [&](const std::string& primaries, const std::string& pixel) {
+    return read("#?RADIANCE\nPRIMARIES=" + primaries + "\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 1\n" + pixel).pixels;
+  };
+  const std::string p3 = " .68 .32 .265 .69 .15 .06 .3127 .329", white("\x80\x80\x80\x81", 4), red("\x80\0\0\x81", 4);
+  for (const float x : colour(p3, white)) EXPECT_NEAR(x, 1, 1e-5f);
+  // The published matrix from Display P3 to sRGB (CSS Color 4).
+  const std::vector<float> in_rec709 = colour(p3, red);
+  EXPECT_NEAR(in_rec709[0], 1.22494f, 1e-4f);
+  EXPECT_NEAR(in_rec709[1], -0.04206f, 1e-4f);
+  EXPECT_NEAR(in_rec709[2], -0.01964f, 1e-4f);
+  EXPECT_EQ(colour("0 0 0 0 0 0 0 0", red), (std::vector<float>{1, 0, 0})) << "as Photoshop writes them";
+  EXPECT_NE(problem("#?RADIANCE\nPRIMARIES=.68 .32 nothing\n\n-Y 1 +X 1\n" + red).find("not eight numbers"),
+            std::string::npos);
 }
 
 // Nine pixels of value 1, one run per component.

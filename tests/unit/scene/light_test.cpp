@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "support/error_text.h"
+#include "support/exr_colours.h"
 #include "support/render_scene.h"
 #include "support/scene_text.h"
 #include "support/temporary_dir.h"
@@ -456,6 +457,26 @@ TEST(SceneLights, ImagesAreSquareOrPanoramasAndUpright) {
   const auto& projector = std::get<ProjectionLight>(lamps.lights().at(1));
   EXPECT_NEAR(projector.power(), 7, 1e-3f);
   EXPECT_NEAR(projector.image->half_size.x, std::tan(30 * pi / 180), 1e-5f);
+}
+
+// Environments, projectors and goniometric lights take colours in Rec.709 from a file in ACEScg.
+TEST(SceneLights, ColoursOfImagesHaveTheChromaticitiesOfTheirFiles) {
+  const test::TemporaryDir folder;
+  folder.write("c.exr", test::exr_of(test::colour_of_one_pixel(0.5f, 0.2f, 0.1f), test::acescg));
+  const auto load = [&](const std::string& directives) { return world(directives, "", folder.path().string()); };
+  const Scene scene = load(
+      "LightSource \"infinite\" \"string filename\" \"c.exr\"\nLightSource \"projection\" \"string filename\" "
+      "\"c.exr\"\nLightSource \"goniometric\" \"string filename\" \"c.exr\"\n");
+  constexpr Rgb expected{0.71984f, 0.16198f, 0.07750f};  // the Academy's matrix
+  const auto expect = [](const Rgb& c, const Rgb& right) {
+    EXPECT_NEAR(c.r, right.r, 2e-5f);
+    EXPECT_NEAR(c.g, right.g, 2e-5f);
+    EXPECT_NEAR(c.b, right.b, 2e-5f);
+  };
+  expect(std::get<ImageInfiniteLight>(scene.lights().at(0)).image->texels[0], expected);
+  expect(std::get<ProjectionLight>(scene.lights().at(1)).image->texels[0], expected);
+  const float mean = (expected.r + expected.g + expected.b) / 3;
+  expect(std::get<GoniometricLight>(scene.lights().at(2)).image->texels[0], {mean, mean, mean});
 }
 
 TEST(SceneLights, WhatCannotEmitSaysSo) {

@@ -6,10 +6,13 @@
 #include <array>
 #include <cmath>
 #include <complex>
+#include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "math/hash.h"
+#include "spectrum/chromaticities.h"
 #include "spectrum/cie.h"
 #include "spectrum/curve.h"
 #include "spectrum/sigmoid_fit.h"
@@ -96,6 +99,57 @@ TEST(Cie, Rec709MatrixIsThePublishedOne) {
   EXPECT_NEAR(m.row[2].z, 0.9505, 5e-4);
   for (const ColorSpace space : all_spaces)
     EXPECT_LT(max_difference(seen(illuminant_of(space), space), {1, 1, 1}), 1e-5f);
+}
+
+// The matrices from ACEScg and ACES2065-1 to Rec.709 as the Academy's transforms have them (aces-dev 1.0.3, with
+// Bradford's adaptation from D60 to D65), and from Rec.2020 as ITU-R BT.2087 has it.
+TEST(Chromaticities, GiveThePublishedMatricesToRec709) {
+  struct Case {
+    Chromaticities from;
+    RgbMatrix to;
+  };
+  const std::vector<Case> cases{
+      {{0.713f, 0.293f, 0.165f, 0.83f, 0.128f, 0.044f, 0.32168f, 0.33767f},
+       {{{{1.70505f, -0.62179f, -0.08326f}, {-0.13026f, 1.14080f, -0.01055f}, {-0.02400f, -0.12897f, 1.15297f}}}}},
+      {{0.7347f, 0.2653f, 0, 1, 0.0001f, -0.077f, 0.32168f, 0.33767f},
+       {{{{2.52169f, -1.13413f, -0.38756f}, {-0.27648f, 1.37272f, -0.09624f}, {-0.01538f, -0.15298f, 1.16835f}}}}},
+      {{0.708f, 0.292f, 0.17f, 0.797f, 0.131f, 0.046f, 0.3127f, 0.329f},
+       {{{{1.6605f, -0.5876f, -0.0728f}, {-0.1246f, 1.1329f, -0.0083f}, {-0.0182f, -0.1006f, 1.1187f}}}}}};
+  for (const auto& [from, to] : cases) {
+    const std::optional<RgbMatrix> found = rec709_from(from);
+    ASSERT_TRUE(found);
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_LT(max_difference(found->rows[i], to.rows[i]), 6e-5f) << i;
+  }
+}
+
+// Files in XYZ have the blue primary (0, 0), which has no XYZ of luminance 1.
+TEST(Chromaticities, KeepWhiteAndRec709) {
+  EXPECT_EQ(rec709_from(rec709_chromaticities), RgbMatrix());
+  EXPECT_EQ(rec709_from({0.64f, 0.33f, 0.3f, 0.6f, 0.15f, 0.06f, 0.313f, 0.329f}), RgbMatrix());
+  const Chromaticities xyz{1, 0, 0, 1, 0, 0, 1.0f / 3, 1.0f / 3};
+  for (const Chromaticities& from : {xyz, {0.68f, 0.32f, 0.265f, 0.69f, 0.15f, 0.06f, 0.314f, 0.351f}}) {
+    const std::optional<RgbMatrix> matrix = rec709_from(from);
+    ASSERT_TRUE(matrix);
+    EXPECT_LT(max_difference(*matrix * Rgb{1, 1, 1}, {1, 1, 1}), 1e-5f);
+  }
+  // Y alone has no red and no blue of XYZ; its green is the only one above 0.
+  const Rgb y = *rec709_from(xyz) * Rgb{0, 1, 0};
+  EXPECT_TRUE(y.g > 1 && y.r < 0 && y.b < 0);
+}
+
+TEST(Chromaticities, ThatNoColoursCanHaveAreRefused) {
+  constexpr float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
+  for (std::size_t i = 0; i < 8; ++i)
+    for (const float bad : {nan, infinity, -infinity, 1e30f}) {
+      Chromaticities c = rec709_chromaticities;
+      c[i] = bad;
+      EXPECT_FALSE(rec709_from(c)) << i << ' ' << bad;
+    }
+  EXPECT_FALSE(rec709_from({}));
+  EXPECT_FALSE(rec709_from({0.64f, 0.33f, 0.64f, 0.33f, 0.15f, 0.06f, 0.3127f, 0.329f})) << "equal primaries";
+  EXPECT_FALSE(rec709_from({0.1f, 0.1f, 0.2f, 0.2f, 0.4f, 0.4f, 0.3127f, 0.329f})) << "on one line";
+  EXPECT_FALSE(rec709_from({0.64f, 0.33f, 0.3f, 0.6f, 0.15f, 0.06f, 0.3127f, 0})) << "white without luminance";
+  EXPECT_FALSE(rec709_from({0.64f, 0.33f, 0.3f, 0.6f, 0.15f, 0.06f, 0.9f, 0.09f})) << "white without blue cones";
 }
 
 TEST(Wavelengths, DensityIntegratesToOne) {

@@ -7,11 +7,13 @@
 
 #include <array>
 #include <cmath>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "math/noise.h"
 #include "support/error_text.h"
+#include "support/exr_colours.h"
 #include "support/scene_text.h"
 #include "support/temporary_dir.h"
 
@@ -260,6 +262,37 @@ TEST_F(ImageTextures, AxesWrapByThemselves) {
   EXPECT_EQ(at(-0.25f, 0.25f), 2);
   EXPECT_EQ(at(0.25f, 1.25f), 0);  // 2 if it were not mirrored
   EXPECT_EQ(at(0.25f, -0.75f), 0);
+}
+
+// Of the same file, a spectrum texture reads colours, while a float texture and a normal map read numbers.
+TEST_F(ImageTextures, ColoursAreConvertedAndNumbersAreNot) {
+  const Image image = test::colour_of_one_pixel(0.5f, 0.2f, 0.1f);
+  folder.write("c.exr", test::exr_of(image, test::acescg));
+  const std::string file = "\"string filename\" \"c.exr\"", inverted = file + " \"bool invert\" true";
+  Textures t(texture("imagemap", file, "spectrum") + texture("imagemap", file) +
+                 "Texture \"inverted\" \"spectrum\" \"imagemap\" " + inverted + "\n",
+             folder.path());
+  const TexturePoint at = at_point({0, 0, 0});
+  const Rgb c = t.colour(at), inverse = t.colour(at, 1);
+  constexpr Rgb expected{0.71984f, 0.16198f, 0.07750f};  // the Academy's matrix
+  EXPECT_NEAR(c.r, expected.r, 2e-5f);
+  EXPECT_NEAR(c.g, expected.g, 2e-5f);
+  EXPECT_NEAR(c.b, expected.b, 2e-5f);
+  EXPECT_NEAR(inverse.r, 1 - expected.r, 2e-5f);
+  EXPECT_NEAR(t.value(at), 0.8f / 3, 1e-6f);
+  description::NormalMap map;
+  map.image.filename = (folder.path() / "c.exr").string();
+  const NormalMapInput normals = t.graph.compile(map, {});
+  t.graph.load_images();
+  const Vec3 stored(2 * 0.5f - 1, 2 * 0.2f - 1, 2 * 0.1f - 1);
+  EXPECT_LT(length(Vec3(TextureGraph::evaluate(normals, at)) - normalize(stored)), 1e-5f);
+  // In tiles, the texels are the same. The space of the description is that of files without a statement.
+  const ImageWish wish{{description::Encoding::automatic, 1, ColorSpace::rec2020}};
+  const std::string path = (folder.path() / "c.exr").string();
+  const TextureImage cached(path, FileAccess{}, wish, {}, std::make_shared<TextureCache>(std::uint64_t{1} << 20));
+  const Rgb tile = cached.colour(cached.texel(0, 0));
+  EXPECT_NEAR(tile.r, expected.r, 2e-5f);
+  EXPECT_NEAR(tile.b, expected.b, 2e-5f);
 }
 
 // Beyond an edge, lookups return texels of the same edge, mirrored about its midpoint.
