@@ -244,7 +244,7 @@ std::optional<Ibl> bake(IblCommand& a) {
   Ibl ibl = bake_ibl(image, a.settings);
   line.finish();
   if (ibl.unusable_values > 0)
-    warn("{}: {} values are negative, not finite or above {:g}, and count as 0", a.environment.front().string(),
+    warn("{}: {} values are negative or above {:g}, and count as 0", a.environment.front().string(),
          ibl.unusable_values, largest_environment_radiance);
   return ibl;
 }

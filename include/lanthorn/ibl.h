@@ -36,7 +36,7 @@ inline constexpr float largest_environment_radiance = 1e30f;
 
 /// Reads an environment from one image, or from six square ones, the faces of a cube. Other cube layouts (1:6, 4:3 or
 /// 3:4 cross) are converted to 6:1. Throws Error, naming the file, if it cannot be read, has no colours, has an unknown
-/// shape, or holds no value in (0, `largest_environment_radiance`].
+/// shape, holds a value that is not finite, or none in (0, `largest_environment_radiance`].
 Image read_environment(const std::vector<std::filesystem::path>& files,
                        std::uint64_t max_pixels = FileAccess::default_max_pixels);
 

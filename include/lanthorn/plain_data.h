@@ -6,7 +6,9 @@
 // check for unknown keys are derived from it. A std::variant is a dict whose key "type" names the alternative.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <limits>
@@ -143,7 +145,7 @@ struct Convert<T> {
       out = whole != nullptr ? static_cast<T>(*whole) : static_cast<T>(*large);
     } else {
       const std::optional<double> number = number_of(data);
-      if (!number) reader.fail("a number", data);
+      if (!number || std::isnan(*number)) reader.fail("a number", data);
       out = static_cast<T>(*number);
     }
     reader.mix(&out, sizeof(out));
@@ -270,6 +272,17 @@ void copy_numbers(Reader& reader, const Value& data, T*& out, const std::string&
   }
 }
 
+/// Fails for the first of `count` numbers, in rows of `row`, that is infinite or NaN.
+template <class T>
+void require_finite(const Reader& reader, const T* numbers, std::size_t count, std::size_t row) {
+  if constexpr (std::is_floating_point_v<T>) {
+    const T* const bad = std::find_if(numbers, numbers + count, [](T x) { return !std::isfinite(x); });
+    if (bad != numbers + count)
+      reader.fail("expected finite numbers, got " + std::to_string(*bad) + " in entry " +
+                  std::to_string(static_cast<std::size_t>(bad - numbers) / row));
+  }
+}
+
 /// Numbers with their shape, the last index running fastest.
 template <class T>
 struct NumberArray {
@@ -310,6 +323,7 @@ struct Convert<std::vector<T>> {
     out.resize(shape[0]);
     auto* numbers = reinterpret_cast<Number*>(out.data());
     if (!is_empty) copy_numbers(reader, data, numbers, expected);
+    require_finite(reader, reinterpret_cast<const Number*>(out.data()), out.size() * count, count);
     reader.mix(out.data(), out.size() * sizeof(T));
   }
   static Value write(const std::vector<T>& values) {
@@ -328,6 +342,7 @@ requires(!std::is_arithmetic_v<T>) struct Convert<T> {
     if (shape_of(reader, data, std::is_integral_v<Number>, expected) != Shape{count}) reader.fail(expected, data);
     auto* numbers = reinterpret_cast<Number*>(&out);
     copy_numbers(reader, data, numbers, expected);
+    require_finite(reader, reinterpret_cast<const Number*>(&out), count, 1);
     reader.mix(&out, sizeof(T));
   }
   static Value write(const T& value) {

@@ -192,4 +192,8 @@ void ImageFile::guarded(const std::function<void()>& body) const {
 
 void ImageFile::fail(const std::string& problem) const { throw Error(where_, what_ + " " + problem); }
 
+std::string not_finite(std::int64_t x, std::int64_t y) {
+  return fmt::format("its pixel ({}, {}) is infinite or not a number", x, y);
+}
+
 }  // namespace lanthorn

@@ -64,4 +64,7 @@ class ImageFile {
   std::optional<RgbMatrix> to_rec709_;
 };
 
+/// Says that the pixel in column x and row y, counted from the upper left corner, has a value that is not finite.
+std::string not_finite(std::int64_t x, std::int64_t y);
+
 }  // namespace lanthorn

@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include "base/memory.h"
 #include "ibl/cube_map.h"
+#include "image/image_file.h"
 #include "lanthorn/error.h"
 #include "lanthorn/ibl.h"
 #include "lanthorn/image_file.h"
@@ -47,6 +49,18 @@ std::array<std::size_t, 3> color_channels(const Image& image, const fs::path& fi
   throw Error({file.string()}, "is not an environment: it has no channels R, G, B");
 }
 
+// Colours that are all finite.
+Image read_colors(const fs::path& file, std::uint64_t max_pixels) {
+  Image image = read_image(file, ColorEncoding::automatic, max_pixels);
+  const std::array<std::size_t, 3> channels = color_channels(image, file);
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x)
+      for (const std::size_t c : channels)
+        if (!std::isfinite(image.at(x, y, c)))
+          throw Error({file.string()}, "cannot be an environment: " + not_finite(x, y));
+  return image;
+}
+
 void copy_face(const Image& from, const std::array<std::size_t, 3>& channels, const FacePlace& place, int face,
                Image& strip) {
   const int n = strip.height;
@@ -81,7 +95,7 @@ Image read_faces(const std::vector<fs::path>& files, std::uint64_t max_pixels) {
   Image strip;
   for (int face = 0; face < cube_faces; ++face) {
     const fs::path& file = files[static_cast<std::size_t>(face)];
-    const Image image = read_image(file, ColorEncoding::automatic, max_pixels);
+    const Image image = read_colors(file, max_pixels);
     if (image.width != image.height || image.width < 1)
       throw Error({file.string()},
                   fmt::format("is {} x {} pixels; a face of a cube must be square", image.width, image.height));
@@ -101,7 +115,7 @@ Image read_layout(const std::vector<fs::path>& files, std::uint64_t max_pixels) 
     throw Error(fmt::format("an environment is one image, or the six faces of a cube (+X -X +Y -Y +Z -Z), not {} files",
                             files.size()));
   const fs::path& file = files.front();
-  Image image = read_image(file, ColorEncoding::automatic, max_pixels);
+  Image image = read_colors(file, max_pixels);
   const std::array<std::size_t, 3> channels = color_channels(image, file);
   for (const CubePicture& picture : cube_pictures) {
     const int size = image.height / picture.rows;

@@ -18,6 +18,7 @@
 #include <fmt/format.h>
 
 #include "base/memory.h"
+#include "io/finite_mesh.h"
 #include "io/gzip.h"
 #include "lanthorn/error.h"
 #include "lanthorn/text.h"
@@ -500,16 +501,6 @@ class BodyReader {
   std::uint32_t largest_index_ = 0;
 };
 
-bool is_finite(const Point& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
-
-// Removes faces with a corner that is not finite. Returns the number removed.
-template <class Face>
-std::size_t erase_not_finite(std::vector<Face>& faces, const std::vector<Point>& positions) {
-  return std::erase_if(faces, [&](const Face& face) {
-    return std::any_of(face.begin(), face.end(), [&](std::uint32_t i) { return !is_finite(positions[i]); });
-  });
-}
-
 PlyMesh assemble(Vertices vertices, Faces faces) {
   PlyMesh mesh;
   const auto warn = [&](std::uint64_t count, const char* what) {
@@ -519,6 +510,8 @@ PlyMesh assemble(Vertices vertices, Faces faces) {
   warn(faces.degenerate, " faces of fewer than three corners: left out");
   warn(erase_not_finite(faces.triangles, vertices.positions) + erase_not_finite(faces.quads, vertices.positions),
        " faces with a corner that is not finite: left out");
+  warn(replace_not_finite(vertices.normals, Normal(0)) + replace_not_finite(vertices.uvs, Vec2(0)),
+       " normals or texture coordinates that are not finite: read as 0");
   mesh.triangles.triangles = std::move(faces.triangles);
   mesh.quads.patches = std::move(faces.quads);
   if (mesh.triangles.triangles.empty() && mesh.quads.patches.empty()) {
@@ -528,8 +521,7 @@ PlyMesh assemble(Vertices vertices, Faces faces) {
   // No face uses these vertices any more. They are moved onto one that is used, so that the bounding box stays tight.
   const Point place =
       vertices.positions[mesh.triangles.triangles.empty() ? mesh.quads.patches[0][0] : mesh.triangles.triangles[0][0]];
-  std::replace_if(
-      vertices.positions.begin(), vertices.positions.end(), [](const Point& p) { return !is_finite(p); }, place);
+  replace_not_finite(vertices.positions, place);
   if (!mesh.quads.patches.empty()) {
     const bool shared = !mesh.triangles.triangles.empty();
     mesh.quads.positions = shared ? vertices.positions : std::move(vertices.positions);

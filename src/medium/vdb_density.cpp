@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstring>
 #include <sstream>
 #include <stdexcept>
@@ -78,6 +79,21 @@ void check_headers(std::string_view bytes, const std::string& file) {
   }
 }
 
+// Whether all voxels and tiles of a node and of its children are finite.
+template <class Node>
+bool are_finite(const Node& node) {
+  if constexpr (Node::LEVEL == 0) {
+    for (std::uint32_t i = 0; i < Node::SIZE; ++i)
+      if (!std::isfinite(node.getValue(i))) return false;
+  } else {
+    for (auto tile = node.beginValue(); tile; ++tile)
+      if (!std::isfinite(*tile)) return false;
+    for (auto child = node.beginChild(); child; ++child)
+      if (!are_finite(*child)) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 struct VdbDensity::Grid {
@@ -100,6 +116,10 @@ VdbDensity::VdbDensity(const std::string& file, const std::string& name, const F
   if (grid->floats == nullptr)
     throw Error("NanoVDB file \"" + printable(file) + "\" has no grid of floats called " + in_quotes(name));
   if (!nanovdb::isValid(*grid->floats, true)) damaged(file);
+  const auto& root = grid->floats->tree().root();
+  if (!std::isfinite(root.background()) || !are_finite(root))
+    throw Error("grid " + in_quotes(name) + " of NanoVDB file \"" + printable(file) +
+                "\" has a value that is infinite or not a number");
   grid_ = std::move(grid);
 }
 

@@ -10,6 +10,7 @@
 #include <variant>
 
 #include "base/memory.h"
+#include "image/image_file.h"
 #include "lanthorn/text.h"
 
 namespace lanthorn {
@@ -33,15 +34,7 @@ Pixels load_pixels(const std::string& filename, const FileAccess& access, ColorS
   const int width = image.width(), height = image.height();
   require_memory(static_cast<double>(width) * height * bytes_for_sampling + static_cast<double>(image.bytes()),
                  location, "image \"" + printable(filename) + "\" of a light");
-  Pixels pixels{width, height, std::move(image).take_colours()};
-  for (std::size_t i = 0; i < pixels.rows.size(); ++i) {
-    const Rgb c = pixels.rows[i];
-    if (!std::isfinite(c.r + c.g + c.b))
-      throw Error(location, "image \"" + printable(filename) + "\" cannot be a light: its pixel (" +
-                                std::to_string(i % static_cast<std::size_t>(width)) + ", " +
-                                std::to_string(i / static_cast<std::size_t>(width)) + ") is infinite or not a number");
-  }
-  return pixels;
+  return {width, height, std::move(image).take_colours()};
 }
 
 SphericalImage spherical_image(Pixels&& pixels, const std::string& filename, const SourceLocation& location,
@@ -141,6 +134,11 @@ struct LightMaker {
     if (t.width < 1 || (!is_square && t.width != 2 * t.height) ||
         t.rows.size() != static_cast<std::size_t>(t.width) * static_cast<std::size_t>(t.height))
       throw Error(location, "the texels of a light must be a square, or twice as wide as high");
+    for (std::size_t i = 0; i < t.rows.size(); ++i)
+      if (const Rgb& c = t.rows[i]; !std::isfinite(c.r) || !std::isfinite(c.g) || !std::isfinite(c.b))
+        throw Error(location,
+                    "the texels of a light cannot be used: " +
+                        not_finite(static_cast<std::int64_t>(i) % t.width, static_cast<std::int64_t>(i) / t.width));
     const SphereLayout layout = is_square ? SphereLayout::octahedral : SphereLayout::equirectangular;
     return store.spherical_images.emplace_back(layout, t.width, t.height, t.rows);
   }

@@ -67,11 +67,16 @@ struct Maker {
     check_radiance(largest_value(curve), source.location);
     return curve;
   }
+  static bool is_usable(float x) { return std::isfinite(x); }
+  static bool is_usable(const Rgb& c) { return is_usable(c.r) && is_usable(c.g) && is_usable(c.b); }
   template <class T, class U>
-  static SampledGrid<T> grid(const description::MediumGrid<U>& g) {
+  SampledGrid<T> grid(const description::MediumGrid<U>& g) const {
     SampledGrid<T> result{g.size, {}, {g.low, g.high}};
     result.values.reserve(g.values.size());
     for (const U& value : g.values) {
+      if (!is_usable(value))
+        throw Error(source.location,
+                    fmt::format("value {} of the medium's grid is infinite or not a number", result.values.size()));
       if constexpr (std::is_same_v<U, Rgb>)
         result.values.push_back({value.r, value.g, value.b});
       else
@@ -141,7 +146,7 @@ struct Maker {
     return with_density(CloudDensity{{c.low, c.high}, c.density, c.wispiness, c.frequency});
   }
   Medium operator()(const description::RgbGridDensity& g) const {
-    const auto colors = [](const std::optional<description::MediumGrid<Rgb>>& values) {
+    const auto colors = [this](const std::optional<description::MediumGrid<Rgb>>& values) {
       return values ? std::optional(grid<Vec3>(*values)) : std::nullopt;
     };
     RgbGridMedium m;

@@ -13,11 +13,18 @@ using description::SpectrumRole;
 
 Rgb non_negative(const Rgb& c) { return {std::fmax(0.0f, c.r), std::fmax(0.0f, c.g), std::fmax(0.0f, c.b)}; }
 
+bool is_finite(const Rgb& c) { return std::isfinite(c.r) && std::isfinite(c.g) && std::isfinite(c.b); }
+
 void check_samples(const description::SampledSpectrum& s, const SourceLocation& location) {
   if (s.nm.empty() || s.nm.size() != s.values.size())
     throw Error(location, "a sampled spectrum needs as many values as wavelengths");
   if (std::adjacent_find(s.nm.begin(), s.nm.end(), std::greater_equal<>()) != s.nm.end())
     throw Error(location, "the wavelengths of a sampled spectrum must ascend");
+  const auto are_finite = [](const std::vector<float>& numbers) {
+    return std::all_of(numbers.begin(), numbers.end(), [](float x) { return std::isfinite(x); });
+  };
+  if (!are_finite(s.nm) || !are_finite(s.values))
+    throw Error(location, "a sampled spectrum has a number that is infinite or not a number");
 }
 
 }  // namespace
@@ -30,10 +37,12 @@ SpectrumCurve SpectrumStore::curve(const description::SpectrumValue& value, Spec
     return SpectrumCurve::tabulated(keep(s));
   };
   if (const auto* constant = std::get_if<float>(&value)) {
+    if (!std::isfinite(*constant)) throw Error(location, "a spectrum is infinite or not a number");
     if (is_light) return SpectrumCurve::illuminant({*constant, *constant, *constant}, space);
     return SpectrumCurve::constant(*constant);
   }
   if (const auto* rgb = std::get_if<description::RgbSpectrum>(&value)) {
+    if (!is_finite(rgb->rgb)) throw Error(location, "a colour has a component that is infinite or not a number");
     const Rgb colour = non_negative(rgb->rgb);
     switch (role) {
       case SpectrumRole::albedo:

@@ -38,7 +38,7 @@ Encoding automatic_encoding(bool is_8_bit, bool is_integer, std::string_view for
 
 TexelReader::TexelReader(const ImageSource& source, const FileAccess& access, const TexelColours& colours, bool whole,
                          const SourceLocation& location)
-    : what_("image \"" + printable(source.name()) + "\""), colours_(colours) {
+    : what_("image \"" + printable(source.name()) + "\""), location_(location), colours_(colours) {
   std::shared_ptr<std::FILE> stream;
   try {
     if (source.bytes() == nullptr && whole) bytes_ = access.read(source.name());
@@ -96,10 +96,27 @@ void TexelReader::convert(const std::byte* read, std::size_t texels, std::byte* 
   }
 }
 
+// Throws Error if a row of floats, as they were read, has a texel that is not finite or would not be as a colour.
+void TexelReader::check_finite(const std::byte* samples, int row) const {
+  const auto stride = static_cast<std::size_t>(format_.channels), width = static_cast<std::size_t>(format_.width);
+  std::array<float, 4> v{};
+  for (std::size_t x = 0; x < width; ++x) {
+    std::memcpy(v.data(), samples + x * stride * sizeof(float), stride * sizeof(float));
+    bool is_finite = std::all_of(v.begin(), v.end(), [](float value) { return std::isfinite(value); });
+    if (to_rec709() && stride >= 3) {
+      const Rgb colour = *to_rec709() * Rgb{v[0], v[1], v[2]};
+      is_finite = is_finite && std::isfinite(colour.r) && std::isfinite(colour.g) && std::isfinite(colour.b);
+    }
+    if (!is_finite) throw Error(location_, what_ + " cannot be used: " + not_finite(static_cast<std::int64_t>(x), row));
+  }
+}
+
 void TexelReader::read(std::byte* texels) {
   const std::size_t count = static_cast<std::size_t>(format_.width) * static_cast<std::size_t>(format_.height);
   if (read_as_ == SampleType::float32) {
     file_->read(format_.channels, reinterpret_cast<float*>(texels));
+    for (int y = 0; y < format_.height; ++y)
+      check_finite(texels + static_cast<std::size_t>(y) * format_.row_bytes(), y);
     if (is_converted()) convert(texels, count, texels);
   } else if (format_.is_8_bit) {
     file_->read(format_.channels, reinterpret_cast<std::uint8_t*>(texels));
@@ -127,6 +144,7 @@ void TexelReader::read_rows(const std::function<void(const std::byte* row)>& tak
       file_->read(format_.channels, reinterpret_cast<float*>(rows.data()));  // a Radiance picture
     for (std::size_t y = 0; y < static_cast<std::size_t>(end - first); ++y) {
       const std::byte* row = rows.data() + y * row_read;
+      if (read_as_ == SampleType::float32) check_finite(row, first + static_cast<int>(y));
       if (is_converted()) convert(row, width, converted.data());
       take(is_converted() ? converted.data() : row);
     }

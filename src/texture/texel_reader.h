@@ -54,16 +54,19 @@ class TexelReader {
   const std::optional<RgbMatrix>& to_rec709() const { return file_->to_rec709(); }
   /// The name in messages: image "a.png".
   const std::string& what() const { return what_; }
-  /// All texels, format().row_bytes() times height bytes. Throws Error if the file is damaged.
+  /// All texels, format().row_bytes() times height bytes. Throws Error if the file is damaged, or has a texel that is
+  /// not finite, or would not be as a colour.
   void read(std::byte* texels);
-  /// Calls `take(row)` for each row from the top.
+  /// Calls `take(row)` for each row from the top. Throws Error as `read` does.
   void read_rows(const std::function<void(const std::byte* row)>& take);
 
  private:
   void convert(const std::byte* read, std::size_t texels, std::byte* out) const;
   bool is_converted() const;
+  void check_finite(const std::byte* samples, int row) const;
 
   std::string what_;
+  SourceLocation location_;
   std::string bytes_;
   std::optional<ImageFile> file_;
   TextureFormat format_;

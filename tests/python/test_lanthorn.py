@@ -298,6 +298,17 @@ class Sessions(unittest.TestCase):
         with self.assertRaisesRegex(lanthorn.Error, "unknown key .lamps."):
             scene.edit(lamps={})
 
+    def test_numbers_must_be_finite(self):
+        for change, message in (
+            (lambda d: d["shapes"][0]["positions"].__setitem__((2, 1), np.nan), "positions.*finite.*entry 2"),
+            (lambda d: d["materials"][0].update(reflectance=[0.2, np.inf, 0]), "reflectance.*finite.*entry 1"),
+            (lambda d: d["camera"].update(fov=np.nan), "fov: expected a number"),
+        ):
+            data = floor_and_lamp()
+            change(data)
+            with self.assertRaisesRegex(lanthorn.Error, message):
+                lanthorn.load_dict(data)
+
     def test_pictures_are_not_mirrored(self):
         data = floor_and_lamp()
         data["camera"] = {"camera_to_world": lanthorn.look_at((0, 5, 0), (0, 0, 0), up=(0, 0, -1)), "fov": 40}

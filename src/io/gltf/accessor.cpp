@@ -107,7 +107,7 @@ Accessor::Sparse Accessor::sparse(Document& document, const Value& value, std::s
   return result;
 }
 
-Accessor::Accessor(Document& document, const Value& reference, std::size_t components) {
+Accessor::Accessor(Document& document, const Value& reference, std::size_t components) : reference_(reference) {
   const Value value = document.follow("accessors", reference);
   type_ = type_of(value.at("componentType"));
   normalized_ = value.boolean("normalized", false);
@@ -157,8 +157,14 @@ float Accessor::number(std::size_t element, std::size_t component) const {
     case Type::f32:
       break;
   }
-  const auto value = load<float>(at);
-  return std::isfinite(value) ? value : 0.0f;
+  return load<float>(at);
+}
+
+float Accessor::finite_number(std::size_t element, std::size_t component) const {
+  const float value = number(element, component);
+  if (!std::isfinite(value))
+    throw reference_.error("element " + std::to_string(element) + " of the accessor has a number that is not finite");
+  return value;
 }
 
 std::uint32_t Accessor::integer(std::size_t element, std::size_t component) const {

@@ -20,9 +20,11 @@ class Accessor {
   Accessor(Document& document, const Value& reference, std::size_t components);
 
   std::size_t count() const { return count_; }
-  /// A component as a float: integers unchanged or, if normalised, mapped to [0, 1] or [-1, 1] (§3.6.2.2). Non-finite
-  /// numbers become 0.
+  /// A component as a float: integers unchanged or, if normalised, mapped to [0, 1] or [-1, 1] (§3.6.2.2). May be
+  /// infinite or NaN, which the format forbids.
   float number(std::size_t element, std::size_t component) const;
+  /// The same. Throws Error if it is not finite.
+  float finite_number(std::size_t element, std::size_t component) const;
   /// A component as an integer, for accessors of unsigned integers.
   std::uint32_t integer(std::size_t element, std::size_t component) const;
   bool is_unsigned() const;
@@ -45,6 +47,7 @@ class Accessor {
   static Sparse sparse(Document& document, const Value& value, std::size_t count, std::size_t element_size);
   const char* component(std::size_t element, std::size_t component) const;
 
+  Value reference_;
   Type type_ = Type::f32;
   bool normalized_ = false;
   std::size_t count_ = 0;

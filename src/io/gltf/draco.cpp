@@ -31,10 +31,7 @@ std::vector<V> values(const draco::Mesh& mesh, const Value& attributes, const st
     std::array<float, V::length()> numbers{};
     if (at.value() >= attribute->size() || !attribute->ConvertValue<float, V::length()>(at, numbers.data()))
       throw id->error("the attribute cannot be decoded");
-    for (int k = 0; k < V::length(); ++k) {
-      const float x = numbers[static_cast<std::size_t>(k)];
-      result[i][k] = std::isfinite(x) ? x : 0.0f;
-    }
+    for (int k = 0; k < V::length(); ++k) result[i][k] = numbers[static_cast<std::size_t>(k)];
   }
   return result;
 }

@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "io/finite_mesh.h"
 #include "io/gltf/accessor.h"
 #include "io/gltf/draco.h"
 #include "math/vec.h"
@@ -207,6 +208,26 @@ Primitive read_compressed(Document& document, const Value& primitive, const Valu
   return result;
 }
 
+// The format forbids such numbers, but exporters write them, for example as the normals of faces without area.
+void repair_not_finite(Document& document, const Value& primitive, Primitive& result) {
+  TriangleMesh& mesh = result.mesh;
+  if (const std::size_t cells =
+          erase_not_finite(mesh.triangles, mesh.positions) + erase_not_finite(result.strokes, mesh.positions);
+      cells > 0)
+    document.warn("not finite", primitive,
+                  std::to_string(cells) + " faces, lines or points with a corner that is not finite: left out");
+  // No cell uses these positions any more: they move onto another, so that the bounding box stays tight.
+  const auto place = std::find_if(mesh.positions.begin(), mesh.positions.end(), is_finite<Point>);
+  replace_not_finite(mesh.positions, place == mesh.positions.end() ? Point(0) : Point(*place));
+  if (const std::size_t replaced = replace_not_finite(mesh.normals, Normal(0)) +
+                                   replace_not_finite(mesh.tangents, Vec3(0)) + replace_not_finite(mesh.uvs, Vec2(0)) +
+                                   replace_not_finite(mesh.colors, glm::vec4(1));
+      replaced > 0)
+    document.warn("attributes not finite", primitive,
+                  std::to_string(replaced) +
+                      " normals, tangents, texture coordinates or colours that are not finite: read as 0, or as white");
+}
+
 }  // namespace
 
 std::optional<Primitive> read_primitive(Document& document, const Value& primitive, const Surface& surface,
@@ -220,6 +241,7 @@ std::optional<Primitive> read_primitive(Document& document, const Value& primiti
   const auto compressed = primitive.extension("KHR_draco_mesh_compression");
   Primitive result = compressed ? read_compressed(document, primitive, *compressed, surface, deformation)
                                 : read_plain(document, primitive, mode, surface, deformation);
+  repair_not_finite(document, primitive, result);
   if (result.mesh.triangles.empty() && result.strokes.empty()) {
     document.warn("no triangles", primitive, "the primitive has no triangles: left out");
     return {};

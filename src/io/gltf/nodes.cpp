@@ -83,11 +83,12 @@ std::vector<Transform> mesh_places(Document& document, const PlacedNode& placed)
   if (count.value_or(0) > most_instances)
     throw instancing->error("there are more than " + std::to_string(most_instances) + " instances");
   const auto vec3 = [](const std::optional<Accessor>& a, std::size_t i, double otherwise) {
-    return a ? glm::dvec3(a->number(i, 0), a->number(i, 1), a->number(i, 2)) : glm::dvec3(otherwise);
+    return a ? glm::dvec3(a->finite_number(i, 0), a->finite_number(i, 1), a->finite_number(i, 2))
+             : glm::dvec3(otherwise);
   };
   for (std::size_t i = 0; i < count.value_or(0); ++i) {
     std::vector<double> turn{0, 0, 0, 1};
-    for (std::size_t c = 0; rotation && c < 4; ++c) turn[c] = static_cast<double>(rotation->number(i, c));
+    for (std::size_t c = 0; rotation && c < 4; ++c) turn[c] = static_cast<double>(rotation->finite_number(i, c));
     add(placed.to_world * from_parts(vec3(translation, i, 0), turn, vec3(scale, i, 1)));
   }
   return places;

@@ -65,7 +65,7 @@ struct Keys {
   double span = 0;      // seconds between them
 
   Keys(const Accessor& times, double seconds) {
-    const auto time = [&](std::size_t i) { return static_cast<double>(times.number(i, 0)); };
+    const auto time = [&](std::size_t i) { return static_cast<double>(times.finite_number(i, 0)); };
     std::size_t low = 0, high = times.count();  // times before `low` are <= `seconds`, from `high` on later
     while (low < high) {
       const std::size_t middle = low + (high - low) / 2;
@@ -117,7 +117,7 @@ class Track {
     Numbers result;
     for (std::size_t e = 0; e < elements_; ++e)
       for (std::size_t c = 0; c < components_; ++c)
-        result.push_back(static_cast<double>(values_.number((key * parts + part) * elements_ + e, c)));
+        result.push_back(static_cast<double>(values_.finite_number((key * parts + part) * elements_ + e, c)));
     return result;
   }
   // Cubic spline interpolation (appendix C.5).

@@ -186,7 +186,7 @@ class SceneReader {
       }
       glm::dmat4 from_bind(1.0);
       for (int k = 0; matrices && k < 16; ++k)
-        from_bind[k / 4][k % 4] = static_cast<double>(matrices->number(i, static_cast<std::size_t>(k)));
+        from_bind[k / 4][k % 4] = static_cast<double>(matrices->finite_number(i, static_cast<std::size_t>(k)));
       result.push_back(found->second * from_bind);
     }
     return result;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <set>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "support/gltf_triangle.h"
@@ -91,6 +92,12 @@ TEST(GltfAnimation, ErrorsNameThePlace) {
             "t.gltf#/animations/0/samplers/0/interpolation: must be STEP, LINEAR or CUBICSPLINE, not \"SMOOTH\"");
   EXPECT_EQ(gltf_error(animated("weights", "LINEAR", {0}, {0}, 1), 0),
             "t.gltf#/animations/0/channels/0/target: animates weights, but the node's mesh has no morph targets");
+  for (const auto& [times, values, place] :
+       std::vector<std::tuple<std::vector<float>, std::vector<float>, const char*>>{{{NAN}, {0, 0, 0}, "input"},
+                                                                                    {{0}, {0, INFINITY, 0}, "output"}})
+    EXPECT_EQ(gltf_error(animated("translation", "LINEAR", times, values, 3), 0),
+              std::string("t.gltf#/animations/0/samplers/0/") + place +
+                  ": element 0 of the accessor has a number that is not finite");
   GltfWriter file = animated("translation", "LINEAR", {0}, {0, 0, 0}, 3);
   file.root["animations"][0]["channels"][0]["sampler"] = 7;
   EXPECT_EQ(gltf_error(file, 0), "t.gltf#/animations/0/channels/0/sampler: is 7, but there are 1 samplers");

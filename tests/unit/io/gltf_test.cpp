@@ -1,10 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 // Containers, accessors, meshes, nodes, lights and cameras.
+#include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <ctime>
+#include <limits>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -88,6 +91,34 @@ TEST(GltfAccessor, SparseReplacesElements) {
   };
   EXPECT_EQ(with_base(true), (std::vector<Point>{{7, 8, 9}, {1, 0, 0}, {4, 5, 6}}));
   EXPECT_EQ(with_base(false), (std::vector<Point>{{7, 8, 9}, {0, 0, 0}, {4, 5, 6}}));
+}
+
+// Exporters write NaN as the normals of faces without area, and broken modifiers as positions.
+TEST(GltfMesh, NumbersThatAreNotFiniteAreLeftOutWithAWarning) {
+  constexpr float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
+  GltfWriter file;
+  file.mesh({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {7, 7, 7}}, {0, 1, 2, 1, 3, 2});
+  file.node({{"mesh", 0}});
+  json& attributes = file.root["meshes"][0]["primitives"][0]["attributes"];
+  attributes["POSITION"] = file.accessor<float>({5, 0, 0, 6, 0, 0, 5, 1, 0, 9, infinity, 0}, 3);
+  attributes["NORMAL"] = file.accessor<float>({0, 0, 1, 0, nan, 1, 0, 0, 1, 0, 0, 1}, 3);
+  attributes["TEXCOORD_0"] = file.accessor<float>({1, 0, -infinity, 0, 0, 0, 0, 0}, 2);
+  attributes["COLOR_0"] = file.accessor<float>({nan, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0}, 3);
+  const SceneDescription scene = read_gltf(file);
+  const TriangleMesh& mesh = mesh_of(scene.shapes.at(0));
+  EXPECT_EQ(mesh.triangles, (std::vector<std::array<std::uint32_t, 3>>{{0, 1, 2}}));
+  EXPECT_EQ(mesh.positions.at(3), Point(5, 0, 0)) << "within the bounds of the others";
+  EXPECT_EQ(mesh.normals.at(1), Normal(0));
+  EXPECT_EQ(mesh.uvs.at(1).x, 0);
+  EXPECT_EQ(mesh.colors.at(0), glm::vec4(1));
+  const std::vector<std::string> all = warnings(scene);
+  EXPECT_EQ(std::count_if(all.begin(), all.end(),
+                          [](const std::string& w) { return w.find("not finite") != std::string::npos; }),
+            2);
+  const std::string text = fmt::format("{}", fmt::join(all, "|"));
+  EXPECT_NE(text.find("1 faces, lines or points with a corner that is not finite: left out"), std::string::npos)
+      << text;
+  EXPECT_NE(text.find("3 normals, tangents, texture coordinates or colours"), std::string::npos) << text;
 }
 
 TEST(GltfMesh, AttributesAndModes) {

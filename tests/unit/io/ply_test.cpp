@@ -201,6 +201,18 @@ TEST(Ply, OddFacesAreLeftOutWithWarnings) {
   EXPECT_EQ(empty.warnings.back(), "the mesh has no faces: left out");
 }
 
+TEST(Ply, AttributesThatAreNotFiniteAreZeroWithAWarning) {
+  const PlyMesh mesh = parse_ply(
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty float "
+      "nx\nproperty float ny\nproperty float nz\nproperty float u\nproperty float v\nelement face 1\nproperty list "
+      "uchar int vertex_indices\nend_header\n0 0 0 0 nan 1 0 0\n1 0 0 0 0 1 inf 0\n1 1 0 0 0 1 1 1\n3 0 1 2\n",
+      "n.ply");
+  EXPECT_EQ(mesh.warnings,
+            (std::vector<std::string>{"2 normals or texture coordinates that are not finite: read as 0"}));
+  EXPECT_EQ(mesh.triangles.normals, (std::vector<Normal>{{0, 0, 0}, {0, 0, 1}, {0, 0, 1}}));
+  EXPECT_EQ(mesh.triangles.uvs[1], Vec2(0));
+}
+
 struct BadFile {
   std::string text;
   std::string message;

@@ -67,6 +67,16 @@ TEST(Vdb, BrokenFilesAreErrors) {
   }
 }
 
+TEST(Vdb, ValuesThatAreNotFiniteAreErrors) {
+  const test::TemporaryDir folder;
+  const std::string file = (folder.path() / "a.nvdb").string();
+  for (const float bad : {NAN, INFINITY, -INFINITY}) {
+    test::write_vdb(file, size, voxel, origin, [&](const Vec3& i) { return i == Vec3(17, 3, 9) ? bad : value(i); });
+    EXPECT_NE(test::error_text([&] { VdbDensity(file, "density"); }).find("a value that is infinite or not a number"),
+              std::string::npos);
+  }
+}
+
 // Files of older versions have other headers, which must not be reported as damage.
 TEST(Vdb, OtherVersionsAreNamed) {
   const test::TemporaryDir folder;

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
 #include <fstream>
 #include <numbers>
 #include <string>
@@ -477,6 +478,11 @@ TEST(SceneLights, ColoursOfImagesHaveTheChromaticitiesOfTheirFiles) {
   expect(std::get<ProjectionLight>(scene.lights().at(1)).image->texels[0], expected);
   const float mean = (expected.r + expected.g + expected.b) / 3;
   expect(std::get<GoniometricLight>(scene.lights().at(2)).image->texels[0], {mean, mean, mean});
+  EXPECT_NE(test::error_text([&] {
+              folder.write("nan.exr", test::exr_of(test::colour_of_one_pixel(0, NAN, 0), test::acescg));
+              load("LightSource \"goniometric\" \"string filename\" \"nan.exr\"\n");
+            }).find("nan.exr\" cannot be used: its pixel (0, 0) is infinite or not a number"),
+            std::string::npos);
 }
 
 TEST(SceneLights, WhatCannotEmitSaysSo) {

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -293,6 +294,34 @@ TEST_F(ImageTextures, ColoursAreConvertedAndNumbersAreNot) {
   const Rgb tile = cached.colour(cached.texel(0, 0));
   EXPECT_NEAR(tile.r, expected.r, 2e-5f);
   EXPECT_NEAR(tile.b, expected.b, 2e-5f);
+}
+
+// Whatever a texture is used for, in memory as in tiles.
+TEST_F(ImageTextures, ValuesThatAreNotFiniteAreRefused) {
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  const auto cache = std::make_shared<TextureCache>(std::uint64_t{1} << 20);
+  for (const char* name : {"a.exr", "a.tif"})
+    for (const float bad : {std::nanf(""), infinity, -infinity}) {
+      const std::string path = write(name, 2, 2, 3, {1, 1, 1, 1, 1, 1, 1, 1, 1, 1, bad, 1});
+      const std::string message = "image \"" + path + "\" cannot be used: its pixel (1, 1) is infinite or not a number";
+      EXPECT_EQ(test::error_text([&] {
+                  TextureImage(path, FileAccess{}, ImageWish{}, {"s.pbrt", 3, 4});
+                }),
+                "s.pbrt:3:4: " + message);
+      EXPECT_EQ(test::error_text([&] { TextureImage(path, FileAccess{}, ImageWish{}, {}, cache); }), message);
+    }
+  // A depth beside the colours is no alpha, and may be infinite.
+  Image with_depth(1, 1, {"R", "G", "B", "Z"});
+  with_depth.pixels = {0.5f, 0.2f, 0.1f, infinity};
+  const TextureImage seen(folder.write("z.exr", test::exr_of(with_depth, test::acescg)).string(), FileAccess{},
+                          ImageWish{}, {});
+  EXPECT_FALSE(seen.has_alpha());
+  EXPECT_NEAR(seen.scalar({0.5f, 0.5f}, description::Wrap::repeat, description::ImageFilter::point), 0.8f / 3, 1e-6f);
+  // A number that a wide gamut carries beyond the largest float.
+  Image image = test::colour_of_one_pixel(3e38f, 0, 0);
+  const std::string wide = folder.write("wide.exr", test::exr_of(image, test::acescg)).string();
+  EXPECT_NE(test::error_text([&] { TextureImage(wide, FileAccess{}, ImageWish{}, {}); }).find("pixel (0, 0)"),
+            std::string::npos);
 }
 
 // Beyond an edge, lookups return texels of the same edge, mirrored about its midpoint.
