@@ -20,7 +20,8 @@ namespace {
 constexpr int rows_of_tile = 32;
 
 struct EyeSample {
-  float filter_weight = 1, camera_weight = 1;
+  FilterPart filter_part{};
+  float camera_weight = 1;
 };
 
 class OwnMethod final : public Integrator {
@@ -57,7 +58,7 @@ class OwnMethod final : public Integrator {
     for (std::size_t i = 0; i < count; ++i) {
       PixelSample sample;
       sample.light[0] = samples[i].camera_weight * radiance[i];
-      sample.weight = samples[i].filter_weight;
+      sample.filter_part = samples[i].filter_part;
       film.add(static_cast<std::uint32_t>(i), sample);
     }
     return report;
@@ -67,9 +68,9 @@ class OwnMethod final : public Integrator {
   static void start(const RenderJob& job, const PixelPlace& place, std::uint32_t pass, SceneRay& ray,
                     EyeSample& sample) {
     Sampler sampler = eye_sampler(job, place, pass);
-    const EyeStart eye = start_eye_path(job.view, place, job.view.camera.time(0), sampler);
+    const EyeStart eye = start_eye_path(job, place, pass, job.view.camera.time(0), sampler);
     ray = {Point(DVec3(eye.camera.ray.origin) + job.scene.description().origin), eye.camera.ray.direction};
-    sample = {eye.filter_weight, eye.camera.weight};
+    sample = {eye.filter_part, eye.camera.weight};
   }
 
   OwnRadiance radiance_;

@@ -64,7 +64,7 @@ class LightOfRays {
       RayCounts counts;
       LightLayers layers(w);
       radiance_along(PathContext{scene_, w, sampler, counts, {settings_.max_depth}}, {ray}, medium, layers);
-      const PixelSample sample = layers.sample(1, {});
+      const PixelSample sample = layers.sample(FilterPart::positive, {});
       for (std::size_t c = 0; c < path_class_count; ++c) sum += sample.light[c];
     }
     return 1 / static_cast<float>(settings_.samples) * sum;

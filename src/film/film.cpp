@@ -90,7 +90,8 @@ std::size_t Film::stride(const FilmContents& contents) {
   const std::size_t count = contents.buckets ? contents.buckets->count : 0;
   const std::size_t light = 3 * contents.layer_count();
   const std::size_t samples = light + (contents.bias ? 3 : 0) + surface_slots, splats = contents.splats ? light : 0;
-  return 2 * (samples + splats) + 3 * contents.decomposition.parts.size() + (contents.splats ? 3 : 2) * count;
+  const std::size_t of_samples = 2 * samples + 3 * contents.decomposition.parts.size() + 2 * count;
+  return (contents.negative_share == 0 ? 1 : filter_parts) * of_samples + 2 * splats + (contents.splats ? count : 0);
 }
 
 Film Film::with_exponent(int width, int height, int step_exponent, const FilmContents& contents) {
@@ -109,14 +110,7 @@ Film Film::with_exponent(int width, int height, int step_exponent, const FilmCon
   Features{}.for_each([&]<class Value>(const char*, const Value& value) {
     steps = std::fill_n(steps, channels_of(value).size(), steps_of<Value>);
   });
-  const std::size_t buckets = contents.buckets ? contents.buckets->count : 0;
-  for (Half& half : film.halves_) {
-    half.samples.resize(film.samples_stride() * film.pixel_count());
-    if (contents.splats) half.splats.resize(film.splats_stride() * film.pixel_count());
-  }
-  film.spectra_.resize(2 * buckets * film.pixel_count());
-  film.parts_.resize(film.parts_stride() * film.pixel_count());
-  if (contents.splats) film.spectral_splats_.resize(buckets * film.pixel_count());
+  for_each_sum(film, [&](Sums& sums, std::size_t stride) { sums.resize(stride * film.pixel_count()); });
   return film;
 }
 
@@ -131,10 +125,17 @@ std::uint32_t Film::pixel_of_full_film(std::uint32_t pixel) const {
 void Film::write_spectrum(std::uint32_t pixel, std::uint64_t passes, float* out) const {
   const double step = std::ldexp(1.0, step_exponent_);
   const std::size_t count = contents_.buckets->count;
-  const std::int64_t* sums = &spectra_[std::size_t{pixel} * 2 * count];
   for (std::size_t b = 0; b < count; ++b) {
-    const auto weight = static_cast<double>(sums[count + b]);
-    double mean = weight != 0 ? static_cast<double>(sums[b]) * step * unit_steps / weight : 0.0;
+    std::array<std::int64_t, filter_parts> light{}, weights{};
+    for (std::size_t part = 0; part < filter_parts && !spectra_[part].empty(); ++part) {
+      const std::int64_t* sums = &spectra_[part][std::size_t{pixel} * spectra_stride()];
+      light[part] = sums[b];
+      weights[part] = sums[count + b];
+    }
+    const PartFactors factors = factors_of(weights);
+    double mean = 0;
+    for (std::size_t part = 0; part < filter_parts; ++part)
+      mean += static_cast<double>(light[part]) * (factors[part] * step * unit_steps);
     if (contents_.splats && passes > 0)
       mean +=
           static_cast<double>(spectral_splats_[std::size_t{pixel} * count + b]) * step / static_cast<double>(passes);
@@ -145,7 +146,9 @@ void Film::write_spectrum(std::uint32_t pixel, std::uint64_t passes, float* out)
 Film::PixelSums Film::sums_of_half(FilmHalf half, std::uint32_t pixel) const {
   const Half& own = halves_[static_cast<std::size_t>(half)];
   PixelSums sums{};
-  std::copy_n(&own.samples[std::size_t{pixel} * samples_stride()], samples_stride(), sums.samples.begin());
+  for (std::size_t part = 0; part < filter_parts && !own.samples[part].empty(); ++part)
+    std::copy_n(&own.samples[part][std::size_t{pixel} * samples_stride()], samples_stride(),
+                sums.samples[part].begin());
   if (contents_.splats)
     std::copy_n(&own.splats[std::size_t{pixel} * splats_stride()], splats_stride(), sums.splats.begin());
   return sums;
@@ -154,18 +157,36 @@ Film::PixelSums Film::sums_of_half(FilmHalf half, std::uint32_t pixel) const {
 Film::PixelSums Film::sums_of(std::uint32_t pixel) const {
   PixelSums sums = sums_of_half(FilmHalf::first, pixel);
   const PixelSums second = sums_of_half(FilmHalf::second, pixel);
-  for (std::size_t i = 0; i < samples_stride(); ++i) saturating_add(sums.samples[i], second.samples[i]);
+  for (std::size_t part = 0; part < filter_parts; ++part)
+    for (std::size_t i = 0; i < samples_stride(); ++i) saturating_add(sums.samples[part][i], second.samples[part][i]);
   for (std::size_t i = 0; i < splats_stride(); ++i) saturating_add(sums.splats[i], second.splats[i]);
   return sums;
+}
+
+Film::PartFactors Film::factors_of(const std::array<std::int64_t, filter_parts>& counts) const {
+  const auto share = static_cast<double>(contents_.negative_share);
+  const auto& [plus, minus] = counts;
+  const auto over = [](double weight, std::int64_t count) {
+    return count != 0 ? weight / static_cast<double>(count) : 0;
+  };
+  const bool has_both = plus != 0 && minus != 0;
+  return has_both ? PartFactors{over(1 + share, plus), over(-share, minus)}
+                  : PartFactors{over(1, plus), over(1, minus)};
+}
+
+Film::PartFactors Film::factors_of(const PixelSums& sums) const {
+  return factors_of(std::array{sums.samples[0][count_slot()], sums.samples[1][count_slot()]});
 }
 
 Film::LightMeans Film::light_means(const PixelSums& sums, std::uint64_t passes) const {
   LightMeans means{};
   const double step = std::ldexp(1.0, step_exponent_);
   const std::size_t values = splats_stride();
-  if (sums.samples[weight_slot()] != 0) {
-    const double scale = step * unit_steps / static_cast<double>(sums.samples[weight_slot()]);
-    for (std::size_t i = 0; i < values; ++i) means[i] = static_cast<double>(sums.samples[i]) * scale;
+  const PartFactors factors = factors_of(sums);
+  for (std::size_t part = 0; part < filter_parts; ++part) {
+    const double scale = factors[part] * step * unit_steps;
+    for (std::size_t i = 0; i < values && scale != 0; ++i)
+      means[i] += static_cast<double>(sums.samples[part][i]) * scale;
   }
   if (contents_.splats && passes > 0) {
     const double scale = step / static_cast<double>(passes);
@@ -199,16 +220,18 @@ float* write(const Rgb& light, float* out) {
 
 }  // namespace
 
-Film::PartMeans Film::part_means(std::uint32_t pixel, double weight) const {
+Film::PartMeans Film::part_means(std::uint32_t pixel, const PartFactors& factors) const {
   PartMeans light{};
-  if (weight == 0) return light;
   const double step = std::ldexp(1.0, step_exponent_);
-  const std::int64_t* sums = &parts_[std::size_t{pixel} * parts_stride()];
-  const auto mean = [&](std::int64_t sum) {
-    return static_cast<float>(static_cast<double>(sum) * step / (weight / unit_steps));
+  const auto mean = [&](std::size_t slot) {
+    double sum = 0;
+    for (std::size_t part = 0; part < filter_parts && !parts_[part].empty(); ++part)
+      sum += static_cast<double>(parts_[part][std::size_t{pixel} * parts_stride() + slot]) *
+             (factors[part] * step * unit_steps);
+    return static_cast<float>(sum);
   };
-  for (std::size_t p = 0; p < contents_.decomposition.parts.size(); ++p, sums += 3)
-    light[p] = {mean(sums[0]), mean(sums[1]), mean(sums[2])};
+  for (std::size_t p = 0; p < contents_.decomposition.parts.size(); ++p)
+    light[p] = {mean(3 * p), mean(3 * p + 1), mean(3 * p + 2)};
   return light;
 }
 
@@ -229,7 +252,7 @@ Rgb Film::splat_mean(const SplatSums& splats, std::uint64_t passes) const {
 float* Film::write_decomposition(std::uint32_t pixel, std::uint64_t passes, const PixelSums& sums, const Rgb& balance,
                                  float* out) const {
   const Decomposition& d = contents_.decomposition;
-  PartMeans light = part_means(pixel, static_cast<double>(sums.samples[weight_slot()]));
+  PartMeans light = part_means(pixel, factors_of(sums));
   for (Rgb& part : light) part = balance * part;
   for (std::size_t p = 0; p < d.parts.size(); ++p) out = write(light[p], out);
   const Rgb splats = balance * splat_mean(sums.splats, passes);
@@ -250,16 +273,25 @@ float* Film::write_light(const LightMeans& means, float* out) const {
                         [](double x) { return static_cast<float>(x); });
 }
 
-float* Film::write_features(const SampleSums& samples, float* out) const {
-  const std::int64_t* sums = &samples[light_slots()];
-  const auto weight = static_cast<double>(samples[weight_slot()]) / unit_steps,
-             hits = static_cast<double>(sums[hit_slot]) / unit_steps;
+float* Film::write_features(const PixelSums& sums, float* out) const {
+  const auto both = [&](std::size_t slot) {
+    return static_cast<double>(sums.samples[0][slot]) + static_cast<double>(sums.samples[1][slot]);
+  };
+  std::size_t slot = light_slots();
+  const PartFactors factors = factors_of(sums);
+  const double hits = both(slot + hit_slot);
   Features{}.for_each([&]<class Value>(const char*, const Value& value) {
-    const double count = is_number<Value> ? hits : weight;
-    for (std::size_t c = 0; c < channels_of(value).size(); ++c, ++sums)
-      *out++ = count != 0 ? static_cast<float>(static_cast<double>(*sums) / steps_of<Value> / count) : 0.0f;
+    for (std::size_t c = 0; c < channels_of(value).size(); ++c, ++slot) {
+      double mean = 0;
+      if constexpr (is_number<Value>)  // a mean over hits, in which parts of both signs could cancel
+        mean = hits != 0 ? both(slot) / hits : 0;
+      else
+        mean = factors[0] * static_cast<double>(sums.samples[0][slot]) +
+               factors[1] * static_cast<double>(sums.samples[1][slot]);
+      *out++ = static_cast<float>(mean * (unit_steps / steps_of<Value>));
+    }
   });
-  *out++ = static_cast<float>(weight);
+  *out++ = static_cast<float>(both(count_slot()) / unit_steps);
   return out;
 }
 
@@ -279,8 +311,8 @@ Image Film::resolve(std::uint64_t passes, const Rgb& balance) const {
     LightMeans means = light_means(sums, passes);
     scale_colours(balance, means);
     write_color(std::span(means).first(3 * contents_.light.size()), out);
-    out = write_features(sums.samples, write_light(means, out + 3));
-    if (!parts_.empty()) out = write_decomposition(pixel, passes, sums, balance, out);
+    out = write_features(sums, write_light(means, out + 3));
+    if (parts_stride() > 0) out = write_decomposition(pixel, passes, sums, balance, out);
     if (contents_.buckets) write_spectrum(pixel, passes, out);
   });
   return image;
@@ -303,33 +335,34 @@ Image Film::resolve_first_half(std::uint64_t passes, const Rgb& balance) const {
     const PixelSums sums = sums_of_half(FilmHalf::first, pixel);
     LightMeans means = light_means(sums, passes);
     scale_colours(balance, means);
-    write_features(sums.samples, write_light(means, &image.pixels[pixel * stride]));
+    write_features(sums, write_light(means, &image.pixels[pixel * stride]));
   });
   return image;
 }
 
 HalfPicture Film::resolve_half(FilmHalf half, std::uint64_t passes, const Rgb& balance) const {
-  const Half& own = halves_[static_cast<std::size_t>(half)];
   const Image black(width_, height_, {"R", "G", "B"});
   HalfPicture picture{black, contents_.bias ? black : Image()};
   const std::array<float, 3> factors{balance.r, balance.g, balance.b};
   const double step = std::ldexp(1.0, step_exponent_), per_pass = passes > 0 ? step / static_cast<double>(passes) : 0.0;
   for_each_pixel([&](std::uint32_t pixel) {
-    const std::int64_t* sums = &own.samples[std::size_t{pixel} * samples_stride()];
-    const double per_sample =
-        sums[weight_slot()] != 0 ? step * unit_steps / static_cast<double>(sums[weight_slot()]) : 0;
+    const PixelSums sums = sums_of_half(half, pixel);
+    PartFactors per_sample = factors_of(sums);
+    for (double& factor : per_sample) factor *= step * unit_steps;
     for (std::size_t c = 0; c < 3; ++c) {
-      double light = 0, splatted = 0;
-      for (std::size_t layer = 0; layer < contents_.light.size(); ++layer) {
-        light += static_cast<double>(sums[3 * layer + c]);
-        if (contents_.splats)
-          splatted += static_cast<double>(own.splats[std::size_t{pixel} * splats_stride() + 3 * layer + c]);
+      double light = 0, splatted = 0, bias = 0;
+      for (std::size_t part = 0; part < filter_parts; ++part) {
+        double sum = 0;
+        for (std::size_t layer = 0; layer < contents_.light.size(); ++layer)
+          sum += static_cast<double>(sums.samples[part][3 * layer + c]);
+        light += sum * per_sample[part];
+        if (contents_.bias) bias += static_cast<double>(sums.samples[part][splats_stride() + c]) * per_sample[part];
       }
+      for (std::size_t layer = 0; layer < contents_.light.size(); ++layer)
+        splatted += static_cast<double>(sums.splats[3 * layer + c]);
       const std::size_t place = std::size_t{pixel} * 3 + c;
-      picture.color.pixels[place] = factors[c] * static_cast<float>(light * per_sample + splatted * per_pass);
-      if (contents_.bias)
-        picture.bias.pixels[place] =
-            factors[c] * static_cast<float>(static_cast<double>(sums[splats_stride() + c]) * per_sample);
+      picture.color.pixels[place] = factors[c] * static_cast<float>(light + splatted * per_pass);
+      if (contents_.bias) picture.bias.pixels[place] = factors[c] * static_cast<float>(bias);
     }
   });
   return picture;
@@ -340,8 +373,8 @@ FilmReport Film::report() const {
     if (problem.count == 0) return std::nullopt;
     return FilmPlace{problem.first >> 32, static_cast<std::uint32_t>(problem.first)};
   };
-  std::uint64_t saturated = count_saturated(parts_) + count_saturated(spectra_) + count_saturated(spectral_splats_);
-  for (const Half& half : halves_) saturated += count_saturated(half.samples) + count_saturated(half.splats);
+  std::uint64_t saturated = 0;
+  for_each_sum(*this, [&](const Sums& sums, std::size_t) { saturated += count_saturated(sums); });
   return {.non_finite = non_finite_.count,
           .too_large = too_large_.count,
           .saturated = saturated,
@@ -371,37 +404,31 @@ bool Film::compatible(const Film& other) const {
 
 void Film::merge(const Film& other) {
   assert(compatible(other));
-  const auto add = [](std::vector<std::int64_t>& sums, const std::vector<std::int64_t>& others) {
+  std::vector<const Sums*> others;
+  for_each_sum(other, [&](const Sums& sums, std::size_t) { others.push_back(&sums); });
+  std::size_t number = 0;
+  for_each_sum(*this, [&](Sums& sums, std::size_t) {
+    const Sums& more = *others[number++];
     parallel_chunks(sums.size(), chunk_sums, [&](std::size_t, std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) saturating_add(sums[i], others[i]);
+      for (std::size_t i = begin; i < end; ++i) saturating_add(sums[i], more[i]);
     });
-  };
-  for (std::size_t h = 0; h < halves_.size(); ++h) {
-    add(halves_[h].samples, other.halves_[h].samples);
-    add(halves_[h].splats, other.halves_[h].splats);
-  }
-  for (const auto sums : {&Film::parts_, &Film::spectra_, &Film::spectral_splats_}) add(this->*sums, other.*sums);
+  });
   for (const auto problem : {&Film::non_finite_, &Film::too_large_}) add_problem(this->*problem, other.*problem);
 }
 
 std::size_t Film::plane_count() const { return stride(contents_); }
 
 // The sums of the film itself, or of a const film, which the caller does not modify.
-template <class Sums, class Self>
-Film::PlanePlace<Sums> Film::find_plane(Self& film, std::size_t index) {
+template <class Array, class Self>
+Film::PlanePlace<Array> Film::find_plane(Self& film, std::size_t index) {
   assert(index < film.plane_count());
-  const std::size_t count = film.contents_.buckets ? film.contents_.buckets->count : 0;
-  const std::size_t splats = film.contents_.splats ? film.splats_stride() : 0;
-  for (auto& half : film.halves_)
-    for (const auto& [sums, stride] :
-         {std::pair{&half.samples, film.samples_stride()}, std::pair{&half.splats, splats}}) {
-      if (index < stride) return {sums, stride, index};
-      index -= stride;
-    }
-  if (index < film.parts_stride()) return {&film.parts_, film.parts_stride(), index};
-  index -= film.parts_stride();
-  if (index < 2 * count) return {&film.spectra_, 2 * count, index};
-  return {&film.spectral_splats_, count, index - 2 * count};
+  PlanePlace<Array> place;
+  std::size_t before = 0;
+  for_each_sum(film, [&](Array& sums, std::size_t stride) {
+    if (index >= before && index - before < stride) place = {&sums, stride, index - before};
+    before += stride;
+  });
+  return place;
 }
 
 std::vector<std::int64_t> Film::plane(std::size_t index) const {
@@ -412,13 +439,13 @@ std::vector<std::int64_t> Film::plane(std::size_t index) const {
 
 void Film::copy_sums(std::size_t plane, std::size_t first, std::span<std::int64_t> out) const {
   assert(first + out.size() <= pixel_count());
-  const auto [sums, stride, slot] = find_plane<const std::vector<std::int64_t>>(*this, plane);
+  const auto [sums, stride, slot] = find_plane<const Sums>(*this, plane);
   for (std::size_t i = 0; i < out.size(); ++i) out[i] = (*sums)[(first + i) * stride + slot];
 }
 
 void Film::add_sums(std::size_t plane, std::size_t first, std::span<const std::int64_t> values) {
   assert(first + values.size() <= pixel_count());
-  const auto [sums, stride, slot] = find_plane<std::vector<std::int64_t>>(*this, plane);
+  const auto [sums, stride, slot] = find_plane<Sums>(*this, plane);
   for (std::size_t i = 0; i < values.size(); ++i)
     saturating_add((*sums)[(first + i) * stride + slot], std::clamp(values[i], -sum_limit, sum_limit));
 }

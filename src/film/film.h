@@ -15,6 +15,7 @@
 
 #include "base/spin_locks.h"
 #include "film/features.h"
+#include "film/filter.h"
 #include "film/pixel_window.h"
 #include "film/sensor.h"
 #include "lanthorn/image.h"
@@ -53,7 +54,7 @@ struct PixelSample {
   Features features{};
   /// Sum of the light layers, for films with spectral buckets.
   std::optional<SpectralRadiance> spectrum{};
-  float weight = 1;  ///< from `Filter::sample`; `Film::add` multiplies by it, the caller does not
+  FilterPart filter_part = FilterPart::positive;  ///< from which the sample's position was drawn
 };
 
 /// Quantities that a film accumulates. Every film also has the layers of `Features`, and samples.
@@ -66,6 +67,8 @@ struct FilmContents {
   bool splats = false;  ///< `splat` will be called
   bool bias = false;    ///< samples have an estimate of their bias
   std::optional<SpectralBuckets> buckets{};
+  /// N of the pixel filter (film/filter.h). If it is not 0, the film keeps further sums for the samples of f⁻.
+  float negative_share = 0;
   std::size_t layer_count() const { return light.size() + repeated.size(); }
   friend bool operator==(const FilmContents&, const FilmContents&) = default;
 };
@@ -92,7 +95,12 @@ struct HalfPicture {
 /// steps (4 million samples of the largest radiance); one contribution is clamped at 2^56 steps (65536 times the
 /// largest radiance). Floats above 2^-17 of the largest radiance are stored without rounding. Values below 2^12 steps
 /// are rounded stochastically, by a hash of pass, pixel of the full film and value, so that sums of tiny contributions
-/// stay unbiased. Weights and features use 2^40 steps per unit, features that are numbers or positions 2^28.
+/// stay unbiased. Counts and features use 2^40 steps per unit, features that are numbers or positions 2^28.
+///
+/// For filters with negative lobes, the film keeps the sums of the samples of f⁺ and of f⁻ apart. A pixel is
+/// (1 + N) (mean over f⁺) - N (mean over f⁻). As long as one part has no samples, it is the mean of the other: the
+/// first passes show the picture as f⁺ alone filters it. A constant stays constant, and no pixel exceeds 1 + 2 N times
+/// its largest sample.
 ///
 /// Spectral buckets, if present, hold the mean radiance of all light within them, per nanometre. A value at a
 /// wavelength is weighted by 1 / (4 pdf width). Buckets of samples are divided by the sum of these weights, so that a
@@ -114,8 +122,8 @@ class Film {
   int step_exponent() const { return step_exponent_; }
   /// Memory used, in bytes.
   std::size_t memory() const {
-    std::size_t integers = parts_.capacity() + spectra_.capacity() + spectral_splats_.capacity();
-    for (const Half& half : halves_) integers += half.samples.capacity() + half.splats.capacity();
+    std::size_t integers = 0;
+    for_each_sum(*this, [&](const std::vector<std::int64_t>& sums, std::size_t) { integers += sums.capacity(); });
     return integers * sizeof(std::int64_t);
   }
 
@@ -129,13 +137,13 @@ class Film {
     full_width_ = full_width;
   }
 
-  /// The image after `passes` passes (divides splats by `passes`, samples by the sum of their weights). Channels, in
+  /// The image after `passes` passes (divides splats by `passes`, samples by their number). Channels, in
   /// this order: R, G, B (color); the light layers by their names (emission.R ... caustic.B, media.R ...); albedo.R ..
-  /// B; normal.X .. Z (mean, not unit length); position.X .. Z; depth.Z (mean over hits, 0 without hits); samples (sum
-  /// of weights); the parts of the decomposition by their names (technique.hit.R ..., term.A.R ...), its splats and its
-  /// shares (red, green and blue are the luminance shares of the first, second and third group); the spectral buckets
-  /// by their centres (S0.360,5nm ...). Pixels without samples are 0, and so are buckets in which no wavelength was
-  /// sampled. `balance`: factors applied to the colours of light; other channels are unaffected.
+  /// B; normal.X .. Z (mean, not unit length); position.X .. Z; depth.Z (mean over hits, 0 without hits); samples
+  /// (their number); the parts of the decomposition by their names (technique.hit.R ..., term.A.R ...), its splats and
+  /// its shares (red, green and blue are the luminance shares of the first, second and third group); the spectral
+  /// buckets by their centres (S0.360,5nm ...). Pixels without samples are 0, and so are buckets in which no wavelength
+  /// was sampled. `balance`: factors applied to the colours of light; other channels are unaffected.
   Image resolve(std::uint64_t passes, const Rgb& balance = {1, 1, 1}) const;
   /// Only R, G, B of `resolve`, for previews.
   Image resolve_color(std::uint64_t passes, const Rgb& balance = {1, 1, 1}) const;
@@ -179,43 +187,64 @@ class Film {
   static void add_problem(Problem& sum, const Problem& more);
   using LightMeans = std::array<double, most_light_layers * 3>;  ///< 0 for missing layers
   static constexpr std::size_t surface_slots =
-      feature_channels + 2;  ///< of a sample, after its light: including hits and weights
+      feature_channels + 2;  ///< of a sample, after its light: including hits and the number of samples
   static constexpr std::size_t most_slots = (most_light_layers + 1) * 3 + surface_slots;  ///< of a sample
-  using SampleValues = std::array<double, most_slots>;                                    ///< times the sample's weight
+  using SampleValues = std::array<double, most_slots>;
   using SampleSums = std::array<std::int64_t, most_slots>;
   using SplatSums = std::array<std::int64_t, most_light_layers * 3>;  ///< 0 for missing layers
+  using Sums = std::vector<std::int64_t>;
+  static constexpr std::size_t filter_parts = 2;
 
   /// Integers per pixel: splats, samples, and the parts of samples.
   std::size_t splats_stride() const { return 3 * contents_.layer_count(); }
   std::size_t light_slots() const { return splats_stride() + (contents_.bias ? 3 : 0); }  ///< of a sample
   std::size_t samples_stride() const { return light_slots() + surface_slots; }
   std::size_t parts_stride() const { return 3 * contents_.decomposition.parts.size(); }
-  std::size_t weight_slot() const { return samples_stride() - 1; }
+  std::size_t spectra_stride() const { return contents_.buckets ? 2 * contents_.buckets->count : 0; }
+  std::size_t count_slot() const { return samples_stride() - 1; }
 
   std::uint32_t pixel_of_full_film(std::uint32_t pixel) const;
   void write_spectrum(std::uint32_t pixel, std::uint64_t passes, float* out) const;
+  /// Calls `visit(sums, stride)` for each array of sums, in the order of the planes.
+  template <class Self, class Visit>
+  static void for_each_sum(Self& film, Visit&& visit) {
+    for (std::size_t part = 0; part < (film.contents_.negative_share == 0 ? 1 : filter_parts); ++part) {
+      for (auto& half : film.halves_) {
+        visit(half.samples[part], film.samples_stride());
+        if (part == 0 && film.contents_.splats) visit(half.splats, film.splats_stride());
+      }
+      visit(film.parts_[part], film.parts_stride());
+      visit(film.spectra_[part], film.spectra_stride());
+      if (part == 0 && film.contents_.splats) visit(film.spectral_splats_, film.spectra_stride() / 2);
+    }
+  }
   /// The array of sums that holds a plane, and the plane's position in it.
-  template <class Sums>
+  template <class Array>
   struct PlanePlace {
-    Sums* sums;
-    std::size_t stride, slot;
+    Array* sums = nullptr;
+    std::size_t stride = 0, slot = 0;
   };
-  template <class Sums, class Self>
-  static PlanePlace<Sums> find_plane(Self& film, std::size_t index);
+  template <class Array, class Self>
+  static PlanePlace<Array> find_plane(Self& film, std::size_t index);
   template <class Body>
   void for_each_pixel(Body&& body) const;
-  /// Sums of one pixel; splats are 0 if the film has none.
+  /// Sums of one pixel; splats are 0 if the film has none, and so are samples of f⁻.
   struct PixelSums {
-    SampleSums samples;
+    std::array<SampleSums, filter_parts> samples;
     SplatSums splats;
   };
   PixelSums sums_of_half(FilmHalf half, std::uint32_t pixel) const;
   PixelSums sums_of(std::uint32_t pixel) const;
+  /// Factors of a pixel's sums of f⁺ and f⁻, whose sum with the factors is its mean.
+  using PartFactors = std::array<double, filter_parts>;
+  /// `counts`: of the samples of each part, in any unit.
+  PartFactors factors_of(const std::array<std::int64_t, filter_parts>& counts) const;
+  PartFactors factors_of(const PixelSums& sums) const;
   LightMeans light_means(const PixelSums& sums, std::uint64_t passes) const;
   float* write_light(const LightMeans& means, float* out) const;
-  float* write_features(const SampleSums& samples, float* out) const;
+  float* write_features(const PixelSums& sums, float* out) const;
   using PartMeans = std::array<Rgb, most_light_layers>;
-  PartMeans part_means(std::uint32_t pixel, double weight) const;
+  PartMeans part_means(std::uint32_t pixel, const PartFactors& factors) const;
   Rgb splat_mean(const SplatSums& splats, std::uint64_t passes) const;
   float* write_decomposition(std::uint32_t pixel, std::uint64_t passes, const PixelSums& sums, const Rgb& balance,
                              float* out) const;
@@ -232,14 +261,14 @@ class Film {
   Problem non_finite_;
   Problem too_large_;
   struct Half {
-    std::vector<std::int64_t> samples;  ///< samples_stride() per pixel
-    std::vector<std::int64_t> splats;   ///< splats_stride() per pixel, or empty
+    std::array<Sums, filter_parts> samples;  ///< samples_stride() per pixel; those of f⁻ may be empty
+    Sums splats;                             ///< splats_stride() per pixel, or empty
   };
-  std::array<Half, 2> halves_;                 ///< by half_of_pass
-  std::vector<std::int64_t> parts_;            ///< parts_stride() per pixel, or empty
-  std::vector<std::int64_t> spectra_;          ///< per pixel the buckets and then their weights, or empty
-  std::vector<std::int64_t> spectral_splats_;  ///< the buckets of each pixel, or empty
-  SpinLocks pixel_locks_;                      ///< for all sums except splats
+  std::array<Half, 2> halves_;              ///< by half_of_pass
+  std::array<Sums, filter_parts> parts_;    ///< parts_stride() per pixel, or empty
+  std::array<Sums, filter_parts> spectra_;  ///< per pixel the buckets and then their weights, or empty
+  Sums spectral_splats_;                    ///< the buckets of each pixel, or empty
+  SpinLocks pixel_locks_;                   ///< for all sums except splats
 };
 
 }  // namespace lanthorn

@@ -82,14 +82,12 @@ bool FilmPass::add_ordinary(std::int64_t* sums, const Values& values, Stride str
   return true;
 }
 
-// The sample's values in the order of the sums, times its weight. `factor`: scales its light, by the sensor's limit.
+// The sample's values in the order of the sums. `factor`: scales its light, by the sensor's limit.
 FilmPass::Values FilmPass::values_of(const PixelSample& sample, float factor) const {
-  const double weight = static_cast<double>(sample.weight);
-  // The absolute value, because weights of both signs could cancel in a mean over hits only.
-  const double hit = sample.features.is_hit() ? std::fabs(weight) : 0.0;
+  const double hit = sample.features.is_hit() ? 1.0 : 0.0;
   Values values{};
   std::size_t slot = 0;
-  const auto put = [&](float value) { values[slot++] = static_cast<double>(value) * weight; };
+  const auto put = [&](float value) { values[slot++] = static_cast<double>(value); };
   const auto put_color = [&](const Rgb& color) {
     put(color.r);
     put(color.g);
@@ -112,13 +110,13 @@ FilmPass::Values FilmPass::values_of(const PixelSample& sample, float factor) co
       put_color(value);
   });
   values[slot++] = hit;
-  values[slot] = weight;
+  values[slot] = 1;
   return values;
 }
 
-void FilmPass::add_values(std::uint32_t pixel, const Values& values) const {
+void FilmPass::add_values(std::uint32_t pixel, std::size_t filter_part, const Values& values) const {
   const std::size_t stride = film_.samples_stride();
-  std::int64_t* sums = &half_.samples[std::size_t{pixel} * stride];
+  std::int64_t* sums = &half_.samples[filter_part][std::size_t{pixel} * stride];
   // Most methods have four light layers, photon methods also a bias; strides known at compile time let the loops
   // vectorise.
   constexpr std::integral_constant<std::size_t, 3 * 4 + Film::surface_slots> usual;
@@ -135,15 +133,17 @@ void FilmPass::add(std::uint32_t pixel, const PixelSample& sample) const {
   const std::span<const Rgb> light = std::span(sample.light).first(contents().light.size());
   const float factor = film_.sensor_.clamp_factor(std::accumulate(light.begin() + 1, light.end(), light.front()));
   const Values values = values_of(sample, factor);
-  const double weight = static_cast<double>(sample.weight);
+  const auto filter_part = static_cast<std::size_t>(sample.filter_part);
+  assert(filter_part == 0 || contents().negative_share != 0);
   const SpinLocks::Guard guard(film_.pixel_locks_, pixel);
-  if (!film_.parts_.empty()) add_parts(pixel, sample, static_cast<double>(factor) * weight);
-  if (film_.buckets() && sample.spectrum) add_spectrum(pixel, *sample.spectrum, weight, static_cast<double>(factor));
-  add_values(pixel, values);
+  if (film_.parts_stride() > 0) add_parts(pixel, sample, static_cast<double>(factor));
+  if (film_.buckets() && sample.spectrum) add_spectrum(pixel, sample, static_cast<double>(factor));
+  add_values(pixel, filter_part, values);
 }
 
 void FilmPass::add_parts(std::uint32_t pixel, const PixelSample& sample, double factor) const {
-  std::int64_t* sums = &film_.parts_[std::size_t{pixel} * film_.parts_stride()];
+  std::int64_t* sums =
+      &film_.parts_[static_cast<std::size_t>(sample.filter_part)][std::size_t{pixel} * film_.parts_stride()];
   unsigned slot = parts_slot;
   for (const Rgb& light : std::span(sample.parts).first(contents().decomposition.parts.size())) {
     const Rgb counted = film_.sensor_.balanced(light);
@@ -165,13 +165,15 @@ void FilmPass::splat(std::uint32_t pixel, std::size_t layer, const Rgb& value) c
   }
 }
 
-void FilmPass::add_spectrum(std::uint32_t pixel, const SpectralRadiance& value, double weight, double factor) const {
-  std::int64_t* sums = &film_.spectra_[std::size_t{pixel} * 2 * contents().buckets->count];
+void FilmPass::add_spectrum(std::uint32_t pixel, const PixelSample& sample, double factor) const {
+  const SpectralRadiance& value = *sample.spectrum;
+  std::int64_t* sums =
+      &film_.spectra_[static_cast<std::size_t>(sample.filter_part)][std::size_t{pixel} * film_.spectra_stride()];
   const auto slot = static_cast<unsigned>(film_.samples_stride() + film_.splats_stride());
   for (unsigned i = 0; i < value.lambda.size(); ++i) {
     const std::optional<std::size_t> bucket = contents().buckets->find(value.lambda[i]);
     if (!bucket) continue;
-    const double counted = weight * bucket_share(value, i, *contents().buckets);
+    const double counted = bucket_share(value, i, *contents().buckets);
     const double light = static_cast<double>(value.radiance[i]) * factor * counted;
     saturating_add(sums[*bucket], to_steps(light, film_.radiance_steps_, pixel, slot + i));
     saturating_add(sums[contents().buckets->count + *bucket], to_steps(counted, unit_steps, pixel, slot + 4 + i));

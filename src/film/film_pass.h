@@ -37,9 +37,9 @@ class FilmPass {
 
   /// Prefetches the sums of a pixel to which a sample will soon be added. If the film exceeds the caches, waiting for
   /// the sums takes longer than adding to them.
-  [[gnu::always_inline]] void prefetch(std::uint32_t pixel) const {
-    prefetch(half_.samples, film_.samples_stride(), pixel);
-    if (!film_.parts_.empty()) prefetch(film_.parts_, film_.parts_stride(), pixel);
+  [[gnu::always_inline]] void prefetch(std::uint32_t pixel) const {  // samples of f⁻ are few
+    prefetch(half_.samples.front(), film_.samples_stride(), pixel);
+    if (film_.parts_stride() > 0) prefetch(film_.parts_.front(), film_.parts_stride(), pixel);
   }
   /// Prefetches the sums to which light will be splatted.
   [[gnu::always_inline]] void prefetch_splats(std::uint32_t pixel) const {
@@ -58,9 +58,9 @@ class FilmPass {
   Values values_of(const PixelSample& sample, float factor) const;
   template <class Stride>
   bool add_ordinary(std::int64_t* sums, const Values& values, Stride stride) const;
-  void add_values(std::uint32_t pixel, const Values& values) const;
+  void add_values(std::uint32_t pixel, std::size_t filter_part, const Values& values) const;
   void add_parts(std::uint32_t pixel, const PixelSample& sample, double factor) const;
-  void add_spectrum(std::uint32_t pixel, const SpectralRadiance& value, double weight, double factor) const;
+  void add_spectrum(std::uint32_t pixel, const PixelSample& sample, double factor) const;
 
   Film& film_;
   std::uint64_t pass_;

@@ -3,7 +3,6 @@
 #include "film/filter.h"
 
 #include <algorithm>
-#include <numbers>
 #include <type_traits>
 
 #include "lanthorn/error.h"
@@ -61,37 +60,45 @@ Filter::Axis Filter::make_axis(const FilterShape& shape, float radius) {
   axis.shape = shape;
   axis.radius = radius;
   if (std::holds_alternative<BoxFilter>(shape)) {
-    axis.integral = axis.absolute = 2 * radius;
+    axis.plus.integral = 2 * radius;
     return axis;
   }
   const double width = 2.0 * static_cast<double>(radius) / cells;
-  std::vector<double> sums{0};
-  double integral = 0;
+  std::vector<double> plus{0}, minus{0};
   for (std::size_t i = 0; i < cells; ++i) {
-    const float f = axis.evaluate(static_cast<float>((static_cast<double>(i) + 0.5) * width) - radius);
-    integral += static_cast<double>(f) * width;
-    sums.push_back(sums.back() + std::fabs(static_cast<double>(f)) * width);
-    axis.minus.push_back(f < 0);
+    const auto f =
+        static_cast<double>(axis.evaluate(static_cast<float>((static_cast<double>(i) + 0.5) * width) - radius));
+    plus.push_back(plus.back() + std::fmax(0.0, f) * width);
+    minus.push_back(minus.back() + std::fmax(0.0, -f) * width);
   }
-  axis.integral = static_cast<float>(integral);
-  axis.absolute = static_cast<float>(sums.back());
-  if (!(axis.integral > 1e-6f * axis.absolute))
+  constexpr double least_remainder = 1e-6;  // of what the lobes leave
+  if (!(plus.back() - minus.back() > least_remainder * (plus.back() + minus.back())))
     throw Error("pixel filter: its integral must be positive; change its parameters");
-  for (const double sum : sums) axis.cdf.push_back(static_cast<float>(sum / sums.back()));
-  for (std::size_t i = 0, cell = 0; i < cells; ++i) {
-    while (axis.cdf[cell + 1] <= static_cast<float>(i) / cells) ++cell;
-    axis.guide.push_back(static_cast<std::uint16_t>(cell));
-  }
+  axis.plus = make_part(plus);
+  axis.minus = make_part(minus);
   return axis;
 }
 
-Filter::AxisSample Filter::Axis::sample(float u) const {
-  if (cdf.empty()) return {(2 * u - 1) * radius, 1};
-  std::size_t cell = guide[static_cast<std::size_t>(u * cells)];
-  while (cdf[cell + 1] <= u) ++cell;
-  const float inside = (u - cdf[cell]) / (cdf[cell + 1] - cdf[cell]);
+// `sums`: of the part's integral, by cell.
+Filter::AxisPart Filter::make_part(const std::vector<double>& sums) {
+  AxisPart part;
+  part.integral = static_cast<float>(sums.back());
+  if (!(part.integral > 0)) return part;
+  for (const double sum : sums) part.cdf.push_back(static_cast<float>(sum / sums.back()));
+  for (std::size_t i = 0, cell = 0; i < cells; ++i) {
+    while (part.cdf[cell + 1] <= static_cast<float>(i) / cells) ++cell;
+    part.guide.push_back(static_cast<std::uint16_t>(cell));
+  }
+  return part;
+}
+
+float Filter::Axis::sample(const AxisPart& part, float u) const {
+  if (part.cdf.empty()) return (2 * u - 1) * radius;
+  std::size_t cell = part.guide[static_cast<std::size_t>(u * cells)];
+  while (part.cdf[cell + 1] <= u) ++cell;
+  const float inside = (u - part.cdf[cell]) / (part.cdf[cell + 1] - part.cdf[cell]);
   const float offset = (static_cast<float>(cell) + inside) * (2 * radius / cells) - radius;
-  return {std::min(radius * one_minus_epsilon, offset), minus[cell] ? -1.0f : 1.0f};
+  return std::min(radius * one_minus_epsilon, offset);
 }
 
 Filter::PixelRange Filter::Axis::covering(float p, int pixels) const {
@@ -106,12 +113,39 @@ Filter::Filter(const FilterShape& shape)
   check(shape, radius_);
   axes_[0] = make_axis(shape, radius_.x);
   axes_[1] = radius_.x == radius_.y ? axes_[0] : make_axis(shape, radius_.y);
-  weight_ = axes_[0].absolute / axes_[0].integral * (axes_[1].absolute / axes_[1].integral);
+  const auto [first, second] = products_of(FilterPart::negative);
+  negative_share_ = (first.integral() + second.integral()) / integral();
 }
 
-FilterSample Filter::sample(const Vec2& u) const {
-  const AxisSample x = axes_[0].sample(u.x), y = axes_[1].sample(u.y);
-  return {{x.offset, y.offset}, x.sign * y.sign * weight_};
+// f is the product of its axes: positive where both have the same sign.
+std::array<Filter::Product, 2> Filter::products_of(FilterPart part) const {
+  const auto& [x, y] = axes_;
+  if (part == FilterPart::positive) return {{{x.plus, y.plus}, {x.minus, y.minus}}};
+  return {{{x.plus, y.minus}, {x.minus, y.plus}}};
+}
+
+FilterPlace Filter::place_of_sample(std::uint64_t number) const {
+  if (negative_share_ == 0) return {FilterPart::positive, number};
+  const auto share = static_cast<double>(negative_share_);
+  const auto negative_before = [&](std::uint64_t count) {
+    return static_cast<std::uint64_t>(static_cast<double>(count) * (share / (1 + 2 * share)) + 0.5);
+  };
+  const std::uint64_t negative = negative_before(number);
+  if (negative_before(number + 1) > negative) return {FilterPart::negative, negative};
+  return {FilterPart::positive, number - negative};
+}
+
+Vec2 Filter::sample(const Vec2& u, FilterPart part) const {
+  const auto [first, second] = products_of(part);
+  const float a = first.integral(), b = second.integral();
+  const auto place = [this](const Product& product, float x, float y) {
+    return Vec2(axes_[0].sample(product.x, x), axes_[1].sample(product.y, y));
+  };
+  if (b == 0) return place(first, u.x, u.y);
+  // One number chooses the product and the place along x.
+  const float share = a / (a + b);
+  return u.x < share ? place(first, std::min(u.x / share, one_minus_epsilon), u.y)
+                     : place(second, std::min((u.x - share) / (1 - share), one_minus_epsilon), u.y);
 }
 
 FilterShape filter_shape(const description::Filter& filter) {

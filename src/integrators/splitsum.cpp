@@ -127,7 +127,7 @@ std::set<std::string> SplitSumShader::missing_of(const RenderJob& job) {
     const PixelPlace place{window.x0 + x, window.y0 + y, static_cast<std::uint32_t>(y * window.width() + x)};
     Sampler sampler = eye_sampler(job, place, 0);
     const PathDraw draw = draw_time_and_wavelengths(job.view.camera, job.settings.color, sampler);
-    const EyeStart start = start_eye_path(job.view, place, draw.time, sampler);
+    const EyeStart start = start_eye_path(job, place, 0, draw.time, sampler);
     walk_from_camera(PathContext{job.scene, draw.w, sampler, counts, {1, 1}}, start.camera, job.view.medium,
                      MissingVisitor{missing});
   }

@@ -130,7 +130,7 @@ PassReport StochasticProgressivePhotonMapper<Radius>::render_pass(const RenderJo
     Sampler walk_sampler = eye_sampler(job, place, hits_.path(pass, hit));
     Sampler fresh = eye_sampler(job, place, pass * hits_.count + hit);
     const PathDraw own = draw.of_eye_path(fresh, place.x, place.y);
-    const EyeStart start = start_eye_path(job.view, place, own.time, walk_sampler);
+    const EyeStart start = start_eye_path(job, place, hits_.path(pass, hit), own.time, walk_sampler);
     const auto gather = [&](const SurfaceVertex& vertex, const LobeSplit& split) {
       typename Radius::Tally tally(radius, schedule_);
       const GatheredLight light = photons.gather([&](const PhotonMap<HashGrid>& map, int flux_class) {
@@ -149,7 +149,7 @@ PassReport StochasticProgressivePhotonMapper<Radius>::render_pass(const RenderJo
     with_gather_visitor(photons, PathVisitor{at_hits, layers}, gather, [&](const auto& visitor) {
       walk_from_camera(path, start.camera, job.view.medium, FreshAfterHit{visitor, walk_sampler, fresh});
     });
-    film.add(place.index, layers.sample(start.filter_weight, job.view.sensor));
+    film.add(place.index, layers.sample(start.filter_part, job.view.sensor));
   };
   PassReport report = photons.report;
   report.radius = static_cast<float>(radius_sum / static_cast<double>(radii_.size()));

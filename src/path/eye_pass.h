@@ -52,25 +52,41 @@ inline CameraRay eye_ray(const View& view, const Vec2& raster, const Vec2& u_len
   return ray;
 }
 
-/// The random numbers of eye path `number` of a pixel (`PlaceInHalf`).
-inline Sampler eye_sampler(const RenderJob& job, const PixelPlace& place, std::uint32_t number) {
-  const PlaceInHalf in_half = place_in_half(number, job.settings.parts);
+/// The random numbers of an eye path of a pixel.
+inline Sampler sampler_in_half(const RenderJob& job, const PixelPlace& place, const PlaceInHalf& in_half) {
   const Stream stream = in_half.half == FilmHalf::first ? Stream::camera : Stream::camera_of_second_half;
   return Sampler::for_pixel(job.settings.seed, stream, job.view.pixel_key(place.x, place.y), in_half.number);
 }
+/// The same of eye path `number` (`place_in_half`).
+inline Sampler eye_sampler(const RenderJob& job, const PixelPlace& place, std::uint32_t number) {
+  return sampler_in_half(job, place, place_in_half(number, job.settings.parts));
+}
 
-/// The start of an eye path of a pixel. Draws from dimension group 0; group 1 is for the path's time and wavelengths.
+/// The start of an eye path of a pixel.
 struct EyeStart {
   CameraRay camera;
   Vec2 raster{0};  ///< film position, pixels
-  float filter_weight = 1;
+  FilterPart filter_part = FilterPart::positive;
 };
-inline EyeStart start_eye_path(const View& view, const PixelPlace& place, float time, Sampler& sampler) {
+/// Random numbers of a sample's position. If the filter has lobes, the samples of each part have a sequence of their
+/// own: with gaps where the other part's samples are, a sequence would be stratified less.
+inline Sampler position_sampler(const RenderJob& job, const PixelPlace& place, FilmHalf half, const FilterPlace& at) {
+  const auto number = static_cast<std::uint32_t>(at.number);
+  return sampler_in_half(job, place, {half, number}).fork(static_cast<std::uint32_t>(at.part));
+}
+/// `number`: of the eye path (`place_in_half`). Draws from dimension group 0; group 1 is for the path's time and
+/// wavelengths.
+inline EyeStart start_eye_path(const RenderJob& job, const PixelPlace& place, std::uint32_t number, float time,
+                               Sampler& sampler) {
+  const Filter& filter = job.view.filter;
+  const PlaceInHalf in_half = place_in_half(number, job.settings.parts);
+  const FilterPlace at = filter.place_of_sample(in_half.number);
   sampler.seek(0);
-  const FilterSample f = view.filter.sample(sampler.next2());
+  Vec2 u = sampler.next2();
+  if (filter.negative_share() != 0) u = position_sampler(job, place, in_half.half, at).next2();
   const Vec2 centre(static_cast<float>(place.x) + 0.5f, static_cast<float>(place.y) + 0.5f);
-  const Vec2 raster = centre + f.offset;
-  return {eye_ray(view, raster, sampler.next2(), time), raster, f.weight};
+  const Vec2 raster = centre + filter.sample(u, at.part);
+  return {eye_ray(job.view, raster, sampler.next2(), time), raster, at.part};
 }
 
 /// The light of the eye paths of a pass whose photons come in blocks. Each eye path is traced once for each block, with
@@ -113,14 +129,13 @@ RayCounts trace_eye_paths(const RenderJob& job, const EyePass& pass, const FilmP
     film.prefetch(place.index);
     Sampler sampler = eye_sampler(job, place, pass.pass);
     const PathDraw draw = draw_path(sampler, place);
-    const EyeStart start = start_eye_path(job.view, place, draw.time, sampler);
+    const EyeStart start = start_eye_path(job, place, pass.pass, draw.time, sampler);
     const PathContext path{job.scene, draw.w, sampler, counts, pass.limits};
     LightLayers whole(draw.w);
     LightLayers& layers = partial ? partial->of(place) : whole;
     layers.use(draw.w);
     trace(path, start, place, layers);
-    if (!partial || partial->is_last_trace())
-      film.add(place.index, layers.sample(start.filter_weight, job.view.sensor));
+    if (!partial || partial->is_last_trace()) film.add(place.index, layers.sample(start.filter_part, job.view.sensor));
   });
   if (partial) partial->end_trace();
   return rays;

@@ -86,8 +86,8 @@ class LightLayers {
   /// For light that is scattered along the flight.
   void see(const FlownSegment& flight) { come_from(true, flight.state); }
 
-  /// The film sample. `weight`: of the reconstruction filter.
-  PixelSample sample(float weight, const Sensor& sensor) {
+  /// The film sample.
+  PixelSample sample(FilterPart filter_part, const Sensor& sensor) {
     limit(sensor);
     PixelSample result{.features = features_};
     for (std::size_t c = 0; c < path_class_count; ++c) result.light[c] = w_->to_rgb(sums_[c]);
@@ -99,7 +99,7 @@ class LightLayers {
       for (const Spectrum& part : sums_) sum += part;
       result.spectrum = SpectralRadiance(sum, *w_);
     }
-    result.weight = weight;
+    result.filter_part = filter_part;
     return result;
   }
 

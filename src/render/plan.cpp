@@ -133,6 +133,7 @@ RenderPlan plan_render(const Scene& scene, const ViewDescription& view, const Re
   if (!plan.integrator->crops_are_exact()) plan.view.window = plan.view.crop;
   FilmContents contents = plan.integrator->film_contents(scene);
   contents.buckets = view.film.buckets;
+  contents.negative_share = plan.view.filter.negative_share();
   plan.settings = choose_settings(scene, view, options, plan);
   plan.passes_that_fit = plan_memory(scene, plan.view, *plan.integrator, contents, options.memory, plan.settings);
   plan.stop.passes = choose_passes(hints, options);

@@ -123,6 +123,7 @@ json layers_json(const FilmContents& contents) {
   const Decomposition& d = contents.decomposition;
   json layers{{"light", contents.light}, {"parts", d.parts}, {"splat_part", d.splats}, {"splats", contents.splats}};
   if (contents.bias) layers["bias"] = true;
+  if (contents.negative_share != 0) layers["negative_share"] = contents.negative_share;
   if (!contents.repeated.empty()) layers["repeated"] = contents.repeated;
   if (d.shares) layers["shares"] = {{"name", d.shares->name}, {"groups", d.shares->groups}};
   return layers;
@@ -240,6 +241,9 @@ class HeaderDecoder {
     d.shares = decode_shares(layers, d.parts.size());
     contents.splats = layers.at("splats").get<bool>();
     contents.bias = layers.value("bias", false);
+    contents.negative_share = layers.value("negative_share", 0.0f);
+    if (!(contents.negative_share >= 0) || !std::isfinite(contents.negative_share))
+      fail("damaged: the share of its filter's negative lobes is not a number above 0");
     contents.buckets = decode_buckets(film);
     std::vector<std::string> names = contents.light;
     if (contents.layer_count() > most_light_layers) fail("damaged: it has too many layers");

@@ -91,7 +91,7 @@ FrameSettings frame_settings(const RealtimeSettings& s, const View& view, std::u
   FrameSettings f(choice_of(s.technique, s.values));
   Sampler sampler = Sampler::for_pass(s.seed, frame);
   sampler.seek(2);
-  f.offset = view.filter.sample(sampler.next2()).offset;
+  f.offset = view.filter.sample(sampler.next2(), FilterPart::positive);
   f.lens = sampler.next2();
   f.time = view.camera.time(sampler.next());
   f.views.seed = s.seed;

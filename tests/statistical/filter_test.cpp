@@ -41,7 +41,14 @@ double integrate(const Filter& filter, double x0, double x1, double y0, double y
   return sum * dx * dy;
 }
 double identity(float f) { return static_cast<double>(f); }
-double absolute(float f) { return std::fabs(static_cast<double>(f)); }
+double magnitude(float f, FilterPart part) {
+  return std::fmax(0.0, static_cast<double>(part == FilterPart::positive ? f : -f));
+}
+// The parts of a filter that are not 0.
+std::vector<FilterPart> parts_of(const Filter& filter) {
+  if (filter.negative_share() == 0) return {FilterPart::positive};
+  return {FilterPart::positive, FilterPart::negative};
+}
 
 TEST(Filter, KnownValues) {
   EXPECT_EQ(Filter().evaluate({0.4f, -0.5f}), 1);
@@ -66,75 +73,112 @@ TEST(Filter, IntegralMatchesQuadrature) {
   }
 }
 
-TEST(Filter, WeightIsTheRatioOfIntegrals) {
+TEST(Filter, SharesAreThoseOfQuadrature) {
   for (const FilterShape& shape : shapes) {
     const Filter filter(shape);
     const Vec2 r = filter.radius();
-    const double expected =
-        integrate(filter, -r.x, r.x, -r.y, r.y, 400, absolute) / integrate(filter, -r.x, r.x, -r.y, r.y, 400, identity);
+    const double negative = integrate(filter, -r.x, r.x, -r.y, r.y, 400,
+                                      [](float f) { return magnitude(f, FilterPart::negative); }),
+                 all = integrate(filter, -r.x, r.x, -r.y, r.y, 400, identity);
+    EXPECT_NEAR(filter.negative_share(), negative / all, 1e-3) << shape.index();
     HashRng rng(test::seed(1));
-    for (int i = 0; i < 1000; ++i) {
-      const FilterSample s = filter.sample(rng.next2());
-      EXPECT_NEAR(std::fabs(s.weight), expected, 1e-3 * expected);
-      // Each cell of the sampler's table has one sign; the filter may change sign inside it, where it is near 0.
-      const float f = filter.evaluate(s.offset);
-      if (std::fabs(f) > 0.01f) {
-        EXPECT_EQ(s.weight > 0, f > 0) << s.offset.x << " " << s.offset.y;
+    for (const FilterPart part : parts_of(filter))
+      for (int i = 0; i < 1000; ++i) {
+        const Vec2 offset = filter.sample(rng.next2(), part);
+        // Each cell of the sampler's table has one sign; the filter may change sign inside it, where it is near 0.
+        const float f = filter.evaluate(offset);
+        if (std::fabs(f) > 0.01f) {
+          EXPECT_EQ(f > 0, part == FilterPart::positive) << offset.x << " " << offset.y;
+        }
       }
-    }
   }
+}
+
+// As many as the least variance demands, to half a sample: n N / (1 + 2 N) of n.
+TEST(Filter, EveryPrefixOfASequenceHasItsShareOfNegativeSamples) {
+  for (const FilterShape& shape : shapes) {
+    const Filter filter(shape);
+    const auto n = static_cast<double>(filter.negative_share());
+    std::uint64_t negative = 0;
+    for (std::uint64_t i = 0; i < 5000; ++i) {
+      const FilterPlace place = filter.place_of_sample(i);
+      const bool is_negative = place.part == FilterPart::negative;
+      ASSERT_EQ(place.number, is_negative ? negative : i - negative) << i;
+      negative += is_negative ? 1 : 0;
+      ASSERT_LE(std::fabs(static_cast<double>(negative) - n / (1 + 2 * n) * static_cast<double>(i + 1)), 0.5 + 1e-6)
+          << i;
+    }
+    EXPECT_EQ(filter.place_of_sample(0).part, FilterPart::positive);
+  }
+  EXPECT_GT(Filter(SincFilter{}).negative_share(), 0.2f);
+  EXPECT_EQ(Filter(GaussianFilter{}).negative_share(), 0);
+}
+
+double statistic_of(const Filter& filter, FilterPart part, int& used) {
+  constexpr int cells = 24, samples = 200000;
+  const auto of_part = [&](float f) { return magnitude(f, part); };
+  const Vec2 r = filter.radius();
+  std::vector<double> counts(cells * cells);
+  HashRng rng(test::seed(2));
+  for (int i = 0; i < samples; ++i) {
+    const Vec2 at = (filter.sample(rng.next2(), part) + r) / (2.0f * r) * static_cast<float>(cells);
+    EXPECT_TRUE(at.x >= 0 && at.x < cells && at.y >= 0 && at.y < cells);
+    ++counts[static_cast<std::size_t>(at.y) * cells + static_cast<std::size_t>(at.x)];
+  }
+  const double total = integrate(filter, -r.x, r.x, -r.y, r.y, 480, of_part);
+  double statistic = 0, rest_expected = 0, rest_observed = 0;
+  for (int j = 0; j < cells; ++j)
+    for (int i = 0; i < cells; ++i) {
+      const auto edge = [&](int k, float radius) { return (2.0 * k / cells - 1) * static_cast<double>(radius); };
+      const double expected =
+          samples / total *
+          integrate(filter, edge(i, r.x), edge(i + 1, r.x), edge(j, r.y), edge(j + 1, r.y), 20, of_part);
+      const double observed = counts[static_cast<std::size_t>(j * cells + i)];
+      if (expected < 10) {  // too few for the approximation: pool cells
+        rest_expected += expected;
+        rest_observed += observed;
+        continue;
+      }
+      statistic += (observed - expected) * (observed - expected) / expected;
+      ++used;
+    }
+  if (rest_expected >= 10) {
+    statistic += (rest_observed - rest_expected) * (rest_observed - rest_expected) / rest_expected;
+    ++used;
+  }
+  return statistic;
 }
 
 TEST(Filter, SamplesFollowTheFilter) {
-  constexpr int cells = 24, samples = 200000;
+  int tests = 0;
+  for (const FilterShape& shape : shapes) tests += static_cast<int>(parts_of(Filter(shape)).size());
   for (const FilterShape& shape : shapes) {
     const Filter filter(shape);
-    const Vec2 r = filter.radius();
-    std::vector<double> counts(cells * cells);
-    HashRng rng(test::seed(2));
-    for (int i = 0; i < samples; ++i) {
-      const Vec2 at = (filter.sample(rng.next2()).offset + r) / (2.0f * r) * static_cast<float>(cells);
-      ASSERT_TRUE(at.x >= 0 && at.x < cells && at.y >= 0 && at.y < cells);
-      ++counts[static_cast<std::size_t>(at.y) * cells + static_cast<std::size_t>(at.x)];
+    for (const FilterPart part : parts_of(filter)) {
+      int used = 0;
+      const double statistic = statistic_of(filter, part, used);
+      EXPECT_TRUE(
+          test::not_below(test::chi2_upper_tail(statistic, used - 1), test::sidak(test::false_alarm_rate, tests)))
+          << shape.index() << ": " << statistic << " with " << used << " cells";
     }
-    const double total = integrate(filter, -r.x, r.x, -r.y, r.y, 480, absolute);
-    double statistic = 0, rest_expected = 0, rest_observed = 0;
-    int used = 0;
-    for (int j = 0; j < cells; ++j)
-      for (int i = 0; i < cells; ++i) {
-        const auto edge = [&](int k, float radius) { return (2.0 * k / cells - 1) * static_cast<double>(radius); };
-        const double expected =
-            samples / total *
-            integrate(filter, edge(i, r.x), edge(i + 1, r.x), edge(j, r.y), edge(j + 1, r.y), 20, absolute);
-        const double observed = counts[static_cast<std::size_t>(j * cells + i)];
-        if (expected < 10) {  // too few for the approximation: pool cells
-          rest_expected += expected;
-          rest_observed += observed;
-          continue;
-        }
-        statistic += (observed - expected) * (observed - expected) / expected;
-        ++used;
-      }
-    if (rest_expected >= 10) {
-      statistic += (rest_observed - rest_expected) * (rest_observed - rest_expected) / rest_expected;
-      ++used;
-    }
-    EXPECT_TRUE(test::not_below(test::chi2_upper_tail(statistic, used - 1),
-                                test::sidak(test::false_alarm_rate, static_cast<int>(shapes.size()))))
-        << shape.index() << ": " << statistic << " with " << used << " cells";
   }
 }
 
-// Stratified and low-discrepancy numbers keep their structure only if the warp is monotonic and continuous.
+// Stratified and low-discrepancy numbers keep their structure only if the warp is monotonic and continuous. With lobes
+// on both axes, it is so for each of the two products of their parts.
 TEST(Filter, SamplingIsContinuous) {
   for (const FilterShape& shape : shapes) {
     const Filter filter(shape);
-    constexpr int steps = 1 << 16;
-    float last = filter.sample({0, 0}).offset.x;
-    for (int i = 1; i < steps; ++i) {
-      const float offset = filter.sample({static_cast<float>(i) / steps, 0}).offset.x;
-      ASSERT_GT(offset, last) << shape.index() << " " << i;
-      last = offset;
+    for (const FilterPart part : parts_of(filter)) {
+      constexpr int steps = 1 << 16;
+      int starts = 0;
+      float last = filter.radius().x;
+      for (int i = 0; i < steps; ++i) {
+        const float offset = filter.sample({static_cast<float>(i) / steps, 0}, part).x;
+        starts += offset <= last ? 1 : 0;
+        last = offset;
+      }
+      EXPECT_LE(starts, filter.negative_share() == 0 ? 1 : 2) << shape.index();
     }
   }
 }

@@ -63,7 +63,7 @@ template <class See>
 void follow_eye_path(const GatherFill& fill, const PixelPlace& place, RayCounts& counts, See&& see) {
   Sampler sampler = eye_sampler(fill.job, place, fill.pass);
   const PathDraw draw = fill.maps.draw.of_eye_path(sampler, place.x, place.y);
-  const EyeStart start = start_eye_path(fill.job.view, place, draw.time, sampler);
+  const EyeStart start = start_eye_path(fill.job, place, fill.pass, draw.time, sampler);
   const auto see_from = [&](const SurfaceVertex& vertex, std::size_t cache, float length) {
     see(start.camera.ray, vertex, cache, length);
   };

@@ -18,7 +18,7 @@ namespace {
 // A pixel whose photon light has not been added yet.
 struct OpenPixel {
   LightLayers layers;
-  float filter_weight = 1;
+  FilterPart filter_part{};
 };
 
 // Side of square blocks, pixels. Every gather ray ends in at most one reverse photon.
@@ -49,8 +49,8 @@ RayCounts ReverseGather::render_block(const PixelWindow& block) const {
     OpenPixel& pixel = pixels[place.index];
     Sampler sampler = eye_sampler(job, place, pass);
     const PathDraw draw = maps.draw.of_eye_path(sampler, place.x, place.y);
-    const EyeStart start = start_eye_path(job.view, place, draw.time, sampler);
-    pixel.filter_weight = start.filter_weight;
+    const EyeStart start = start_eye_path(job, place, pass, draw.time, sampler);
+    pixel.filter_part = start.filter_part;
     const PathContext path{job.scene, draw.w, sampler, counts, {job.settings.max_depth, 3}};
     const std::uint32_t key = job.view.pixel_key(place.x, place.y);
     const TwoPassContext context{job, settings, maps, key, pass, nullptr, &reverse[place.index]};
@@ -68,7 +68,7 @@ RayCounts ReverseGather::render_block(const PixelWindow& block) const {
     const PixelWindow& window = job.view.window;
     const int x = block.x0 + static_cast<int>(i) % block.width(), y = block.y0 + static_cast<int>(i) / block.width();
     film.add(static_cast<std::uint32_t>((y - window.y0) * window.width() + x - window.x0),
-             layers.sample(pixels[i].filter_weight, job.view.sensor));
+             layers.sample(pixels[i].filter_part, job.view.sensor));
   });
   return rays;
 }

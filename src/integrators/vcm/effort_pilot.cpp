@@ -245,7 +245,7 @@ float Pilot::trace_eye_path(const VcmPass& pass, const VcmPass& other, std::size
   Sampler sampler = Sampler::for_pixel(pass.job.settings.seed, Stream::pilot_camera, index, pass.number);
   const PixelPlace place = measured_.grid.pixel_of({x, y, index});
   const PathDraw draw = pass.draw_of_eye_path(sampler, place);
-  const EyeStart start = start_eye_path(pass.job.view, place, draw.time, sampler);
+  const EyeStart start = start_eye_path(pass.job, place, pass.number, draw.time, sampler);
   LightLayers layers(draw.w), other_layers(draw.w);
   RayCounts counts;
   const PathContext path{pass.job.scene, draw.w, sampler, counts, {pass.max_depth(), settings_.roulette_depth}};

@@ -76,7 +76,7 @@ void count_photons(VcmPass& pass) {
     for_each_pixel(job.view.window, [&](const PixelPlace& place, RayCounts& counts) {
       Sampler sampler = eye_sampler(job, place, pass.number);
       const PathDraw draw = pass.draw_of_eye_path(sampler, place);
-      const EyeStart start = start_eye_path(job.view, place, draw.time, sampler);
+      const EyeStart start = start_eye_path(job, place, pass.number, draw.time, sampler);
       LightLayers layers(draw.w);
       const PathContext path{job.scene, draw.w, sampler, counts, {pass.max_depth(), pass.settings.roulette_depth}};
       walk_from_camera(path, start.camera, job.view.medium,

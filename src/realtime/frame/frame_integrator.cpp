@@ -18,6 +18,7 @@
 #include "gl/context.h"
 #include "lanthorn/realtime.h"
 #include "math/sampler.h"
+#include "path/path_draw.h"
 #include "photon/photon.h"
 #include "realtime/frame/renderer.h"
 #include "scene/scene_data.h"
@@ -40,12 +41,13 @@ FrameOnCpu read_frame(const Renderer& renderer) {
           g.surface().read<glm::uvec4>({GL_RGBA_INTEGER, GL_UNSIGNED_INT}, 1)};
 }
 
-PixelSample sample_of(const FrameOnCpu& frame, std::size_t pixel, float weight, float imaging_ratio, const Point& eye) {
+PixelSample sample_of(const FrameOnCpu& frame, std::size_t pixel, FilterPart part, float imaging_ratio,
+                      const Point& eye) {
   PixelSample sample;
   const float* light = frame.light.pixels.data() + pixel * frame.light.channel_count();
   for (std::size_t layer = 0; layer < path_class_count; ++layer)
     sample.light[layer] = imaging_ratio * Rgb{light[3 * layer], light[3 * layer + 1], light[3 * layer + 2]};
-  sample.weight = weight;
+  sample.filter_part = part;
   if (frame.positions[pixel].w == 0) return sample;
   const glm::vec4& colour = frame.colours[pixel];
   sample.features.albedo = {colour.x, colour.y, colour.z};
@@ -55,20 +57,21 @@ PixelSample sample_of(const FrameOnCpu& frame, std::size_t pixel, float weight, 
   return sample;
 }
 
-/// Sets the points on film, lens and lights that all pixels of a pass share. Returns the weight of its samples.
-float place_frame(const RenderJob& job, std::uint32_t pass, FrameSettings& settings) {
+/// Sets the points on film, lens and lights that all pixels of a pass share. Returns the part of the filter to which
+/// its samples belong.
+FilterPart place_frame(const RenderJob& job, std::uint32_t pass, FrameSettings& settings) {
   Sampler sampler = Sampler::for_pass(job.settings.seed, pass);
   sampler.seek(2);
-  const FilterSample place = job.view.filter.sample(sampler.next2());
-  settings.offset = place.offset;
+  const FilterPart part = job.view.filter.place_of_sample(place_in_half(pass, job.settings.parts).number).part;
+  settings.offset = job.view.filter.sample(sampler.next2(), part);
   settings.lens = sampler.next2();
   settings.time = job.view.camera.time(sampler.next());
   settings.views.frame = pass;
-  return place.weight;
+  return part;
 }
 
 /// Adds the last frame to the film: light and features.
-void add_frame(const Renderer& renderer, const RenderJob& job, const FrameSettings& settings, float weight,
+void add_frame(const Renderer& renderer, const RenderJob& job, const FrameSettings& settings, FilterPart part,
                const FilmPass& film) {
   const FrameOnCpu seen = read_frame(renderer);
   const Point eye = window_rays(job.view, settings.offset, settings.lens, settings.time).eye;
@@ -76,7 +79,7 @@ void add_frame(const Renderer& renderer, const RenderJob& job, const FrameSettin
   parallel_for(0, seen.light.height, [&](int y) {
     for (int x = 0; x < width; ++x) {
       const auto pixel = static_cast<std::uint32_t>(y * width + x);
-      film.add(pixel, sample_of(seen, pixel, weight, job.view.imaging_ratio, eye));
+      film.add(pixel, sample_of(seen, pixel, part, job.view.imaging_ratio, eye));
     }
   });
 }
@@ -149,11 +152,11 @@ PassReport FrameIntegrator::render_pass(const RenderJob& job, std::uint32_t pass
   const bool has_photons = technique_.description.has_photons;
   const gl::CurrentScope current(*context_);
   begin(has_photons ? Phase::photons : Phase::eye);
-  const float weight = place_frame(job, pass, frame_);
+  const FilterPart part = place_frame(job, pass, frame_);
   renderer_->draw(job.view, frame_);
   begin(Phase::eye);
   PassReport report = report_of(renderer_->report());
-  add_frame(*renderer_, job, frame_, weight, film);
+  add_frame(*renderer_, job, frame_, part, film);
   if (has_photons) report.light_paths = frame_.photons;
   return report;
 }

@@ -56,7 +56,7 @@ PixelSample random_sample(std::mt19937& rng) {
   s.features.albedo = random_rgb(rng, 1);
   s.features.normal = {s.features.albedo.r, s.features.albedo.g, s.features.albedo.b};
   if (rng() % 3 != 0) s.features.depth = 10 * s.features.albedo.r;
-  s.weight = rng() % 4 != 0 ? 1.25f : -1.25f;
+  if (rng() % 4 == 0) s.filter_part = FilterPart::negative;
   return s;
 }
 
@@ -83,7 +83,7 @@ std::vector<Contribution> random_contributions(std::size_t count) {
 }
 
 Film film_of(const std::vector<Contribution>& contributions) {
-  Film film(width, height, 100, {.light = layers, .splats = true});
+  Film film(width, height, 100, {.light = layers, .splats = true, .negative_share = 0.25f});
   for (const Contribution& c : contributions) {
     FilmPass(film, c.pass).add(c.pixel, c.sample);
     FilmPass(film, c.pass).splat(c.pixel, c.layer, c.splat);
@@ -166,7 +166,6 @@ TEST(Film, BiasIsAMeanOfSamplesAndNotOfTheColor) {
     PixelSample s;
     s.light[direct] = {1, 2, 3};
     s.bias = half_of_pass(pass) == FilmHalf::first ? Rgb{-1, 0, 2} : Rgb{3, 0, 0};
-    s.weight = 0.5f;
     FilmPass(film, pass).add(0, s);
   }
   EXPECT_EQ(film.resolve_color(8).pixels, (std::vector<float>{1, 2, 3}));
@@ -212,15 +211,66 @@ SpectralRadiance radiance_at(std::array<float, 4> lambda, float value) {
   return r;
 }
 
+// With N = 1/2, a pixel is 3/2 of the mean of its samples of the filter's positive part, minus 1/2 of that of the
+// others.
+TEST(Film, SubtractsTheMeanOfTheNegativeLobes) {
+  FilmContents contents{.light = layers, .decomposition = {.parts = {"part"}}, .splats = true, .bias = true};
+  contents.buckets = SpectralBuckets{1, 400, 700};
+  contents.negative_share = 0.5f;
+  Film film(1, 1, 4, contents);
+  const auto add = [&](std::uint64_t pass, float light, FilterPart part) {
+    PixelSample s;
+    s.light[direct] = s.parts[0] = s.bias = {light, 2 * light, 0};
+    s.features.albedo = {light / 8, 0, 0};
+    s.features.depth = light;
+    s.filter_part = part;
+    s.spectrum = radiance_at({410, 510, 610, 690}, light);
+    FilmPass(film, pass).add(0, s);
+  };
+  const auto value = [&](const char* channel) {
+    const Image image = film.resolve(2);
+    return image.at(0, 0, image.find_channel(channel).value());
+  };
+  const auto expect = [&](float mean) {
+    for (const char* channel : {"R", "direct.R", "part.R"}) EXPECT_EQ(value(channel), mean) << channel;
+    EXPECT_NEAR(value("S0.550,0nm"), mean, 1e-5f);
+    EXPECT_EQ(value("direct.G"), 2 * mean);
+    EXPECT_EQ(value("albedo.R"), mean / 8);
+    EXPECT_EQ(film.resolve_color(2).pixels[0], mean);
+  };
+  const Film empty = film;
+  add(0, 1, FilterPart::negative);
+  expect(1);  // samples of one part only
+  film = empty;
+  add(0, 4, FilterPart::positive);
+  add(1, 2, FilterPart::positive);
+  expect(3);
+  add(3, 1, FilterPart::negative);
+  expect(1.5f * 3 - 0.5f * 1);
+  EXPECT_EQ(value("samples"), 3);
+  EXPECT_EQ(value("depth.Z"), 7.0f / 3) << "a mean over hits of both signs";
+  // Passes 0 and 3 are the first half, pass 1 is the second.
+  const HalfPicture first = film.resolve_half(FilmHalf::first, 2), second = film.resolve_half(FilmHalf::second, 1);
+  EXPECT_EQ(first.color.pixels[0], 1.5f * 4 - 0.5f * 1);
+  EXPECT_EQ(first.bias.pixels[0], 1.5f * 4 - 0.5f * 1);
+  EXPECT_EQ(second.color.pixels[0], 2);
+  const Image noise = film.resolve_first_half(2);
+  EXPECT_EQ(noise.at(0, 0, noise.find_channel("direct.R").value()), 1.5f * 4 - 0.5f * 1);
+  // Splats are divided by the passes, whatever their sign.
+  FilmPass(film, 0).splat(0, direct, {2, 0, 0});
+  EXPECT_EQ(value("R"), 1.5f * 3 - 0.5f * 1 + 1);
+  Film copy = Film::with_exponent(1, 1, film.step_exponent(), contents);
+  for (std::size_t i = 0; i < film.plane_count(); ++i) copy.add_sums(i, 0, film.plane(i));
+  EXPECT_EQ(copy.resolve(2).pixels, film.resolve(2).pixels);
+}
+
 TEST(Film, BucketsHoldMeansOverTheWavelengthsInThem) {
   const SpectralBuckets buckets{3, 400, 700};
   Film film(2, 1, 4, {.light = layers, .splats = true, .buckets = buckets});
   PixelSample s;
   s.spectrum = radiance_at({410, 480, 510, 720}, 3);  // one outside all buckets
-  s.weight = 0.25f;
   FilmPass(film, 0).add(0, s);
   s.spectrum = radiance_at({420, 530, 599, 399}, 3);
-  s.weight = 1.5f;
   FilmPass(film, 0).add(0, s);
   const auto value = [&](int x, const char* channel) {
     const Image image = film.resolve(4);
@@ -251,7 +301,6 @@ TEST(Film, TechniquesAddUpToColor) {
   s.light[direct] = {1, 2, 3};
   s.light[indirect] = {0.5f, 0.25f, 0};
   s.parts = {Rgb{0.25f, 0, 0}, Rgb{0.75f, 2, 0}, Rgb{0, 0.25f, 3}, Rgb{0.5f, 0, 0}};
-  s.weight = 0.5f;
   FilmPass(film, 0).add(1, s);
   FilmPass(film, 0).splat(1, caustic, {2, 0, 0});
   FilmPass(film, 0).splat(1, direct, {0, 0, 4});
@@ -438,7 +487,6 @@ TEST(Film, AddsSamplesOfSeveralPassesToOnePixelAtOnce) {
     PixelSample s;
     s.light[0] = {static_cast<float>(i), 1e-13f, 1};
     s.parts[1] = s.light[0];
-    s.weight = 1 + static_cast<float>(pass);
     s.spectrum = radiance_at({449, 559, 659, 699}, 2);
     FilmPass(film, pass).add(0, s);
   };

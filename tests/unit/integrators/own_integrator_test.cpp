@@ -36,9 +36,9 @@ class AmbientOcclusion final : public Integrator {
     report.rays = for_each_pixel(job.view.window, [&](const PixelPlace& place, RayCounts& counts) {
       Sampler sampler = Sampler::for_pixel(job.settings.seed, stream, job.view.pixel_key(place.x, place.y), pass);
       const Wavelengths w = Wavelengths::rgb(0.5f);
-      const EyeStart start = start_eye_path(job.view, place, 0, sampler);
+      const EyeStart start = start_eye_path(job, place, pass, 0, sampler);
       PixelSample sample;
-      sample.weight = start.filter_weight;
+      sample.filter_part = start.filter_part;
       ++counts.walk;
       if (const auto at = job.scene.intersect(start.camera.ray, w))
         sample.light[0] = free_share(job.scene, *at, start.camera.ray.direction, sampler.next2()) * Rgb{1, 1, 1};

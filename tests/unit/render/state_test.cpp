@@ -93,18 +93,25 @@ TEST(State, KeepsLayersAndTheirDecomposition) {
   EXPECT_EQ(select_layer(image, "by.splat")->pixels, (std::vector<float>{0, 0, 0, 0, 0, 8}));
 }
 
-TEST(State, KeepsSpectralBuckets) {
+TEST(State, KeepsSpectralBucketsAndSamplesOfNegativeLobes) {
   RenderState state = shard(0, 3);
-  state.film =
-      Film(3, 2, 10, {.light = {"direct", "caustic"}, .splats = true, .buckets = SpectralBuckets{7, 400, 700}});
+  state.film = Film(3, 2, 10,
+                    {.light = {"direct", "caustic"},
+                     .splats = true,
+                     .buckets = SpectralBuckets{7, 400, 700},
+                     .negative_share = 0.3f});
   PixelSample s;
   s.spectrum.emplace();
   s.spectrum->radiance = {1, 2, 3, 4};
   s.spectrum->lambda = {410, 500, 600, 690};
   s.spectrum->pdf = {0.01f, 0.02f, 0.03f, 0.04f};
   FilmPass(state.film, 0).add(4, s);
+  s.spectrum->radiance = {0.5f, 3, 1, 2};
+  s.light[0] = {1, 2, 3};
+  s.filter_part = FilterPart::negative;
+  FilmPass(state.film, 1).add(4, s);
   const RenderState read = decode_state(encode_state(state), "a.state");
-  EXPECT_EQ(read.film.buckets(), state.film.buckets());
+  EXPECT_EQ(read.film.contents(), state.film.contents());
   EXPECT_EQ(read.film.resolve(3).pixels, state.film.resolve(3).pixels);
   EXPECT_EQ(encode_state(read), encode_state(state));
 }
