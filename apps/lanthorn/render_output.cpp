@@ -85,12 +85,13 @@ nlohmann::json describe_limit(const nlohmann::json& settings, const RayCounts& r
           {"light", describe(rays.light)}};
 }
 
-// Uses the share in the whole picture: a fifth of the light of a glass of milk can be 1 % of the picture's.
-void warn_of_limit(const StateSummary& state) {
+// What the limit of scattering events cut off; empty if that is little. Uses the share in the whole picture: a fifth of
+// the light of a glass of milk can be 1 % of the picture's.
+std::string loss_by_limit(const StateSummary& state) {
   constexpr double much = 0.002;
-  if (state.cut_share < much) return;
+  if (state.cut_share < much) return {};
   const nlohmann::json settings = nlohmann::json::parse(state.settings);
-  warn(
+  return fmt::format(
       "the limit of {} scattering events ended paths that still had {} % of the throughput: light may be missing "
       "where paths are long; a higher --max-depth finds it",
       settings.at("identity").at("max_depth").get<int>(), short_number(100 * state.cut_share));
@@ -190,8 +191,10 @@ void save_render(const RenderFiles& a, const RenderOptions& options, const std::
     outputs.push_back({a.json, OutputKind::report, [&] { write_report(a.json, scene, picture, statistics); }});
   write_outputs(outputs, state);
   report_film(summary.report);
-  if (!options.max_depth) warn_of_limit(summary);  // otherwise the user chose the limit
+  const std::string loss = loss_by_limit(summary);
+  if (!loss.empty() && !options.max_depth) warn("{}", loss);
   if (a.quiet) return;
+  if (!loss.empty() && options.max_depth) announce("{}\n", loss);  // the user chose the limit
   for (const fs::path& path : paths)
     announce("{}: {} by {} in {}, error {}{}\n", path.string(),
              summary.pass_count == 1 ? "1 pass" : fmt::format("{} passes", summary.pass_count), summary.integrator,

@@ -92,6 +92,10 @@ TEST_F(Cli, RenderSaysWhatTheDepthLimitCutsOff) {
   }
   // No warning if the user chose the limit.
   EXPECT_EQ(render_milk("file.pbrt", {"-o", "b.state", "-d", "3"}).err, "");
+  const Ending chosen =
+      succeed({"render", "file.pbrt", "-i", "path", "-p", "2", "--color", "rgb", "-o", "b.exr", "-d", "3"});
+  EXPECT_TRUE(contains(chosen.out, "the limit of 3 scattering events ended paths that still had ")) << chosen.out;
+  EXPECT_FALSE(contains(chosen.err, "warning")) << chosen.err;
   // The default limit is high enough for the media's scattering.
   EXPECT_EQ(render_milk("milk.pbrt", {"-o", "c.state"}).err, "");
   EXPECT_TRUE(contains(succeed({"info", "c.state"}).out, "max-depth  4096"));
