@@ -31,10 +31,9 @@ struct EmissionPattern {
 /// `spread`.
 ///
 /// The oriented geometric normal, which every function here takes and returns, is the shape's natural normal (see
-/// emitter.h), negated if `flip_normal`. To agree with pbrt-v4, a quadric sets `flip_normal` to reverse_orientation !=
-/// (the transform mirrors). A triangle or patch, whose corners are already in world space, does likewise unless the
-/// mesh has shading normals; then these determine the side. The normal must equal the normal of the surface points that
-/// rays find.
+/// emitter.h), negated if `flip_normal`: by ReverseOrientation for a quadric; also by a mirroring transform for a
+/// triangle or patch, whose corners are already in world space, unless the mesh has shading normals, which then
+/// determine the side. The normal must equal the normal of the surface points that rays find.
 struct AreaLight {
   static constexpr LightTraits traits{.name = "area", .has_surface = true, .is_infinite = false, .is_far = false};
 

@@ -120,7 +120,9 @@ SceneMesh mesh_of(const ShapeStore& shape) {
       add_curves(mesh, shape.curves);
       break;
   }
-  if (record.flip_normal)
+  // A mirroring map reverses the winding of the grid, but not the natural normal of the quadric.
+  const bool reversed = record.kind == Kind::quadric && glm::determinant(shape.quadric.to_world.linear) < 0;
+  if (record.flip_normal != reversed)
     for (auto& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
   return mesh;
 }

@@ -347,15 +347,36 @@ Bounds ShapeStore::bounds_of(std::uint32_t primitive) const {
 
 Patch ShapeStore::patch(std::uint32_t primitive) const { return patch_of(record, primitive); }
 
+namespace {
+
+// True if the map to the shape's space mirrors, and so exchanges the outside with the side of the natural normal, which
+// follows from the winding or the parametrisation:
+// - of meshes, because mirroring reverses their winding; their outside stays where it was;
+// - of quadrics that do not emit, because pbrt-v4 turns them inside out.
+// A lamp emits from the same side in the world, in an instance and in motion. (In pbrt-v4, a mirrored quadric lights
+// the scene from its natural side and shows its light on the other side.) Curves have no natural side.
+bool mirroring_flips(const ShapeStore& store, const description::Shape& source, const Transform& to_space) {
+  switch (store.record.kind) {
+    case GeometryRecord::Kind::triangles:
+    case GeometryRecord::Kind::patches:
+      return to_space.swaps_handedness();
+    case GeometryRecord::Kind::quadric:
+      return to_space.swaps_handedness() && !source.area_light;
+    case GeometryRecord::Kind::curves:
+      break;
+  }
+  return false;
+}
+
+}  // namespace
+
 std::unique_ptr<ShapeStore> make_shape_store(description::Shape& source, const Transform& to_space) {
   if (to_space.is_singular()) throw Error(source.location, "the shape's transformation is singular");
   auto store = std::make_unique<ShapeStore>();
   store->location = source.location;
   std::visit([&](auto& shape) { take(*store, shape, to_space, source.reverse_orientation, source.location); },
              source.geometry);
-  // The outside of curves does not follow from a parametrisation, so mirroring does not change it.
-  const bool mirrored = store->record.kind != GeometryRecord::Kind::curves && to_space.swaps_handedness();
-  store->record.flip_normal = source.reverse_orientation != mirrored;
+  store->record.flip_normal = source.reverse_orientation != mirroring_flips(*store, source, to_space);
   store->record.material = source.material;
   store->flat = flat_triangles(*store);
   link(*store);

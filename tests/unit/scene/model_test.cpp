@@ -57,6 +57,16 @@ TEST(SceneModel, QuadricsPatchesAndCurvesAreClose) {
       4e-3f);
 }
 
+TEST(SceneModel, MirroredQuadricsFaceTheSideThatRaysCallOutside) {
+  for (const char* emission : {"", "AreaLightSource \"diffuse\"\n"})
+    for (const char* reverse : {"", "ReverseOrientation\n"})
+      expect_on_surface(*scene_of(std::string(emission) + reverse +
+                                  "Scale -1 1 1\nShape \"sphere\" \"float zmin\" -.5\nTranslate 4 0 0\n"
+                                  "Shape \"cylinder\" \"float phimax\" 200\nTranslate 4 0 0\n"
+                                  "Shape \"disk\" \"float innerradius\" .3\n"),
+                        4e-3f);
+}
+
 TEST(SceneModel, InstancesKnowTheirPlaceAndName) {
   const SharedScene scene = scene_of(
       "MakeNamedMaterial \"red\" \"string type\" \"diffuse\" \"rgb reflectance\" [.8 .1 .1]\n"
