@@ -426,7 +426,9 @@ struct AreaLight {
   /// lies behind a grid of deep slats, as in a soft box: it emits the same power, brightest along the normal.
   float spread = 180;
   float scale = 1;
-  std::optional<float> power;  ///< watts; rescales the emission to this total power
+  /// Watts; rescales the emission so that each shape (in each instance) emits this power, as one lamp, whatever the
+  /// number of its triangles or patches.
+  std::optional<float> power;
   bool two_sided = false;
   SourceLocation location;
 };
@@ -447,7 +449,6 @@ struct Shape {
   bool reverse_orientation = false;
   Index material = 0;
   std::optional<Index> area_light;
-  bool shares_power = false;  ///< the area light's power applies to the whole shape, not to each of its primitives
   FloatParameter alpha{1, {}};
   std::optional<Pane> pane{};  ///< rays hit the shape only with the probability of reflection; `material` is a mirror
   std::optional<MeshDisplacement> displacement;  ///< of meshes

@@ -164,15 +164,18 @@ class Emission {
   float scale_;
 };
 
-// Mean radiance of the light's primitive in RGB mode, estimated from this many points. Positive even if all of them are
-// dark, because lights without power are never sampled.
-Rgb mean_colour(const Emission& emission, const AreaLight& light, float scale, std::uint32_t samples) {
+// Mean radiance of the light's primitive in RGB mode, estimated from a point in each of `side` x `side` cells. Positive
+// even if all of them are dark, because lights without power are never sampled.
+Rgb mean_colour(const Emission& emission, const AreaLight& light, float scale, std::uint32_t side) {
   constexpr float least = 0.01f;
   if (!(area(light.shape) > 0)) return {};
   const Wavelengths w = Wavelengths::rgb(0.5f);
   Rgb sum;
+  const std::uint32_t samples = side * side;
   for (std::uint32_t i = 0; i < samples; ++i) {
-    const EmitterPoint at = sample_area(light.shape, Sampler::for_pass(0, i).next2());
+    const Vec2 cell(static_cast<float>(i % side), static_cast<float>(i / side));
+    const Vec2 u = (cell + Sampler::for_pass(0, i).next2()) / static_cast<float>(side);
+    const EmitterPoint at = sample_area(light.shape, min(u, Vec2(one_minus_epsilon)));
     const Spectrum s = emission.drawn(light.primitive, at.point, light.flip_normal ? -at.normal : at.normal, w);
     sum += {s[0], s[1], s[2]};
   }
@@ -181,8 +184,8 @@ Rgb mean_colour(const Emission& emission, const AreaLight& light, float scale, s
 }
 
 // The same as a flat spectrum: it is never evaluated at a wavelength, and there may be millions.
-SpectrumCurve mean_radiance(const Emission& emission, const AreaLight& light, float scale, std::uint32_t samples) {
-  const Rgb colour = mean_colour(emission, light, scale, samples);
+SpectrumCurve mean_radiance(const Emission& emission, const AreaLight& light, float scale, std::uint32_t side) {
+  const Rgb colour = mean_colour(emission, light, scale, side);
   SpectrumCurve mean = SpectrumCurve::constant(max_component(colour));
   mean.rgb = colour;
   return mean;
@@ -221,25 +224,19 @@ std::size_t table_side(std::size_t primitives) {
   return static_cast<std::size_t>(std::min(longest, std::sqrt(most_cells / static_cast<double>(primitives))));
 }
 
-// Points at which the brightness of each of a shape's primitives is sampled, such that all have about a million. Small
-// primitives have little in them that could differ.
-std::uint32_t samples_of_each(std::size_t primitives) {
-  constexpr std::size_t all = std::size_t{1} << 20, most = 64, least = 4;
-  return static_cast<std::uint32_t>(std::clamp(all / std::max<std::size_t>(primitives, 1), least, most));
+// Cells along each side of a primitive in which its brightness is sampled, such that all primitives of a shape together
+// have about a quarter of a million. Small primitives have little in them that could differ.
+std::uint32_t sampled_side(std::size_t primitives) {
+  constexpr double all = 1 << 18, most = 64, least = 2;
+  return static_cast<std::uint32_t>(std::clamp(std::sqrt(all / static_cast<double>(primitives)), least, most));
 }
 
-// Scales the lights so that each emits `power` watts, or all together if `shared`. Lights that share the power or have
-// a pattern get the same factor per area, so that no seams are visible.
-void set_power(std::vector<AreaLight>& lights, float power, bool shared) {
-  float total = 0, total_area = 0;
-  for (const AreaLight& l : lights) {
-    total += l.power();
-    total_area += area(l.shape);
-  }
+// Scales the lights by one factor, so that no seams are visible and together they emit `power` watts.
+void set_power(std::vector<AreaLight>& lights, float power) {
+  double total = 0;
+  for (const AreaLight& l : lights) total += static_cast<double>(l.power());
+  const float factor = total > 0 ? static_cast<float>(static_cast<double>(power) / total) : 0.0f;
   for (AreaLight& l : lights) {
-    const float one = l.pattern != nullptr ? total * (area(l.shape) / total_area) : l.power();
-    const float now = shared ? total : one;
-    const float factor = now > 0 ? power / now : 0.0f;
     l.radiance = l.radiance.scaled(factor);
     l.pattern_scale = factor;
   }
@@ -250,7 +247,6 @@ void set_power(std::vector<AreaLight>& lights, float power, bool shared) {
 std::vector<Light> make_area_lights(const EmittingShape& emitter, const description::AreaLight& light,
                                     const SpectrumInput& radiance, LightStore& store) {
   const ShapeStore& shape = *emitter.shape;
-  const description::Shape& source = *emitter.source;
   const Emission emission(shape, radiance, light.scale);
   const EmissionPattern* pattern = emission.varies() ? &store.patterns.emplace_back(emission.pattern()) : nullptr;
   if (!(light.spread > 0 && light.spread <= 180))
@@ -259,7 +255,7 @@ std::vector<Light> make_area_lights(const EmittingShape& emitter, const descript
   const Spread spread(static_cast<double>(light.spread) / 360 * std::numbers::pi);
   const std::size_t count = shape.record.lit_in_pairs ? shape.primitives() / 2 : shape.primitives();
   const std::size_t side = table_side(count);
-  const std::uint32_t samples = samples_of_each(count);
+  const std::uint32_t sampled = sampled_side(count);
   std::vector<AreaLight> lights(count);
   std::vector<std::optional<PiecewiseConstant2d>> tables(side < 2 ? 0 : count);
   parallel_for(std::size_t{0}, count, [&](std::size_t i) {
@@ -273,15 +269,13 @@ std::vector<Light> make_area_lights(const EmittingShape& emitter, const descript
     l.two_sided = light.two_sided;
     l.spread = spread;
     l.invisible = emission.is_invisible();
-    l.radiance = pattern != nullptr ? mean_radiance(emission, l, light.scale, samples) : emission.constant();
+    l.radiance = pattern != nullptr ? mean_radiance(emission, l, light.scale, sampled) : emission.constant();
     if (pattern != nullptr && side >= 2 && invert_sample_area(l.shape, Point(0)))
       tables[i] = brightness_of(emission, l, side);
   });
   for (std::size_t i = 0; i < tables.size(); ++i)
     if (tables[i]) lights[i].brightness = &store.brightnesses.emplace_back(std::move(*tables[i]));
-  // The power of a mesh applies to each of its triangles or patches.
-  const bool pairs_of_triangles = shape.record.lit_in_pairs && !shape.record.quads && !source.shares_power;
-  if (light.power) set_power(lights, *light.power * (pairs_of_triangles ? 2.0f : 1.0f), source.shares_power);
+  if (light.power) set_power(lights, *light.power);
   return {lights.begin(), lights.end()};
 }
 

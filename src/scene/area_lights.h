@@ -23,10 +23,10 @@ struct EmittingShape {
 };
 
 /// The lights of the shape: one per triangle, patch or quadric, in the order of its primitives (the two halves of a
-/// patch share one). `radiance`: the light's radiance, compiled, with its images loaded. As in pbrt-v4, each primitive
-/// has the power `power`, unless the shape's primitives share it. If a texture makes the primitives differ, `power`
-/// belongs to a primitive of mean brightness. An alpha of 0 everywhere makes lights that no ray can hit. If textures
-/// are involved (`varies`), `emitter.shape` must outlive the lights.
+/// patch share one). `radiance`: the light's radiance, compiled, with its images loaded. All of them together emit the
+/// power `light.power`, if given, whatever the number of primitives; textures and alpha are taken into account as
+/// sampled at some points. An alpha of 0 everywhere makes lights that no ray can hit. If textures are involved
+/// (`varies`), `emitter.shape` must outlive the lights.
 std::vector<Light> make_area_lights(const EmittingShape& emitter, const description::AreaLight& light,
                                     const SpectrumInput& radiance, LightStore& store);
 

@@ -185,7 +185,6 @@ void SceneBuilder::settle_emission(description::Shape& shape) {
     warn_once(data_.description, shape.location, "curves that emit become triangles, flat ones tubes of their width");
     check_curves(*curves, shape.location);
     shape.geometry = triangulated(*curves);
-    shape.shares_power = true;
   }
 }
 

@@ -478,10 +478,9 @@ struct Fields<description::Shape> {
   static constexpr auto list = std::tuple(
       node(&T::geometry), field("object_to_world", &T::object_to_world),
       field("reverse_orientation", &T::reverse_orientation), reference("material", "materials", &T::material),
-      reference("area_light", "area_lights", &T::area_light), field("shares_power", &T::shares_power),
-      field("alpha", &T::alpha), field("pane", &T::pane), field("displacement", &T::displacement),
-      field("visible_to_camera", &T::visible_to_camera), reference("inside_medium", "media", &T::inside_medium),
-      reference("outside_medium", "media", &T::outside_medium));
+      reference("area_light", "area_lights", &T::area_light), field("alpha", &T::alpha), field("pane", &T::pane),
+      field("displacement", &T::displacement), field("visible_to_camera", &T::visible_to_camera),
+      reference("inside_medium", "media", &T::inside_medium), reference("outside_medium", "media", &T::outside_medium));
 };
 template <>
 struct Fields<description::Object> {

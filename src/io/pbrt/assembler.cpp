@@ -16,6 +16,7 @@
 #include "io/ply.h"
 #include "lanthorn/file.h"
 #include "shape/curves.h"
+#include "shape/displacement.h"
 
 namespace lanthorn::pbrt {
 
@@ -575,13 +576,18 @@ void Assembler::read_ply_files() {
 }
 
 // If a mesh has both triangles and quads, its quads become a separate shape. It is appended, so that other shapes keep
-// their indices.
+// their indices. A lamp of a given power must be one shape, so its quads become triangles.
 void Assembler::place_ply(const PendingPly& pending, PlyMesh&& mesh) {
   for (const std::string& warning : mesh.warnings) {
     const std::size_t kind = warning.find_first_not_of("0123456789");  // ignore leading counts, which differ
     context_.warn(std::string_view(warning).substr(kind), pending.place, pending.path.string() + ": " + warning);
   }
   auto& list = shapes(pending.object);
+  const std::optional<Index>& lamp = list[pending.shape].area_light;
+  if (lamp && context_.scene.area_lights[*lamp].power && !mesh.triangles.triangles.empty()) {
+    const auto halves = triangulated(std::exchange(mesh.quads, {})).triangles;
+    mesh.triangles.triangles.insert(mesh.triangles.triangles.end(), halves.begin(), halves.end());  // same vertices
+  }
   if (mesh.triangles.triangles.empty() && !mesh.quads.patches.empty()) {
     list[pending.shape].geometry = std::move(mesh.quads);
     return;
