@@ -71,8 +71,10 @@ std::vector<description::Shape> read_mesh(const std::filesystem::path& path);
 
 /// Lets all rays pass straight through clear panes, so that next-event estimation finds the light behind them. Panes
 /// are shapes of thin dielectric, for which this is exact, and flat slabs of smooth dielectric, closed or as two faces,
-/// for which it ignores the small displacement of rays. Reflection is unchanged. Dispersive glass is left as it is.
-/// Returns the number of shapes replaced.
+/// for which it ignores the small displacement of rays. Light that is reflected to and fro between the faces of a pane,
+/// and between parallel panes of one size that are closer to each other than a tenth of their extent, passes or is
+/// reflected with the rest. Panes of other glass (tinted, absorbing, rough, dispersive …) stay as they are; a warning
+/// for each reason counts them. Returns the number of shapes replaced.
 std::size_t replace_window_glass(SceneDescription& scene);
 
 /// Moves the origin near the camera, along each axis on which the camera is at least 1024 m away, and adds the offset

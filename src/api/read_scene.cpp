@@ -27,7 +27,8 @@ SceneDescription read_at(SceneSource& source, const std::filesystem::path& path,
                          const MeshObserver& observer) {
   SceneDescription scene = source.read(seconds, observer);
   if (options.window_glass) {
-    if (replace_window_glass(scene) == 0)
+    const std::size_t warnings = scene.warnings.size();
+    if (replace_window_glass(scene) == 0 && scene.warnings.size() == warnings)
       scene.warnings.push_back(
           {{path.string()}, "--window-glass: no thin dielectric and no flat slab of clear glass is in the scene"});
     scene.hash = hash_words({scene.hash, 1});  // a different scene

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "math/hash.h"
-#include "surface/thin_dielectric.h"
+#include "scene/windows.h"
 
 namespace lanthorn {
 
@@ -21,12 +21,6 @@ using Kind = GeometryRecord::Kind;
 Point origin_of(const RTCRay& ray) { return {ray.org_x, ray.org_y, ray.org_z}; }
 Vec3 direction_of(const RTCRay& ray) { return {ray.dir_x, ray.dir_y, ray.dir_z}; }
 
-// Reflectance of one face of a pane, or of both of a thin one, for rays that are not refracted between them.
-float reflectance(const description::Pane& pane, float cos) {
-  if (pane.thin) return thin_reflectance({pane.eta}, cos)[0];
-  return fresnel_dielectric(cos, pane.eta).reflectance;
-}
-
 // Tests alpha as the probability that a surface exists. The random number depends only on the ray and the primitive:
 // the same ray always sees the same surfaces, and different surfaces along it are independent.
 bool passes_alpha(const ShapeStore& shape, const RTCRay& ray, const PrimitiveHit& hit, std::uint32_t root) {
@@ -35,8 +29,7 @@ bool passes_alpha(const ShapeStore& shape, const RTCRay& ray, const PrimitiveHit
   // A ray that enters a tube and leaves it meets two surfaces.
   if (shape.record.kind == Kind::curves && dot(surface.normal, direction_of(ray)) > 0) ++root;
   float alpha = shape.textures->evaluate(shape.alpha, {surface.position, surface.normal, surface.uv, surface.color});
-  if (shape.pane)
-    alpha *= reflectance(*shape.pane, std::fmin(1.0f, std::fabs(dot(surface.normal, normalize(direction_of(ray))))));
+  if (shape.pane) alpha *= reflectance_of_pane(shape, origin_of(ray), direction_of(ray), surface);
   if (alpha >= 1) return true;
   if (!(alpha > 0)) return false;
   const std::uint64_t seed = hash_words({shape.number, hit.primitive, root});
@@ -371,7 +364,9 @@ void Geometry::commit() {
     records_.push_back(shape.record);
   };
   for (const auto& shape : shapes.in_world) record(*shape);
+  join_windows(shapes.in_world);
   for (const auto& group : shapes.groups) {
+    join_windows(group);
     shapes.first_records.push_back(static_cast<std::uint32_t>(records_.size()));
     shapes.group_scenes.push_back(shapes.make_scene());
     const RTCScene scene = shapes.group_scenes.back();

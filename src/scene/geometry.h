@@ -24,6 +24,15 @@
 
 namespace lanthorn {
 
+/// A flat face of a pane of window glass, in a shape's space.
+struct PaneFace {
+  DVec3 normal{0.0};  ///< unit, of either side
+  double offset = 0;  ///< the plane's distance from the origin along `normal`, metres
+  double margin = 0;  ///< bound of the distance from the plane of rounded points on the face, metres
+  Bounds box;         ///< around the face, with the margin
+  description::Pane glass;
+};
+
 /// Data of one shape, which Embree and the records refer to.
 struct ShapeStore {
   std::vector<std::array<std::uint32_t, 3>> triangles;
@@ -37,6 +46,8 @@ struct ShapeStore {
   description::Curves curves;  ///< one normal of ribbons more than needed, because Embree may read it
   FloatInput alpha;
   std::optional<description::Pane> pane;
+  /// Of a flat pane: all faces of the window that it belongs to (windows.h); null for other shapes.
+  std::shared_ptr<const std::vector<PaneFace>> window;
   const TextureGraph* textures = nullptr;
   std::uint32_t number = 0;  ///< distinguishes geometries in hashes
   SourceLocation location;

@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include "lanthorn/scene.h"
 #include "math/vec.h"
 
@@ -70,18 +72,38 @@ bool is_colourless(const description::SpectrumParameter& tint) {
   return !tint.texture && value != nullptr && *value == 1;
 }
 
-// The pane that a shape of this material forms; nullopt if it does not have the form of a pane.
-std::optional<description::Pane> pane_of(const description::Shape& shape, const description::Material& material) {
-  if (material.normal_map || material.displacement || material.interior || shape.area_light ||
-      shape.inside_medium != shape.outside_medium)
-    return {};
-  if (const auto* thin = std::get_if<description::ThinDielectricMaterial>(&material.node))
-    if (const float* eta = std::get_if<float>(&thin->eta))
-      if (is_smooth(thin->roughness) && is_colourless(thin->tint) && !thin->film) return description::Pane{*eta, true};
-  if (const auto* glass = std::get_if<description::DielectricMaterial>(&material.node))
-    if (const float* eta = std::get_if<float>(&glass->eta))
-      if (is_smooth(glass->roughness) && !glass->film) return description::Pane{*eta, false};
-  return {};
+// The glass of a shape, if it is glass.
+struct Glass {
+  description::Pane pane;
+  const char* flaw = nullptr;  // why a pane of it cannot let all rays pass straight; null if it can
+};
+
+const char* flaw_of(const description::Roughness& roughness, const description::SpectrumParameter& tint,
+                    bool has_film) {
+  if (!is_smooth(roughness)) return "is rough";
+  if (!is_colourless(tint)) return "is tinted";
+  return has_film ? "has a thin film" : nullptr;
+}
+
+std::optional<Glass> glass_of(const description::Shape& shape, const description::Material& material) {
+  Glass glass;
+  const description::SpectrumValue* eta = nullptr;
+  const auto take = [&](const auto& dielectric, bool thin) {
+    eta = &dielectric.eta;
+    glass.pane.thin = thin;
+    glass.flaw = flaw_of(dielectric.roughness, dielectric.tint, dielectric.film.has_value());
+  };
+  if (const auto* thin = std::get_if<description::ThinDielectricMaterial>(&material.node)) take(*thin, true);
+  if (const auto* solid = std::get_if<description::DielectricMaterial>(&material.node)) take(*solid, false);
+  if (eta == nullptr) return {};
+  if (const float* constant = std::get_if<float>(eta))
+    glass.pane.eta = *constant;
+  else
+    glass.flaw = "has dispersion";
+  if (material.interior || shape.inside_medium != shape.outside_medium) glass.flaw = "has a medium inside";
+  if (material.normal_map || material.displacement) glass.flaw = "has a relief";
+  if (shape.area_light) glass.flaw = "emits light";
+  return glass;
 }
 
 /// A shape of glass that may be one of a pane's two faces.
@@ -89,13 +111,13 @@ struct Face {
   static constexpr float alike = 0.1f;
 
   std::size_t shape = 0;
-  float eta = 1;
+  Glass glass;
   std::vector<Corners> triangles;
   Point centre{0};
   float area = 0;
 
-  Face(std::size_t number, float index_of_refraction, std::vector<Corners> corners)
-      : shape(number), eta(index_of_refraction), triangles(std::move(corners)) {
+  Face(std::size_t number, const Glass& its_glass, std::vector<Corners> corners)
+      : shape(number), glass(its_glass), triangles(std::move(corners)) {
     Bounds bounds;
     for (const Corners& t : triangles) {
       area += area_of(t);
@@ -106,7 +128,8 @@ struct Face {
   /// Squared distance from this face's centre within which the other face's centre must lie, m².
   float reach2() const { return sqr(alike) * area; }
   bool makes_slab_with(const Face& other) const {
-    if (eta != other.eta || std::fabs(area - other.area) > alike * area) return false;
+    if (glass.pane.eta != other.glass.pane.eta || glass.flaw != other.glass.flaw) return false;
+    if (std::fabs(area - other.area) > alike * area) return false;
     if (distance_squared(centre, other.centre) > reach2()) return false;
     std::vector<Corners> both = triangles;
     both.insert(both.end(), other.triangles.begin(), other.triangles.end());
@@ -114,20 +137,20 @@ struct Face {
   }
 };
 
-// The panes among the shapes, by shape: sheets of thin glass, slabs, and pairs of faces.
-std::vector<std::optional<description::Pane>> find_panes(const std::vector<description::Shape>& shapes,
-                                                         const std::vector<description::Material>& materials) {
-  std::vector<std::optional<description::Pane>> panes(shapes.size());
+// The glass of the panes among the shapes, by shape: sheets of thin glass, slabs, and pairs of faces.
+std::vector<std::optional<Glass>> find_panes(const std::vector<description::Shape>& shapes,
+                                             const std::vector<description::Material>& materials) {
+  std::vector<std::optional<Glass>> panes(shapes.size());
   std::vector<Face> faces;
   for (std::size_t i = 0; i < shapes.size(); ++i) {
-    const std::optional<description::Pane> pane = pane_of(shapes[i], materials[shapes[i].material]);
-    if (!pane) continue;
+    const std::optional<Glass> glass = glass_of(shapes[i], materials[shapes[i].material]);
+    if (!glass) continue;
     std::vector<Corners> triangles;
-    if (!pane->thin) triangles = triangles_of(shapes[i]);
-    if (pane->thin || is_flat_slab(triangles))
-      panes[i] = pane;
+    if (!glass->pane.thin) triangles = triangles_of(shapes[i]);
+    if (glass->pane.thin || is_flat_slab(triangles))
+      panes[i] = glass;
     else if (!triangles.empty() && !shapes[i].object_to_world.is_moving())
-      faces.emplace_back(i, pane->eta, std::move(triangles));
+      faces.emplace_back(i, *glass, std::move(triangles));
   }
   // Sorted by centre, so that only neighbours are compared: testing all pairs would take too long with many glass
   // shapes.
@@ -135,27 +158,61 @@ std::vector<std::optional<description::Pane>> find_panes(const std::vector<descr
   for (std::size_t a = 0; a < faces.size(); ++a)
     for (std::size_t b = a + 1; b < faces.size() && sqr(faces[b].centre.x - faces[a].centre.x) <= faces[a].reach2();
          ++b)
-      if (faces[a].makes_slab_with(faces[b]))
-        panes[faces[a].shape] = panes[faces[b].shape] = description::Pane{faces[a].eta, false};
+      if (faces[a].makes_slab_with(faces[b])) panes[faces[a].shape] = panes[faces[b].shape] = faces[a].glass;
   return panes;
 }
+
+// Panes that stay as they are, by what their glass has against it.
+struct Leftovers {
+  struct Kind {
+    const char* flaw;
+    std::size_t shapes;
+    SourceLocation first;
+  };
+  std::vector<Kind> kinds;
+
+  void add(const char* flaw, const SourceLocation& location) {
+    for (Kind& kind : kinds)
+      if (kind.flaw == flaw) {
+        ++kind.shapes;
+        return;
+      }
+    kinds.push_back({flaw, 1, location});
+  }
+  void warn(SceneDescription& scene) const {
+    for (const Kind& kind : kinds)
+      scene.warnings.push_back(
+          {kind.first,
+           fmt::format("--window-glass: {} as before, because {} glass {}; only panes of clear, smooth glass let all "
+                       "rays pass. Methods with photons find the light behind the others",
+                       kind.shapes == 1 ? "this pane stays" : fmt::format("{} panes stay", kind.shapes),
+                       kind.shapes == 1 ? "its" : "their", kind.flaw)});
+  }
+};
 
 }  // namespace
 
 std::size_t replace_window_glass(SceneDescription& scene) {
   std::size_t count = 0;
+  Leftovers left;
   const auto mirror = static_cast<description::Index>(scene.materials.size());
   const auto replace = [&](std::vector<description::Shape>& shapes) {
-    const std::vector<std::optional<description::Pane>> panes = find_panes(shapes, scene.materials);
+    const std::vector<std::optional<Glass>> panes = find_panes(shapes, scene.materials);
     for (std::size_t i = 0; i < shapes.size(); ++i) {
-      shapes[i].pane = panes[i];
+      shapes[i].pane.reset();
       if (!panes[i]) continue;
+      if (panes[i]->flaw != nullptr) {
+        left.add(panes[i]->flaw, shapes[i].location);
+        continue;
+      }
+      shapes[i].pane = panes[i]->pane;
       shapes[i].material = mirror;
       ++count;
     }
   };
   replace(scene.shapes);
   for (description::Object& object : scene.objects) replace(object.shapes);
+  left.warn(scene);
   if (count == 0) return 0;
   description::ConductorMaterial perfect;
   perfect.reflectance = description::SpectrumParameter{1.0f, {}};
