@@ -16,12 +16,16 @@ struct ErrorEstimate {
   double error = 0;   ///< both parts together: √(noise² + bias²)
   double bound = 0;   ///< upper bound of the error at 90 % confidence
   std::string doubt;  ///< why the numbers are too small or unknown; empty if they can be relied on
+  /// No pixel has light after enough passes. No error relative to the light is then known, but a render that stops at
+  /// an error stops: in a scene without light, more passes would change nothing.
+  bool is_black = false;
 
   bool is_known() const { return doubt.empty(); }
-  bool is_below(double limit) const { return is_known() && bound <= limit; }
+  /// True if a render that stops at this error need not go on.
+  bool is_below(double limit) const { return is_black || (is_known() && bound <= limit); }
 };
 
-/// For the user: "below 1.9 %", or "not known: there are too few passes".
+/// For the user: "below 1.9 %"; "0 %" if all passes are alike; or "not known: there are too few passes".
 std::string describe_error(const ErrorEstimate& estimate);
 
 /// Factor by which the number of passes must grow for the bound to fall below `limit`, if noise falls as n^(-1/2) and

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -11,6 +12,7 @@
 
 #include "denoise/layer.h"
 #include "denoise/noisy_picture.h"
+#include "film/error_estimate.h"
 #include "lanthorn/error.h"
 
 namespace lanthorn {
@@ -247,6 +249,10 @@ class Denoiser {
     const double noise2 = sum.noise / count, error2 = std::max(noise2, sum.error / count);
     const double variance = std::max(0.0, squares - sum.error * sum.error / blocks);
     ErrorEstimate& e = error_;
+    if (std::all_of(denoised_.pixels.begin(), denoised_.pixels.end(), [](float x) { return x == 0; })) {
+      e = error_of_black_picture();
+      return;
+    }
     e.error = std::sqrt(error2);
     e.noise = std::sqrt(noise2);
     e.bias = std::sqrt(error2 - noise2);

@@ -329,6 +329,11 @@ class ErrorMeasurement {
     const double of_bias = std::sqrt(sums_.correlation * squares_of(sums_.bias)) / pixels;
     constexpr double of_method = 2 * 0.02;  // measured with bench/error, for `path` where caustics cause its noise
     ErrorEstimate& e = result_.estimate;
+    if (!(sums_.light > 0)) {
+      e = error_of_black_picture();
+      e.is_black = has_enough_passes();
+      return;
+    }
     e.noise = std::sqrt(noise2);
     e.bias = std::sqrt(bias2);
     e.error = std::sqrt(noise2 + bias2);
@@ -336,14 +341,18 @@ class ErrorMeasurement {
     e.doubt = doubt_of(square_sum > 0 ? 3 * square(pixels * noise2) / (sums_.correlation * square_sum) : pixels);
   }
 
+  bool has_enough_passes() const {
+    constexpr std::uint64_t fewest = 2;  // in each half
+    return std::min(pictures_.passes[0], pictures_.passes[1]) >= fewest;
+  }
+
   // `independent`: number of independent squares from which the noise is estimated.
   std::string doubt_of(double independent) const {
-    constexpr std::uint64_t fewest_passes = 2;  // in each half
     constexpr double fewest_squares = 20;
     const ErrorEstimate& e = result_.estimate;
-    if (std::min(pictures_.passes[0], pictures_.passes[1]) < fewest_passes) return "there are too few passes";
+    if (!has_enough_passes()) return "there are too few passes";
     if (independent < fewest_squares) return "a few spots make all the noise";
-    const double spikes = sums_.light > 0 ? sums_.spikes / sums_.light : 0;
+    const double spikes = sums_.spikes / sums_.light;
     if (spikes > e.bound)
       return fmt::format("{:.1f} % of the light is in single bright pixels (clamping limits them)", 100 * spikes);
     return {};
@@ -360,9 +369,11 @@ class ErrorMeasurement {
 }  // namespace
 
 std::string describe_error(const ErrorEstimate& estimate) {
-  return estimate.is_known() ? fmt::format("below {} %", short_number(100 * estimate.bound))
-                             : fmt::format("not known: {}", estimate.doubt);
+  if (!estimate.is_known()) return fmt::format("not known: {}", estimate.doubt);
+  return estimate.bound > 0 ? fmt::format("below {} %", short_number(100 * estimate.bound)) : "0 %";
 }
+
+ErrorEstimate error_of_black_picture() { return {1, 0, 1, 1, "the picture is black", true}; }
 
 double growth_to_reach(const ErrorEstimate& estimate, double limit) {
   const double margin = estimate.error > 0 ? square(estimate.bound / estimate.error) : 1;

@@ -25,6 +25,9 @@ struct MeasuredError {
   Image bias;            ///< signed, for R, G, B: by how much the picture is too bright
 };
 
+/// The error of a picture without any light: unknown, with a doubt that says so.
+ErrorEstimate error_of_black_picture();
+
 /// The halves differ only by noise: their difference d has variance σ²/n₁ + σ²/n₂, and the picture has σ²/(n₁ + n₂), so
 /// that n₁ n₂ / (n₁ + n₂)² d² is an unbiased estimate of the picture's variance, whatever the correlation of pixels.
 /// These squares, divided by those of the true values, are averaged over the picture; the layer `standard_error` has

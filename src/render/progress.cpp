@@ -24,8 +24,9 @@ std::uint64_t passes_left(const PassRange& asked, const RenderState& state) {
 
 // Fraction of the passes that this call needs to reach the bound; below 1 until the bound is reached.
 double fraction_of_noise(double bound, const RenderState& state, const RenderStatistics& statistics) {
-  if (!statistics.error || !statistics.error->is_known()) return 0;
+  if (!statistics.error) return 0;
   if (statistics.error->is_below(bound)) return 1;
+  if (!statistics.error->is_known()) return 0;
   const double needed = growth_to_reach(*statistics.error, bound) * static_cast<double>(statistics.error_passes);
   const auto before = static_cast<double>(state.pass_count() + statistics.passes_elsewhere - statistics.passes);
   return std::min(0.99, static_cast<double>(statistics.passes) / std::max(1.0, needed - before));

@@ -179,6 +179,29 @@ TEST(ErrorEstimate, FewPassesAreNoMeasure) {
   EXPECT_EQ(doubt({4, 1}), "there are too few passes");
 }
 
+// Nothing can be said relative to no light. A render that stops at an error ends all the same.
+TEST(ErrorEstimate, BlackPicturesHaveNoKnownError) {
+  const auto none = [](int, int) { return 0.0; };
+  const ErrorEstimate black = measure_error(Picture(none, none, {2, 2}, 1, independent).halves).estimate;
+  EXPECT_FALSE(black.is_known());
+  EXPECT_EQ(describe_error(black), "not known: the picture is black");
+  EXPECT_TRUE(black.is_below(0.01));
+  EXPECT_EQ(black.bound, 1);
+  EXPECT_FALSE(measure_error(Picture(none, none, {1, 1}, 1, independent).halves).estimate.is_below(0.01));
+  // One pixel with light is enough.
+  const auto spot = [](int x, int y) { return x == 3 && y == 4 ? 1.0 : 0.0; };
+  EXPECT_EQ(describe_error(measure_error(Picture(spot, none, {2, 2}, 1, independent).halves).estimate), "0 %");
+}
+
+TEST(ErrorEstimate, PicturesWithoutNoiseHaveNoError) {
+  const ErrorEstimate even = measure_error(Picture(
+                                               white, [](int, int) { return 0.0; }, {2, 2}, 1, independent)
+                                               .halves)
+                                 .estimate;
+  EXPECT_TRUE(even.is_below(0.01));
+  EXPECT_EQ(describe_error(even), "0 %");
+}
+
 // One pixel in 400 contains a path that carries all the light.
 std::vector<double> spikes(std::mt19937& rng) {
   std::vector<double> field(std::size_t{width} * height * 3);
