@@ -275,6 +275,13 @@ std::optional<CameraConnection> Camera::connect(const Point& p, const Vec2& u_le
   return c;
 }
 
+std::optional<Point> Camera::lens_point_for(const Point& p, const Vec2& u_lens, float time) const {
+  std::optional<Affine> moved;
+  const Affine& map = to_world_.at(time, moved);
+  const std::optional<Sight> s = sight(map.inverse_point(DVec3(p)), u_lens);
+  return s ? std::optional(Point(map.point(s->lens))) : std::nullopt;
+}
+
 // Etendue is conserved: a ray's density per area and projected solid angle is the same in front of and behind the lens.
 CameraPdf Camera::lens_pdf(const DVec3& origin, const DVec3& direction) const {
   // Rays from sample_ray start on the front surface; moved slightly forward, they hit it again.

@@ -58,6 +58,9 @@ class Camera {
   CameraRay sample_ray(const Vec2& raster, const Vec2& u_lens, float time) const;
   /// Connects `p` to the lens (realistic: to a point of its front surface). Returns nullopt if `p` is not in view.
   std::optional<CameraConnection> connect(const Point& p, const Vec2& u_lens, float time) const;
+  /// The point of the lens to which `connect` connects `p`, whether or not `p` is in the picture. Returns nullopt if no
+  /// light from `p` passes the lens.
+  std::optional<Point> lens_point_for(const Point& p, const Vec2& u_lens, float time) const;
   /// Densities with which `sample_ray`, for raster positions uniform over the whole film, samples this ray. For a
   /// realistic camera only their product is meaningful; 0 if the lens blocks the ray.
   CameraPdf pdf(const Ray& ray) const;

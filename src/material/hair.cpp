@@ -51,8 +51,15 @@ static ClosureAt closure_of(const description::HairMaterial& m, MaterialCompiler
   c.is_constant = false;  // depends on the offset across the hair
   return [=](const TexturePoint& at, const Wavelengths& w) -> Bsdf {
     const float azimuthal = std::clamp(beta_n(at), 0.0f, 1.0f);
-    return Hair{absorption(azimuthal, at, w),       2 * at.uv.y - 1, std::fmax(eta(at), 1.0001f),
-                std::clamp(beta_m(at), 0.0f, 1.0f), azimuthal,       alpha(at)};
+    const float h = 1 - 2 * at.uv.y;  // v grows along the ray x the hair
+    return Hair{absorption(azimuthal, at, w),
+                h,
+                std::fmax(eta(at), 1.0001f),
+                std::clamp(beta_m(at), 0.0f, 1.0f),
+                azimuthal,
+                alpha(at),
+                h,
+                true};
   };
 }
 template ClosureAt compile(const description::HairMaterial& m, MaterialCompiler& c);

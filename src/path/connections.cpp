@@ -32,8 +32,8 @@ Arrival in_medium(const FlightDensity& flight, const Direction& wi, const Direct
 }
 Arrival arrival(const Bidirectional& pass, const SurfaceVertex& v, const Direction& direction, const FlightDensity& f,
                 Transport transport) {
-  return {geometric_cosine(v.at, direction),
-          pdf_reverse(v.at.bsdf, v.wi_local, v.at.shading.to_local(direction), transport), pass.merging_at(v.at), f};
+  return {area_cosine(v.at, direction), pdf_reverse(v.at.bsdf, v.wi_local, v.at.shading.to_local(direction), transport),
+          pass.merging_at(v.at), f};
 }
 Arrival arrival(const Bidirectional&, const MediumVertex& v, const Direction& direction, const FlightDensity& f,
                 Transport) {
@@ -52,7 +52,7 @@ End eye_end(const Bidirectional& pass, const SurfaceVertex& v, const Direction& 
   const Vec3 wo = v.at.shading.to_local(direction);
   const BsdfValues value = eval_and_pdfs(v.at.bsdf, v.wi_local, wo, Transport::radiance);
   if (value.f.is_black()) return {};
-  return {{geometric_cosine(v.at, direction), value.pdf_reverse, pass.merging_at(v.at), flight},
+  return {{area_cosine(v.at, direction), value.pdf_reverse, pass.merging_at(v.at), flight},
           value.f * cosine(v.at.bsdf, wo),
           value.pdf,
           is_dispersive(v.at.bsdf)};
@@ -69,9 +69,8 @@ End light_end(const Bidirectional& pass, const LightVertex& v, const Direction& 
   const Vec3 wo = v.at.shading.to_local(direction);
   const BsdfValues value = eval_and_pdfs(v.at.bsdf, v.wi_local, wo, Transport::importance);
   if (value.f.is_black()) return {};
-  const float cos = geometric_cosine(v.at, direction);
-  return {{cos, value.pdf_reverse, v.depth > 1 ? pass.merging_at(v.at) : 0.0f, v.flight},
-          value.f * (cos * shading_flux_ratio(v.at, v.wi, v.wi_local)),
+  return {{area_cosine(v.at, direction), value.pdf_reverse, v.depth > 1 ? pass.merging_at(v.at) : 0.0f, v.flight},
+          value.f * (geometric_cosine(v.at, direction) * shading_flux_ratio(v.at, v.wi, v.wi_local)),
           value.pdf,
           is_dispersive(v.at.bsdf) && !v.has_own_dispersion};
 }
@@ -200,9 +199,9 @@ DirectLight connect_ends(const PathContext& path, const Bidirectional& pass, con
   if (light.f.is_black()) return {};
   const Spectrum value = v.state.beta * eye.f * light.f * other.beta * (pass.techniques.light_paths / distance2);
   if (value.is_black()) return {};
-  const Passage way =
-      passage(path, ray_to(v, direction, other.phase ? SegmentEnd{other.at.position} : end_at(other.at)),
-              medium_towards(v, direction), visitor_dimensions(v.state.depth));
+  const Passage way = passage(
+      path, ray_to(v, direction, other.phase ? SegmentEnd{other.at.position} : end_at(other.at, position_of(v))),
+      medium_towards(v, direction), visitor_dimensions(v.state.depth));
   if (way.transmittance.is_black()) return {};
   const float weight = weight_of_connection(pass, v.state, subpath, eye, other, light, distance2,
                                             FlightDensity::passing(way.optical_depth));

@@ -11,10 +11,14 @@ namespace lanthorn {
 
 namespace {
 
+// `start(u_lens)`: the point from which light leaves for that point of the lens.
+template <class Start>
 std::optional<CameraConnection> find_lens_from(const PathContext& path, const View& view, const WalkState& state,
-                                               const Point& from, float time) {
+                                               float time, Start&& start) {
   path.sampler.seek(visitor_dimensions(state.depth));
-  return view.camera.connect(from, path.sampler.next2(), time);
+  const Vec2 u_lens = path.sampler.next2();
+  const std::optional<Point> from = start(u_lens);
+  return from ? view.camera.connect(*from, u_lens, time) : std::nullopt;
 }
 
 // `value`: flux times scattering towards the lens.
@@ -35,12 +39,18 @@ std::optional<LensLight> finish(const PathContext& path, const View& view, const
 }  // namespace
 
 std::optional<CameraConnection> find_lens(const PathContext& path, const View& view, const SurfaceVertex& vertex) {
-  if (vertex.at.is_hidden) return {};
-  return find_lens_from(path, view, vertex.state, vertex.at.position, vertex.at.time);
+  const SurfacePoint& at = vertex.at;
+  if (at.is_hidden) return {};
+  return find_lens_from(path, view, vertex.state, at.time, [&](const Vec2& u_lens) -> std::optional<Point> {
+    if (!at.is_flat_curve) return at.position;
+    const std::optional<Point> lens = view.camera.lens_point_for(axis_of(at), u_lens, at.time);
+    return lens ? std::optional(leaving_point_towards(at, *lens)) : std::nullopt;
+  });
 }
 
 std::optional<CameraConnection> find_lens(const PathContext& path, const View& view, const MediumVertex& vertex) {
-  return find_lens_from(path, view, vertex.state, vertex.position, vertex.time);
+  return find_lens_from(path, view, vertex.state, vertex.time,
+                        [&](const Vec2&) { return std::optional(vertex.position); });
 }
 
 std::optional<LensLight> connect_to_lens(const PathContext& path, const View& view, const SurfaceVertex& vertex,

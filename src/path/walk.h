@@ -209,7 +209,7 @@ bool pass_through(const SurfacePoint& at, WalkState& state, Ray& ray) {
   const bool is_hidden = transport == Transport::radiance && at.is_hidden && state.depth == 0;
   if (!is_hidden && !at.is_interface) return false;
   if (at.is_interface) state.medium = medium_towards(at, ray.direction, state.medium);
-  Ray rest = spawn_ray(at, ray.direction);
+  Ray rest = pass_surface(at, ray);
   rest.width = ray.width + ray.spread * std::sqrt(distance_squared(at.position, ray.origin));  // its footprint goes on
   rest.spread = ray.spread;
   ray = rest;

@@ -22,7 +22,7 @@ std::optional<MediumId> medium_before(const Scene& scene, Ray ray) {
     const std::optional<SurfacePoint> at = scene.intersect(ray, Wavelengths::rgb(0.5f));
     if (!at || !lets_through(*at)) return {};
     if (at->media.is_transition()) return medium_towards(*at, -ray.direction, MediumId::vacuum);
-    ray = spawn_ray(*at, ray.direction);
+    ray = pass_surface(*at, ray);
   }
   return {};
 }

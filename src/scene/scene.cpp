@@ -5,8 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <iterator>
+#include <variant>
 
+#include "math/hash.h"
 #include "scene/obstacles.h"
 #include "scene/scene_data.h"
 #include "scene/subsurface.h"
@@ -16,14 +19,34 @@ namespace lanthorn {
 
 namespace {
 
-bool is_flat(const GeometryRecord& record) {
-  return record.kind == GeometryRecord::Kind::curves && record.curves->kind == description::CurveKind::flat;
-}
+constexpr std::uint64_t flat_curve_seed = 0x68a17;  // distinguishes these hashes of rays from others
 
 // At degenerate points, the position or normal may exceed single precision; such hits are ignored.
 bool is_finite(const SurfaceGeometry& s) {
   const Vec3 sum = s.position + s.normal + s.shading_normal;
   return std::isfinite(sum.x + sum.y + sum.z) && std::isfinite(s.uv.x + s.uv.y);
+}
+
+// Completes a point of a flat curve: its axis, and the place across the width at which rays leave. That place is a
+// function of the ray, because the same ray must meet the same scene.
+void settle_flat_curve(SurfacePoint& p, const SurfaceGeometry& surface, const Ray& ray) {
+  p.is_flat_curve = true;
+  const float radius = 0.5f * std::sqrt(length_squared(surface.dpdv));
+  const float side = dot(surface.dpdv, cross(p.normal, p.shading.s)) < 0 ? -1.0f : 1.0f;
+  p.to_axis = side * radius * (1 - 2 * surface.uv.y);
+  const float offset = 2 * unit_float(hash_vec(ray.direction, hash_vec(ray.origin, flat_curve_seed))) - 1;
+  p.leaves_at = offset * radius;
+  if (!is_fibre(p.bsdf)) return;
+  p.is_hair = true;
+  p.position = axis_of(p);
+  p.to_axis = 0;
+  if (const Hair* hair = std::get_if<Hair>(&p.bsdf.get())) {
+    Hair facing = *hair;
+    facing.h = 1 - 2 * surface.uv.y;  // v grows along the ray x the hair
+    facing.h_out = offset;
+    facing.is_on_surface = false;
+    p.bsdf = facing;
+  }
 }
 
 // The part of the surface that a footprint `width` metres wide across the ray covers at least.
@@ -62,7 +85,7 @@ std::optional<SurfacePoint> Scene::intersect(const Ray& ray, const Wavelengths& 
     p.bsdf = data_->materials.evaluate(material, at, w);
     if (tilted)
       if (const std::optional<Bsdf> as_bent = bent(p.bsdf, p.shading.to_local(p.normal))) p.bsdf = *as_bent;
-    p.is_hair = is_flat(record) && is_fibre(p.bsdf);
+    if (is_flat(record)) settle_flat_curve(p, surface, ray);
   }
   if (record.emits) p.light = hit->light();
   p.time = ray.time;

@@ -139,7 +139,7 @@ std::unique_ptr<ShapeStore> SceneBuilder::store(description::Shape& shape, const
   if (traits.is_hair && curves != nullptr && curves->kind == description::CurveKind::cylinder)
     curves->kind = description::CurveKind::flat;
   std::unique_ptr<ShapeStore> stored = make_shape_store(shape, to_space);
-  stored->record.wants_tangents = traits.is_anisotropic || traits.has_relief;
+  stored->record.wants_tangents = traits.is_anisotropic || traits.has_relief || is_flat(stored->record);
   stored->record.wants_footprint = traits.has_levels;
   stored->record.is_interface = traits.is_interface;
   const std::optional<description::Index>& interior = traits.interior;

@@ -112,7 +112,7 @@ class SceneEditor {
         throw Error(data_->description.materials[record.material].location,
                     "this edit would change where surfaces and media are (an interface, a medium inside, or hair): "
                     "build the scene again");
-      record.wants_tangents = now.is_anisotropic || now.has_relief;
+      record.wants_tangents = now.is_anisotropic || now.has_relief || is_flat(record);
       record.wants_footprint = now.has_levels;
       record.wants_uv = record.wants_uv || now.varies || now.has_relief;
       data_->has_measured_spectra = data_->has_measured_spectra || now.has_tables || now.is_dispersive;

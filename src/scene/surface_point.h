@@ -31,8 +31,13 @@ struct SurfacePoint {
   MediumInterface media;
   bool is_interface = false;  ///< no surface, only an interface of media; the closure is undefined
   bool is_hidden = false;     ///< rays from the camera pass through
-  /// A hair, seen as a ribbon that faces the ray: `normal` depends on the ray; `shading.s` runs along the hair.
+  /// A flat curve: a ribbon that faces every ray. `normal` faces the ray that has met it; `shading.s` runs along it.
+  bool is_flat_curve = false;
+  /// A flat curve of hair. `position` lies on its axis.
   bool is_hair = false;
+  /// Of a flat curve, metres: from `position` to the curve's axis along `normal` x `shading.s`; and the offset from the
+  /// axis at which rays leave, see `leaving_point`.
+  float to_axis = 0, leaves_at = 0;
   PointBsdf bsdf;
 };
 
@@ -40,6 +45,12 @@ struct SurfacePoint {
 /// a hair, whose width faces all directions, from the plane perpendicular to the hair.
 inline float geometric_cosine(const SurfacePoint& at, const Direction& w) {
   return at.is_hair ? safe_sqrt(1 - sqr(dot(w, at.shading.s))) : std::fabs(dot(w, at.normal));
+}
+
+/// |cos| that turns the density of rays along `w`, per area across them, into one per area of the surface that they
+/// meet. Differs from `geometric_cosine` on flat curves that are no hair, because these turn towards the rays.
+inline float area_cosine(const SurfacePoint& at, const Direction& w) {
+  return at.is_flat_curve ? safe_sqrt(1 - sqr(dot(w, at.shading.s))) : std::fabs(dot(w, at.normal));
 }
 
 /// Normal of a receiver of light; zero if it receives from all directions alike (hair).
@@ -69,12 +80,44 @@ inline constexpr float tracing_error = 0x1p-20f;
 
 }  // namespace detail
 
+/// A point of the axis of a flat curve.
+inline Point axis_of(const SurfacePoint& at) { return at.position + at.to_axis * cross(at.normal, at.shading.s); }
+
+/// The part of a direction across a flat curve, unit; the normal for directions along the curve.
+inline Direction across_curve(const SurfacePoint& at, const Direction& w) {
+  const Vec3 across = w - dot(w, at.shading.s) * at.shading.s;
+  const float length2 = length_squared(across);
+  return length2 > 1e-12f ? across / std::sqrt(length2) : at.normal;
+}
+
+/// Where a ray in `direction` leaves the surface. Rays of any direction see a flat curve as a ribbon that faces them,
+/// so that no point of one ribbon is a point of all others. Therefore the width at which a ray leaves is independent of
+/// the width at which another ray has arrived: `leaves_at`, uniform over the width, across the ray that leaves. Walks
+/// from the eye and from lights then make the same paths with the same densities.
+inline Point leaving_point(const SurfacePoint& at, const Direction& direction) {
+  if (!at.is_flat_curve) return at.position;
+  return axis_of(at) + at.leaves_at * cross(across_curve(at, direction), at.shading.s);
+}
+/// Likewise for the ray through the point `to`.
+inline Point leaving_point_towards(const SurfacePoint& at, const Point& to) {
+  if (!at.is_flat_curve) return at.position;
+  const Point axis = axis_of(at);
+  const Vec3 way = to - axis, across = way - dot(way, at.shading.s) * at.shading.s;
+  const float distance = std::sqrt(length_squared(across));
+  if (!(distance > std::fabs(at.leaves_at))) return leaving_point(at, normalize(way));
+  // Across the curve, the ray is the tangent from `to` to the circle about the axis with radius leaves_at.
+  const Vec3 towards = across / distance;
+  const float sin = at.leaves_at / distance, cos = safe_sqrt(1 - sin * sin);
+  return axis + at.leaves_at * (cos * cross(towards, at.shading.s) + sin * towards);
+}
+
 /// Bound of the rounding error of the position across the surface, metres.
 inline float position_error_across(const SurfacePoint& at) { return dot(abs(at.normal), at.position_error); }
 
 /// Origin of a ray that leaves the surface in `direction`, offset by the error bound (pbrt 4e, §6.8) so that the ray
 /// cannot hit the surface again.
 inline Point offset_origin(const SurfacePoint& at, const Direction& direction) {
+  if (at.is_flat_curve) return leaving_point(at, direction) + position_error_across(at) * across_curve(at, direction);
   const float distance = position_error_across(at);
   const Vec3 offset = (dot(direction, at.normal) < 0 ? -distance : distance) * at.normal;
   const Point p = at.position + offset;
@@ -97,6 +140,13 @@ inline Ray spawn_ray(const SurfacePoint& at, const Direction& direction) {
   return ray;
 }
 
+/// The rest of a ray that goes on straight through a surface which it has met.
+inline Ray pass_surface(const SurfacePoint& at, const Ray& ray) {
+  if (!at.is_flat_curve) return spawn_ray(at, ray.direction);
+  const float reach = dot(at.position - ray.origin, ray.direction) + position_error_across(at);
+  return {ray.origin + reach * ray.direction, ray.direction, infinity, at.time};
+}
+
 /// The end of a segment: a point in space, or a point on a surface. In the latter case, `segment_to` stops short of the
 /// surface.
 struct SegmentEnd {
@@ -104,7 +154,12 @@ struct SegmentEnd {
   Normal normal{0};  ///< geometric, unit, of either side; 0 in space
   float error = 0;   ///< bound of the distance between the position and the surface that rays meet, metres
 };
-inline SegmentEnd end_at(const SurfacePoint& at) { return {at.position, at.normal, position_error_across(at)}; }
+/// The end of a segment from the point `from`.
+inline SegmentEnd end_at(const SurfacePoint& at, const Point& from) {
+  if (!at.is_flat_curve) return {at.position, at.normal, position_error_across(at)};
+  const Point end = leaving_point_towards(at, from);
+  return {end, across_curve(at, from - end), position_error_across(at)};
+}
 
 /// The ray from `origin` to the end. If a surface lies there, the ray stops short of it by the bound of all rounding
 /// errors: it meets whatever lies in between, and never that surface.
@@ -123,7 +178,12 @@ inline Ray spawn_ray_to(const SurfacePoint& at, const Direction& direction, cons
 }
 /// The rest of a segment beyond a surface on it.
 inline Ray continue_segment(const SurfacePoint& at, const Ray& ray) {
-  if (!std::isfinite(ray.t_max)) return spawn_ray(at, ray.direction);
+  if (!std::isfinite(ray.t_max)) return pass_surface(at, ray);
+  if (at.is_flat_curve) {
+    Ray rest = pass_surface(at, ray);
+    rest.t_max = ray.t_max - dot(rest.origin - ray.origin, ray.direction);
+    return rest;
+  }
   const Ray rest = spawn_ray_to(at, ray.direction, {ray.origin + ray.t_max * ray.direction});
   return dot(rest.direction, ray.direction) > 0 ? rest : Ray{rest.origin, ray.direction, 0, ray.time};
 }

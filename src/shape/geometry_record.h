@@ -74,6 +74,11 @@ struct alignas(64) GeometryRecord {
 };
 static_assert(sizeof(GeometryRecord) == 64);
 
+/// True for curves that face every ray.
+inline bool is_flat(const GeometryRecord& record) {
+  return record.kind == GeometryRecord::Kind::curves && record.curves->kind == description::CurveKind::flat;
+}
+
 /// A surface point before its material is evaluated.
 struct SurfaceGeometry {
   Point position{0};

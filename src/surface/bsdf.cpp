@@ -18,6 +18,7 @@ float pdf_by(const C& closure, const Vec3& wi, const Vec3& wo, Transport transpo
 }
 template <class C>
 float pdf_reverse_by(const C& closure, const Vec3& wi, const Vec3& wo, Transport transport) {
+  if constexpr (requires { reversed(closure); }) return pdf_of(reversed(closure), wo, wi, opposite(transport));
   if constexpr (requires { pdf_of(closure, wo, wi, transport); }) return pdf_of(closure, wo, wi, opposite(transport));
   return pdf_reverse(closure, wi, wo);
 }

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "surface/fresnel.h"
 
@@ -69,14 +70,14 @@ struct Lobes {
   float scale = 0;  // of the azimuthal distribution
   float phi = 0;    // azimuth of the direction
 
-  Lobes(const Hair& hair, const Vec3& w);
+  Lobes(const Hair& hair, float offset, const Vec3& w);
   float azimuthal(std::size_t p, float phi_i) const {
     if (p == last_lobe) return 1 / (2 * pi);
     return trimmed_logistic(std::remainder(phi_i - phi - turn[p], 2 * pi), scale);
   }
 };
 
-Lobes::Lobes(const Hair& hair, const Vec3& w) : phi(azimuth(w)) {
+Lobes::Lobes(const Hair& hair, float offset, const Vec3& w) : phi(azimuth(w)) {
   const float m = hair.beta_m, n = hair.beta_n;
   const float v = sqr(0.726f * m + 0.812f * m * m + 3.7f * power(m, 20));  // eq. 7
   variance = {v, 0.25f * v, 4 * v, 4 * v};
@@ -91,7 +92,7 @@ Lobes::Lobes(const Hair& hair, const Vec3& w) : phi(azimuth(w)) {
   };
   o = {tilted(-2 * hair.alpha), tilted(hair.alpha), tilted(4 * hair.alpha), straight};
 
-  const float h = std::clamp(hair.h, -0.9999f, 0.9999f);
+  const float h = std::clamp(offset, -0.9999f, 0.9999f);
   const float sin_t = straight.sin / hair.eta, cos_t = safe_sqrt(1 - sqr(sin_t));
   const float eta_across = std::sqrt(sqr(hair.eta) - sqr(straight.sin)) / std::max(straight.cos, 1e-4f);
   const float sin_gamma_t = std::clamp(h / eta_across, -1.0f, 1.0f);
@@ -112,10 +113,25 @@ Lobes::Lobes(const Hair& hair, const Vec3& w) : phi(azimuth(w)) {
   for (std::size_t p = 0; p <= last_lobe; ++p) probability[p] = sum_of(attenuation[p]) / total;
 }
 
-// The hair as light on the reversed path meets it.
-Hair mirrored(Hair hair) {
-  hair.h = -hair.h;
-  return hair;
+// f for the eye's direction, whose ray has this offset, and the light's.
+Spectrum seen(const Hair& hair, float offset, const Vec3& eye, const Vec3& light) {
+  const Inclination i = inclination(light);
+  if (!(i.cos > 0)) return {};
+  const Lobes lobes(hair, offset, eye);
+  const float phi = azimuth(light);
+  Spectrum sum;
+  for (std::size_t p = 0; p <= last_lobe; ++p)
+    sum += longitudinal(lobes.o[p], i, lobes.variance[p]) * lobes.azimuthal(p, phi) * lobes.attenuation[p];
+  return sum / i.cos;
+}
+
+// The offset `h` as the ray `w` sees it.
+float seen_along(const Hair& hair, const Vec3& w, float h) { return hair.is_on_surface && w.z < 0 ? -h : h; }
+
+// The offset for which the lobes around wi are sampled. On the way from a light to the eye, each lobe turns the other
+// way; wo is not known yet then, so that on a surface half of the lobes may be sampled by their mirror images.
+float turning_offset(const Hair& hair, const Vec3& wi, Transport transport) {
+  return transport == Transport::radiance ? seen_along(hair, wi, hair.h) : -hair.h_out;
 }
 
 }  // namespace
@@ -127,22 +143,21 @@ float hair_absorption(float reflectance, float n) {
   return sqr(log / divisor);
 }
 
+Hair reversed(Hair hair) {
+  std::swap(hair.h, hair.h_out);
+  return hair;
+}
+
 // The model describes light as the eye sees it: absorption depends on the eye's inclination, so reversing the path
 // changes f. For light paths, f is evaluated with the roles of the directions exchanged.
 Spectrum eval(const Hair& hair, const Vec3& wi, const Vec3& wo, Transport transport) {
-  if (transport == Transport::importance) return eval(mirrored(hair), wo, wi, Transport::radiance);
-  const Inclination i = inclination(wo);
-  if (!(i.cos > 0)) return {};
-  const Lobes lobes(hair, wi);
-  const float phi = azimuth(wo);
-  Spectrum sum;
-  for (std::size_t p = 0; p <= last_lobe; ++p)
-    sum += longitudinal(lobes.o[p], i, lobes.variance[p]) * lobes.azimuthal(p, phi) * lobes.attenuation[p];
-  return sum / i.cos;
+  const bool from_eye = transport == Transport::radiance;
+  const Vec3 &eye = from_eye ? wi : wo, &light = from_eye ? wo : wi;
+  return seen(hair, seen_along(hair, eye, from_eye ? hair.h : hair.h_out), eye, light);
 }
 
-float pdf(const Hair& hair, const Vec3& wi, const Vec3& wo) {
-  const Lobes lobes(hair, wi);
+float pdf_of(const Hair& hair, const Vec3& wi, const Vec3& wo, Transport transport) {
+  const Lobes lobes(hair, turning_offset(hair, wi, transport), wi);
   const Inclination i = inclination(wo);
   const float phi = azimuth(wo);
   float sum = 0;
@@ -151,10 +166,12 @@ float pdf(const Hair& hair, const Vec3& wi, const Vec3& wo) {
   return sum;
 }
 
-float pdf_reverse(const Hair& hair, const Vec3& wi, const Vec3& wo) { return pdf(mirrored(hair), wo, wi); }
+float pdf_reverse(const Hair& hair, const Vec3& wi, const Vec3& wo) {
+  return pdf_of(reversed(hair), wo, wi, Transport::importance);
+}
 
 std::optional<BsdfSample> sample(const Hair& hair, const Vec3& wi, float u_lobe, const Vec2& u, Transport transport) {
-  const Lobes lobes(hair, wi);
+  const Lobes lobes(hair, turning_offset(hair, wi, transport), wi);
   std::size_t p = 0;
   while (p < last_lobe && u_lobe >= lobes.probability[p]) u_lobe -= lobes.probability[p++];
   const float u_azimuth = std::clamp(u_lobe / lobes.probability[p], 0.0f, one_minus_epsilon);
@@ -170,7 +187,7 @@ std::optional<BsdfSample> sample(const Hair& hair, const Vec3& wi, float u_lobe,
   const float phi = lobes.phi + turn;
   const Vec3 wo(sin_i, cos_i * std::cos(phi), cos_i * std::sin(phi));
 
-  const float density = pdf(hair, wi, wo);
+  const float density = pdf_of(hair, wi, wo, transport);
   if (!(density > 0) || !(cos_i > 0)) return std::nullopt;
   return BsdfSample{.wo = wo,
                     .weight = eval(hair, wi, wo, transport) * (cos_i / density),
@@ -179,7 +196,7 @@ std::optional<BsdfSample> sample(const Hair& hair, const Vec3& wi, float u_lobe,
 }
 
 Spectrum albedo(const Hair& hair, const Vec3& wi) {
-  const Lobes lobes(hair, wi);
+  const Lobes lobes(hair, hair.h, wi);
   Spectrum sum;
   for (const Spectrum& a : lobes.attenuation) sum += a;
   return sum;

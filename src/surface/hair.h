@@ -14,16 +14,23 @@ namespace lanthorn {
 /// Practical and Controllable Hair and Fur Model for Production Path Tracing"; Marschner et al. 2003). The frame's x
 /// axis runs along the hair. Light is scattered in all directions. The hair is a line whose width faces every
 /// direction, so `eval` must be multiplied by the cosine of the inclination to the plane across the hair, not the
-/// cosine to z (Marschner et al. 2003, eq. 1). On a reversed path, light crosses the mirror image of the hair: h
-/// changes sign with the direction in which a path is followed.
+/// cosine to z (Marschner et al. 2003, eq. 1).
+///
+/// f depends on the offset at which the eye's ray meets the hair; light arrives over the whole width alike. Each ray
+/// has its own offset, measured along (direction away from the hair) x (x axis). So a walk from the eye uses the offset
+/// of the ray that has arrived, and a walk from a light the offset of the ray that leaves.
 struct Hair {
   static constexpr ClosureTraits traits{.is_fibre = true, .transmits = false};
 
   Spectrum sigma_a{};                  ///< absorption coefficient inside, per radius of the hair
-  float h = 0;                         ///< offset across the width at which the ray wi meets the hair, in (-1, 1)
+  float h = 0;                         ///< offset of the ray wi across the width, in [-1, 1]
   float eta = 1.55f;                   ///< index of refraction, above 1
   float beta_m = 0.3f, beta_n = 0.3f;  ///< roughness along and around the hair, in [0,1]
   float alpha = 2;                     ///< tilt of the cuticle's scales, degrees
+  float h_out = 0;                     ///< offset of the ray wo across the width
+  /// The hair is painted on a surface that does not face every ray, such as a ribbon: h and h_out hold for rays above
+  /// the surface, and have the opposite sign for rays below it.
+  bool is_on_surface = false;
 };
 
 /// Absorption coefficient for which a mass of such hair has about this colour seen from outside (Chiang et al. 2016,
@@ -33,7 +40,12 @@ float hair_absorption(float reflectance, float beta_n);
 // Functions of every closure: meanings, units and conventions as for `Bsdf` (bsdf.h).
 
 Spectrum eval(const Hair& hair, const Vec3& wi, const Vec3& wo, Transport transport);
-float pdf(const Hair& hair, const Vec3& wi, const Vec3& wo);
+/// The hair as a walk meets it that follows the path the other way.
+Hair reversed(Hair hair);
+
+/// Density with which a walk of this kind chooses `wo`; `pdf` is that of a walk from the eye.
+float pdf_of(const Hair& hair, const Vec3& wi, const Vec3& wo, Transport transport);
+inline float pdf(const Hair& hair, const Vec3& wi, const Vec3& wo) { return pdf_of(hair, wi, wo, Transport::radiance); }
 float pdf_reverse(const Hair& hair, const Vec3& wi, const Vec3& wo);
 std::optional<BsdfSample> sample(const Hair& hair, const Vec3& wi, float u_lobe, const Vec2& u, Transport transport);
 Spectrum albedo(const Hair& hair, const Vec3& wi);

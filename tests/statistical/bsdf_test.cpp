@@ -7,6 +7,7 @@
 
 #include <array>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "math/hash.h"
@@ -507,22 +508,38 @@ TEST(Hair, WhiteFurnace) {
     }
 }
 
-// A light path scatters as the eye path along the same path in reverse.
+// A light path scatters as the eye path along the same path in reverse. Each ray keeps its offset across the width.
 TEST(Hair, LightPathsScatterWhatIsSeen) {
   HashRng rng(test::seed(12));
-  for (const Hair& hair : hairs) {
-    Hair back = hair;
-    back.h = -hair.h;
-    for (const Vec3& wi : around)
-      for (int i = 0; i < 200; ++i) {
-        const float u_lobe = rng.next();
-        const auto s = sample(hair, wi, u_lobe, rng.next2(), Transport::importance);
-        if (!s) continue;
-        const Spectrum seen = eval(back, s->wo, wi, Transport::radiance) * (cosine_across_fibre(s->wo) / s->pdf);
-        EXPECT_NEAR(s->weight[0], seen[0], 2e-3f * seen[0]);
-        EXPECT_EQ(pdf_reverse(hair, s->wo, wi), pdf(back, wi, s->wo));
-      }
-  }
+  for (const bool is_on_surface : {false, true})
+    for (Hair of_eye : hairs) {
+      of_eye.h_out = 0.35f;
+      of_eye.is_on_surface = is_on_surface;
+      Hair of_light = of_eye;
+      std::swap(of_light.h, of_light.h_out);
+      for (const Vec3& wi : around)
+        for (int i = 0; i < 200; ++i) {
+          const float u_lobe = rng.next();
+          const auto s = sample(of_light, wi, u_lobe, rng.next2(), Transport::importance);
+          if (!s) continue;
+          const Spectrum seen = eval(of_eye, s->wo, wi, Transport::radiance) * (cosine_across_fibre(s->wo) / s->pdf);
+          EXPECT_NEAR(s->weight[0], seen[0], 2e-3f * seen[0]);
+          EXPECT_EQ(s->pdf, pdf(of_light, wi, s->wo, Transport::importance));
+          EXPECT_EQ(pdf_reverse(of_eye, s->wo, wi, Transport::radiance), s->pdf);
+          EXPECT_EQ(pdf_reverse(of_light, wi, s->wo, Transport::importance), pdf(of_eye, s->wo, wi));
+        }
+    }
+}
+
+// Offsets on a surface have the opposite sign from below.
+TEST(Hair, IsMirroredBelowASurface) {
+  Hair above = hairs[0];
+  above.is_on_surface = true;
+  Hair turned = hairs[0];
+  const Vec3 eye = at_angles(130, 40), light = at_angles(60, 90);
+  turned.h = -turned.h;
+  EXPECT_EQ(eval(above, eye, light, Transport::radiance)[0], eval(turned, eye, light, Transport::radiance)[0]);
+  EXPECT_EQ(eval(above, light, eye, Transport::radiance)[0], eval(hairs[0], light, eye, Transport::radiance)[0]);
 }
 
 // The density of the reverse direction is nearly equal to the density of the forward one: on the way back, each lobe

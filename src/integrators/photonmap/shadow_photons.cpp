@@ -37,7 +37,7 @@ void ShadowPhotons::follow(const PathContext& path, const LightPath& start, floa
       to.records.push_back({start.index, encode_octahedral<normal_bits>(normal), lit});
       lit = false;
     }
-    ray = spawn_ray(*at, ray.direction);
+    ray = pass_surface(*at, ray);
   }
 }
 
