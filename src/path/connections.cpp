@@ -32,8 +32,8 @@ Arrival in_medium(const FlightDensity& flight, const Direction& wi, const Direct
 }
 Arrival arrival(const Bidirectional& pass, const SurfaceVertex& v, const Direction& direction, const FlightDensity& f,
                 Transport transport) {
-  return {area_cosine(v.at, direction), pdf_reverse(v.at.bsdf, v.wi_local, v.at.shading.to_local(direction), transport),
-          pass.merging_at(v.at), f};
+  return {arrival_cosine(v.at, v.wi, direction),
+          pdf_reverse(v.at.bsdf, v.wi_local, v.at.shading.to_local(direction), transport), pass.merging_at(v.at), f};
 }
 Arrival arrival(const Bidirectional&, const MediumVertex& v, const Direction& direction, const FlightDensity& f,
                 Transport) {
@@ -52,7 +52,7 @@ End eye_end(const Bidirectional& pass, const SurfaceVertex& v, const Direction& 
   const Vec3 wo = v.at.shading.to_local(direction);
   const BsdfValues value = eval_and_pdfs(v.at.bsdf, v.wi_local, wo, Transport::radiance);
   if (value.f.is_black()) return {};
-  return {{area_cosine(v.at, direction), value.pdf_reverse, pass.merging_at(v.at), flight},
+  return {{arrival_cosine(v.at, v.wi, direction), value.pdf_reverse, pass.merging_at(v.at), flight},
           value.f * cosine(v.at.bsdf, wo),
           value.pdf,
           is_dispersive(v.at.bsdf)};
@@ -198,10 +198,10 @@ DirectLight connect_ends(const PathContext& path, const Bidirectional& pass, con
   const End light = light_end(pass, other, -direction);
   if (light.f.is_black()) return {};
   const Spectrum value = v.state.beta * eye.f * light.f * other.beta * (pass.techniques.light_paths / distance2);
-  if (value.is_black()) return {};
-  const Passage way = passage(
-      path, ray_to(v, direction, other.phase ? SegmentEnd{other.at.position} : end_at(other.at, position_of(v))),
-      medium_towards(v, direction), visitor_dimensions(v.state.depth));
+  const SegmentEnd end = other.phase ? SegmentEnd{other.at.position} : end_at(other.at, position_of(v));
+  if (value.is_black() || !may_leave(path, v, direction, end)) return {};
+  const Passage way =
+      passage(path, ray_to(v, direction, end), medium_towards(v, direction), visitor_dimensions(v.state.depth));
   if (way.transmittance.is_black()) return {};
   const float weight = weight_of_connection(pass, v.state, subpath, eye, other, light, distance2,
                                             FlightDensity::passing(way.optical_depth));

@@ -79,6 +79,7 @@ std::optional<NextEvent> sample_light(const PathContext& path, const Vertex& ver
 template <class Vertex>
 Passage passage_to(const PathContext& path, const Vertex& vertex, const NextEvent& event) {
   const LightSample& l = event.sample;
+  if (!may_leave(path, vertex, l.wi, end_at(l))) return {};
   const Ray ray = ray_to_light(vertex, l);
   const MediumId medium = medium_towards(vertex, l.wi);
   const std::uint32_t dimensions = visitor_dimensions(vertex.state.depth);

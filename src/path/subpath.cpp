@@ -106,7 +106,7 @@ void Subpath::depart(const WalkState& state, const Direction& direction) {
   departure_.optical_depth = 0;
   if (departure_.is_first) return;
   const bool in_medium = !previous_.surface;
-  const float cos = in_medium ? 1.0f : area_cosine(*previous_.surface, direction);
+  const float cos = in_medium ? 1.0f : arrival_cosine(*previous_.surface, previous_.wi, direction);
   departure_.over_pass = 0;
   if (state.last_delta) return departure_.densities.scatter_delta(cos);
   float merging = 0;
@@ -175,7 +175,7 @@ void Subpath::arrive(const PathContext& path, const SurfaceVertex& v) {
   const bool merges = merges_at(v.at) && !(is_direct && techniques_.connects);
   const float cos = area_cosine(v.at, v.wi);
   arrive_at(path.scene, v.state, {v.at.position, receiver_normal(v.at), v.at.time, cos, 1, merges}, v.wi);
-  previous_ = {v.at, v.wi_local, {}, merges, techniques_.volume.is_used() ? lanthorn::coherence(v.at.bsdf) : 1.0f};
+  previous_ = {v.at, v.wi_local, v.wi, merges, techniques_.volume.is_used() ? lanthorn::coherence(v.at.bsdf) : 1.0f};
 }
 
 void Subpath::arrive(const PathContext& path, const MediumVertex& v) {

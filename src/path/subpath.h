@@ -118,7 +118,7 @@ class Subpath {
   struct Previous {
     std::optional<SurfacePoint> surface;  // empty in a medium
     Vec3 wi_local{0};
-    Direction wi{0, 0, 1};  // in a medium
+    Direction wi{0, 0, 1};
     bool merges = false;
     float coherence = 1;  // 1 without merging in media
   };

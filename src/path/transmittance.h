@@ -7,6 +7,7 @@
 #include "light/sample.h"
 #include "medium/medium.h"
 #include "path/path_context.h"
+#include "path/vertex.h"
 #include "scene/scene.h"
 
 namespace lanthorn {
@@ -18,6 +19,21 @@ struct Passage {
   float optical_depth = 0;             ///< as in `Attenuation`
 };
 // `dimensions`: the group of the sampler that seeds the random numbers of flights through media.
+
+/// False if a surface lies between a facet and the smooth surface over it, from which the ray in `direction` would
+/// start
+/// (`offset_origin`), or if the ray would then arrive at the back of the surface at its end.
+inline bool may_leave(const PathContext& path, const SurfaceVertex& v, const Direction& direction,
+                      const SegmentEnd& end = {}) {
+  if (!leaves_from_smooth_surface(v.at, direction)) return true;
+  const Point start = offset_origin(v.at, direction);
+  if (dot(start - end.position, end.normal) * dot(v.at.position - end.position, end.normal) < 0) return false;
+  ++path.counts.shadow;
+  return path.scene.visible(spawn_ray_to(v.at, -direction, {start}));
+}
+inline bool may_leave(const PathContext&, const MediumVertex&, const Direction&, const SegmentEnd& = {}) {
+  return true;
+}
 
 /// Passage of light that travels from the ray's origin, which lies in `medium`, to its end.
 Passage passage(const PathContext& path, const Ray& ray, MediumId medium, std::uint32_t dimensions);

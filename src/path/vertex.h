@@ -76,16 +76,18 @@ inline Ray ray_towards(const SurfaceVertex& v, const Direction& direction) { ret
 inline Ray ray_towards(const MediumVertex& v, const Direction& direction) {
   return {v.position, direction, infinity, v.time};
 }
+inline SegmentEnd end_at(const LightSample& l) { return {l.position, l.normal, l.position_error}; }
 /// Shadow ray to a point of a light.
 template <class Vertex>
 Ray ray_to_light(const Vertex& v, const LightSample& l) {
-  if (!std::isfinite(l.distance)) return ray_towards(v, l.wi);
-  return ray_to(v, l.wi, SegmentEnd{l.position, l.normal, l.position_error});
+  return std::isfinite(l.distance) ? ray_to(v, l.wi, end_at(l)) : ray_towards(v, l.wi);
 }
-/// The medium in which such a ray starts. A ray that stays on the side from which the walk came stays in the walk's
-/// medium. This holds even if the shape declares another medium there, as opaque shapes do that are inside out.
+/// The medium in which such a ray starts. A ray that stays on the side from which the walk came, as all do at opaque
+/// surfaces, stays in the walk's medium. This holds even if the shape declares another medium there, as opaque shapes
+/// do that are inside out.
 inline MediumId medium_towards(const SurfaceVertex& v, const Direction& direction) {
-  if (!v.at.media.is_transition() || (dot(direction, v.at.normal) > 0) == (dot(v.wi, v.at.normal) > 0))
+  if (!v.at.media.is_transition() || is_opaque(v.at.bsdf) ||
+      (dot(direction, v.at.normal) > 0) == (dot(v.wi, v.at.normal) > 0))
     return v.state.medium;
   return medium_towards(v.at, direction, v.state.medium);
 }

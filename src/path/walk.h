@@ -124,6 +124,7 @@ bool scatter(const PathContext& path, const SurfaceVertex& v, const Answer& answ
   Spectrum beta = state.beta * s->weight;
   if (beta.is_black()) return false;
   if constexpr (transport == Transport::importance) beta *= adjoint_correction(v, wo, s->wo);
+  if (!may_leave(path, v, wo)) return false;
   state.dispersed = state.dispersed || is_dispersive(v.at.bsdf);
 
   const float pdf = s->delta ? 0.0f : pdf_of_sample<transport>(v, *s);
@@ -325,6 +326,7 @@ void branch_walk(const PathContext& path, const SurfaceVertex& vertex, const Ans
 template <Transport transport, class Visit>
 void walk_towards(const PathContext& path, const SurfaceVertex& vertex, const Direction& wo, float pdf,
                   const Spectrum& beta, Visit&& visit) {
+  if (!may_leave(path, vertex, wo)) return;
   WalkState state = vertex.state;
   state.beta = beta;
   state.last_delta = state.sky_is_found = false;

@@ -507,7 +507,7 @@ SurfaceGeometry Geometry::evaluate_other(const GeometryHit& hit, const Ray& ray)
   const auto t = static_cast<double>(hit.t);
   if (hit.placement == nullptr) return evaluate_surface(*hit.record, {hit.primitive, hit.u, hit.v, o + t * d, d});
   std::optional<Affine> moved;
-  const Affine& map = hit.placement->at(lerp(embree_time(ray.time), shutter_open_, shutter_close_), moved);
+  const Affine& map = hit.placement->at(shutter_time(ray.time), moved);
   const DVec3 along = map.inverse_vector(d);
   SurfaceGeometry s =
       evaluate_surface(*hit.record, {hit.primitive, hit.u, hit.v, map.inverse_point(o) + t * along, along});
@@ -524,6 +524,15 @@ SurfaceGeometry Geometry::evaluate_other(const GeometryHit& hit, const Ray& ray)
   if (hit.record->wants_derivatives())
     for (Vec3* v : {&s.tangent, &s.dpdu, &s.dpdv}) *v = Vec3(map.vector(DVec3(*v)));
   return s;
+}
+
+float Geometry::rise_of_mesh(const GeometryHit& hit, const SurfaceGeometry& surface, const Ray& ray) const {
+  std::optional<Affine> moved;
+  const Affine* map = hit.placement == nullptr ? nullptr : &hit.placement->at(shutter_time(ray.time), moved);
+  const Vec3 wi = map == nullptr ? -ray.direction : Vec3(map->inverse_vector(DVec3(-ray.direction)));
+  const auto [normal, height] = rise_over_triangle(*hit.record, hit.primitive, hit.u, hit.v, wi);
+  const double scale = map == nullptr ? 1.0 : 1 / glm::length(map->normal(DVec3(normal)));
+  return std::copysign(height * static_cast<float>(scale), -dot(ray.direction, surface.normal));
 }
 
 bool can_be_placed(const AnimatedTransform& outer, const AnimatedTransform& inner) {

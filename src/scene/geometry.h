@@ -179,6 +179,13 @@ class Geometry {
     return evaluate_other(hit, ray);
   }
 
+  /// Height, metres along `surface.normal`, of the smooth surface that the mesh's normals describe, where it bulges out
+  /// on the side that the ray comes from; 0 where it does not. `surface`: as `evaluate` gave it.
+  float rise(const GeometryHit& hit, const SurfaceGeometry& surface, const Ray& ray) const {
+    if (hit.record->kind != GeometryRecord::Kind::triangles || !hit.record->has_normals) return 0;
+    return rise_of_mesh(hit, surface, ray);
+  }
+
   /// Location in the scene file of the shape that was hit.
   const SourceLocation& location(const GeometryHit& hit) const;
 
@@ -204,7 +211,9 @@ class Geometry {
   }
   // Embree's time: 0 to 1 over the shutter interval.
   float embree_time(float time) const { return std::clamp((time - shutter_open_) * shutter_scale_, 0.0f, 1.0f); }
+  float shutter_time(float time) const { return lerp(embree_time(time), shutter_open_, shutter_close_); }
   SurfaceGeometry evaluate_other(const GeometryHit& hit, const Ray& ray) const;
+  float rise_of_mesh(const GeometryHit& hit, const SurfaceGeometry& surface, const Ray& ray) const;
   void commit_top_level();
 
   float shutter_open_, shutter_close_, shutter_scale_;

@@ -38,6 +38,10 @@ struct SurfacePoint {
   /// Of a flat curve, metres: from `position` to the curve's axis along `normal` x `shading.s`; and the offset from the
   /// axis at which rays leave, see `leaving_point`.
   float to_axis = 0, leaves_at = 0;
+  /// Height, metres along `normal`, of the smooth surface over a facet that stands in for it; not 0 only where the
+  /// smooth surface bulges out on the side from which the ray came. Light that the facet itself would block leaves from
+  /// there (`offset_origin`).
+  float rise = 0;
   PointBsdf bsdf;
 };
 
@@ -51,6 +55,22 @@ inline float geometric_cosine(const SurfacePoint& at, const Direction& w) {
 /// meet. Differs from `geometric_cosine` on flat curves that are no hair, because these turn towards the rays.
 inline float area_cosine(const SurfacePoint& at, const Direction& w) {
   return at.is_flat_curve ? safe_sqrt(1 - sqr(dot(w, at.shading.s))) : std::fabs(dot(w, at.normal));
+}
+
+/// True if `wi` and `w` are on different sides of an opaque surface. Flat curves have no sides, since they turn to each
+/// ray.
+inline bool is_behind(const SurfacePoint& at, const Direction& wi, const Direction& w) {
+  return !at.is_flat_curve && dot(wi, at.normal) * dot(w, at.normal) < 0 && is_opaque(at.bsdf);
+}
+/// True if a ray in `direction` leaves an opaque facet towards its back, but from the smooth surface over it.
+inline bool leaves_from_smooth_surface(const SurfacePoint& at, const Direction& direction) {
+  return at.rise * dot(direction, at.normal) < 0;
+}
+
+/// `area_cosine` for light along `w` at a point that the eye sees along `wi`: 0 where no light walk can arrive, because
+/// the opaque surface is in its way.
+inline float arrival_cosine(const SurfacePoint& at, const Direction& wi, const Direction& w) {
+  return is_behind(at, wi, w) ? 0.0f : area_cosine(at, w);
 }
 
 /// Normal of a receiver of light; zero if it receives from all directions alike (hair).
@@ -115,11 +135,14 @@ inline Point leaving_point_towards(const SurfacePoint& at, const Point& to) {
 inline float position_error_across(const SurfacePoint& at) { return dot(abs(at.normal), at.position_error); }
 
 /// Origin of a ray that leaves the surface in `direction`, offset by the error bound (pbrt 4e, §6.8) so that the ray
-/// cannot hit the surface again.
+/// cannot hit the surface again. Rays that would lead through the facet start on the smooth surface, so that shadows
+/// end as smoothly as the shading does (Hanika 2021, "Hacking the Shadow Terminator", Ray Tracing Gems II, chapter 4).
 inline Point offset_origin(const SurfacePoint& at, const Direction& direction) {
   if (at.is_flat_curve) return leaving_point(at, direction) + position_error_across(at) * across_curve(at, direction);
-  const float distance = position_error_across(at);
-  const Vec3 offset = (dot(direction, at.normal) < 0 ? -distance : distance) * at.normal;
+  const float distance = position_error_across(at), along = dot(direction, at.normal);
+  const float height =
+      at.rise * along < 0 ? at.rise + std::copysign(distance, at.rise) : (along < 0 ? -distance : distance);
+  const Vec3 offset = height * at.normal;
   const Point p = at.position + offset;
   return {detail::rounded_away(p.x, offset.x), detail::rounded_away(p.y, offset.y),
           detail::rounded_away(p.z, offset.z)};

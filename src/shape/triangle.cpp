@@ -18,6 +18,8 @@ std::array<Vec2, 3> triangle_uvs(const GeometryRecord& record, std::uint32_t pri
   return {Vec2(0, 0), Vec2(1, 1), Vec2(0, 1)};
 }
 
+constexpr float rise_share = 0.5f;
+
 // Sets the derivatives of the linear map from (u, v) to the triangle; leaves them 0 if the parametrisation is
 // degenerate.
 void set_derivatives(SurfaceGeometry& s, const Vec3& edge1, const Vec3& edge2, const std::array<Vec2, 3>& uv) {
@@ -60,6 +62,21 @@ SurfaceGeometry evaluate_attributed_triangle(const GeometryRecord& record, std::
                                            : s.dpdu;
   }
   return s;
+}
+
+Rise rise_over_triangle(const GeometryRecord& record, std::uint32_t primitive, float u, float v, const Vec3& wi) {
+  const std::array<std::uint32_t, 3>& corners = record.triangles[primitive];
+  const std::array<float, 3> weights{1 - u - v, u, v};
+  const FlatTriangle facet = flat_triangle(corners_of(record, primitive), record.flip_normal);
+  const Point p = weights[0] * facet.corners[0] + weights[1] * facet.corners[1] + weights[2] * facet.corners[2];
+  Rise result{dot(facet.normal, wi) < 0 ? -facet.normal : facet.normal};
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const Normal& n = record.vertices[corners[i]].normal;  // its length and sign do not matter
+    const float over = dot(facet.corners[i] - p, n) * dot(n, result.normal);
+    if (over > 0) result.height += weights[i] * over / length_squared(n);
+  }
+  result.height *= rise_share;
+  return result;
 }
 
 }  // namespace lanthorn

@@ -88,6 +88,16 @@ inline SurfaceGeometry evaluate_plain(const GeometryRecord& record, std::uint32_
 /// For meshes with attributes at their corners, or whose derivatives are wanted.
 SurfaceGeometry evaluate_attributed_triangle(const GeometryRecord& record, std::uint32_t primitive, float u, float v);
 
+/// Height over the facet of the smooth surface that the normals of a triangle's corners describe.
+struct Rise {
+  Normal normal{0, 0, 1};  ///< of the facet, unit, on the side of `wi`
+  float height = 0;        ///< along `normal`; 0 unless the smooth surface bulges out on that side
+};
+/// The same at a point of a triangle of a mesh with normals, in the shape's space: the mean height of the planes
+/// through the corners that are perpendicular to their normals, like the points of Phong tessellation (Boubekeur &
+/// Alexa 2008).
+Rise rise_over_triangle(const GeometryRecord& record, std::uint32_t primitive, float u, float v, const Vec3& wi);
+
 /// u and v are the barycentric weights of the second and third corner.
 inline SurfaceGeometry evaluate_triangle(const GeometryRecord& record, std::uint32_t primitive, float u, float v) {
   if (record.has_vertices() || record.has_colors || record.wants_derivatives())

@@ -1,13 +1,20 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 // Reflection where the shading normal n_s differs from the geometric normal n. With n_s alone, lobes lead below the
-// surface, into the solid, and metals of few facets get black rims. Here the surface's plane reflects such light once
-// more. The idea is from
+// surface: light would come through a wall, and metals of few facets would get black rims. Nothing passes here.
+//
+// Mirrors and metals. The surface's plane reflects light from below once more. The idea is from
 //   Schüssler, Heitz, Hanika, Dachsbacher 2017: Microfacet-based Normal Mapping for Robust Monte Carlo Path Tracing
 // but the plane stands in for their facets. Let P be the mirror image in the plane. If both the light's direction l and
 // the eye's direction e are above the plane, the eye sees the fraction
 //   f(e, l) |cos l| + f(e, P l) |cos P l|,    cosines to n_s.
 // Integrated over all l, this is all light that f(e, .) reflects: the albedo is that of the closure alone.
+//
+// Other lobes. Mirroring them would make the facets visible. They receive light from above the horizon alone: the plane
+// of the smooth surface, if the facet stands in for one that bulges out (`SurfacePoint::rise`), otherwise the facet's.
+// A cosine lobe tilted by the angle θ has (1 + cos θ) / 2 of its light above the horizon; `bent` divides the
+// reflectance of diffuse surfaces by that share, so that their albedo stays. An eye below the plane of n_s, at a
+// silhouette, sees what its mirror image in that plane sees.
 #pragma once
 
 #include <algorithm>
@@ -15,22 +22,28 @@
 #include <optional>
 #include <type_traits>
 
+#include "math/frame.h"
+#include "math/sampling.h"
+#include "surface/clear_coated.h"
 #include "surface/closure.h"
+#include "surface/coated.h"
 #include "surface/conductor.h"
+#include "surface/diffuse.h"
+#include "surface/plastic.h"
 #include "surface/sample.h"
 #include "surface/split_terms.h"
 
 namespace lanthorn {
 
-/// A closure that does not transmit. Its delta lobes, and all lobes of closures that are `mirrored`, scatter above the
-/// surface's plane only. Other lobes, such as the base below a smooth coat, scatter below the plane as they do above
-/// it, as matte surfaces do; mirroring them would make the facets visible.
+/// An opaque closure on a facet. The directions of eye and light are on the same side of the facet. On the side from
+/// which the ray came that found the facet, an eye walk may also go to light between horizon and facet.
 template <Closure C>
 struct Bent {
   static constexpr ClosureTraits traits{.is_fibre = false, .transmits = false};
 
   C closure{};
-  Normal plane{0, 0, 1};  ///< the geometric normal, in the shading frame
+  Normal plane{0, 0, 1};    ///< the geometric normal, in the shading frame; plane.z >= 0
+  Normal horizon{0, 0, 1};  ///< normal of the plane above which light comes from; on the same side as `plane`
 };
 
 namespace bent_detail {
@@ -38,6 +51,19 @@ namespace bent_detail {
 /// True if all lobes of the closure are mirrored; otherwise only its delta lobes are.
 template <class C>
 inline constexpr bool mirrored = std::is_same_v<C, Conductor>;
+
+/// True if the closure has delta lobes beside others, which are not mirrored. Rough coats cannot tell which lobe light
+/// belongs to, and rough plastic as a whole scatters like a matte surface.
+template <class C>
+bool has_delta_lobes(const C&) {
+  return false;
+}
+template <class Base>
+bool has_delta_lobes(const Coated<Base>& c) {
+  return is_smooth(c.coat);
+}
+inline bool has_delta_lobes(const Plastic& p) { return is_smooth(p); }
+inline bool has_delta_lobes(const ClearCoated& c) { return is_smooth(c.passage->coat()); }
 
 template <class C>
 Vec3 image(const Bent<C>& b, const Vec3& w) {
@@ -49,7 +75,7 @@ bool is_above(const Bent<C>& b, const Vec3& wi, const Vec3& wo) {
 }
 /// True if a light walk that arrives from `l` may treat its light as coming from P l, and so leave along S P l, where S
 /// is the reflection by n_s. S l then is above the plane, too. True for all light that the eye needs, except light that
-/// rough lobes send to eyes behind the shading normal; these see too little.
+/// rough metals send to eyes behind the shading normal; these see too little.
 template <class C>
 bool has_image(const Bent<C>& b, const Vec3& l) {
   const Vec3 image_of_l = image(b, l);
@@ -60,33 +86,73 @@ inline float cosine_ratio(const Vec3& image_of_l, const Vec3& l) {
   return std::fabs(image_of_l.z) / std::max(1e-6f, std::fabs(l.z));
 }
 
+// # Lobes that are not mirrored
+
+/// The mirror image in the plane of n_s.
+inline Vec3 turned(const Vec3& w) { return {w.x, w.y, -w.z}; }
+/// The eye's direction on the side of n_s on which it sees the facet.
+template <class C>
+Vec3 upright(const Bent<C>& b, const Vec3& e) {
+  return e.z * dot(e, b.plane) < 0 ? turned(e) : e;
+}
+/// True if the eye at `e` sees light from `l`. The closure itself sees to it that l is above the plane of n_s.
+template <class C>
+bool is_lit(const Bent<C>& b, const Vec3& e, const Vec3& l) {
+  return dot(e, b.plane) * dot(l, b.horizon) > 0;
+}
+/// True if two eyes above the facet see the same, at `e` and at its mirror image in the plane of n_s.
+template <class C>
+bool is_seen_twice(const Bent<C>& b, const Vec3& e) {
+  return is_above(b, e, turned(e));
+}
+/// Density of the closure's own sampling of `e` by a light walk from `l`.
+template <class C>
+float pdf_of_eye(const Bent<C>& b, const Vec3& l, const Vec3& e) {
+  const float own = pdf(b.closure, l, upright(b, e));
+  return is_seen_twice(b, e) ? 0.5f * own : own;
+}
+/// Diffuse surfaces send light to all eyes above the facet, by the geometric cosine.
+inline float pdf_of_eye(const Bent<Diffuse>& b, const Vec3& l, const Vec3& e) {
+  return same_hemisphere(l, upright(b, e)) ? pdf_cosine_hemisphere(std::fabs(dot(e, b.plane))) : 0.0f;
+}
+
 }  // namespace bent_detail
 
 // Functions of every closure: meanings, units and conventions as for `Bsdf` (bsdf.h).
 
 template <class C>
 Spectrum eval(const Bent<C>& b, const Vec3& wi, const Vec3& wo, Transport transport) {
-  if (bent_detail::mirrored<C> && !bent_detail::is_above(b, wi, wo)) return {};
-  Spectrum f = eval(b.closure, wi, wo, transport);
+  const bool from_eye = transport == Transport::radiance;
+  const Vec3 &e = from_eye ? wi : wo, &l = from_eye ? wo : wi;
   if constexpr (bent_detail::mirrored<C>) {
-    const bool from_eye = transport == Transport::radiance;
-    const Vec3 &e = from_eye ? wi : wo, &l = from_eye ? wo : wi;
+    if (!bent_detail::is_above(b, e, l)) return {};
+    Spectrum f = eval(b.closure, wi, wo, transport);
     const Vec3 image = bent_detail::image(b, l);
     if (same_hemisphere(e, image) && bent_detail::has_image(b, l))
       f += eval(b.closure, e, image, Transport::radiance) * bent_detail::cosine_ratio(image, l);
+    return f;
+  } else {
+    if (!bent_detail::is_lit(b, e, l) || (!from_eye && !bent_detail::is_above(b, e, l))) return {};
+    const Vec3 eye = bent_detail::upright(b, e);
+    return from_eye ? eval(b.closure, eye, l, transport) : eval(b.closure, l, eye, transport);
   }
-  return f;
 }
 
 /// Density with which a walk of this kind chooses `wo`.
 template <class C>
 float pdf_of(const Bent<C>& b, const Vec3& wi, const Vec3& wo, Transport transport) {
-  constexpr bool mirrored = bent_detail::mirrored<C>;
-  if (mirrored && !bent_detail::is_above(b, wi, wo)) return 0;
-  const float own = pdf(b.closure, wi, wo);
-  if (transport == Transport::radiance) return mirrored ? own + pdf(b.closure, wi, bent_detail::image(b, wo)) : own;
-  if (!bent_detail::has_image(b, wi)) return own;
-  return 0.5f * (mirrored ? own + pdf(b.closure, bent_detail::image(b, wi), wo) : own);
+  const bool from_eye = transport == Transport::radiance;
+  if constexpr (bent_detail::mirrored<C>) {
+    if (!bent_detail::is_above(b, wi, wo)) return 0;
+    const float own = pdf(b.closure, wi, wo);
+    if (from_eye) return own + pdf(b.closure, wi, bent_detail::image(b, wo));
+    return bent_detail::has_image(b, wi) ? 0.5f * (own + pdf(b.closure, bent_detail::image(b, wi), wo)) : own;
+  } else {
+    if (from_eye) return bent_detail::is_lit(b, wi, wo) ? pdf(b.closure, bent_detail::upright(b, wi), wo) : 0.0f;
+    if (!bent_detail::is_above(b, wi, wo) || !bent_detail::is_lit(b, wo, wi)) return 0;
+    const float own = bent_detail::pdf_of_eye(b, wi, wo);
+    return bent_detail::has_delta_lobes(b.closure) && bent_detail::has_image(b, wi) ? 0.5f * own : own;
+  }
 }
 template <class C>
 float pdf(const Bent<C>& b, const Vec3& wi, const Vec3& wo) {
@@ -111,27 +177,62 @@ std::optional<BsdfSample> weighted(const Bent<C>& b, const Vec3& wi, BsdfSample 
 template <class C>
 std::optional<BsdfSample> sample_light(const Bent<C>& b, const Vec3& e, float u_lobe, const Vec2& u) {
   std::optional<BsdfSample> s = sample(b.closure, e, u_lobe, u, Transport::radiance);
-  if (!s || !(s->delta || mirrored<C>)) return s;
+  if (!s) return s;
+  if (!s->delta && !mirrored<C>) {
+    if (e.z * dot(e, b.plane) < 0) s->wo = turned(s->wo);
+    return is_lit(b, e, s->wo) ? s : std::nullopt;
+  }
   const bool is_below = !is_above(b, e, s->wo);
   if (is_below) s->wo = image(b, s->wo);
   if (!s->delta && (is_below || same_hemisphere(e, image(b, s->wo)))) return weighted(b, e, *s, Transport::radiance);
   return s;
 }
 
+/// Of two eyes that see the same, the light walk goes to one at random.
+template <class C>
+std::optional<BsdfSample> choose_eye(const Bent<C>& b, const Vec3& l, BsdfSample s, bool turns) {
+  if (!is_above(b, l, s.wo) || !is_lit(b, s.wo, l) || l.z * dot(l, b.plane) < 0) return {};
+  if (!is_seen_twice(b, s.wo)) return s;
+  if (turns) s.wo = turned(s.wo);
+  s.weight *= 2;
+  s.pdf *= 0.5f;
+  return s;
+}
+
 template <class C>
 std::optional<BsdfSample> sample_eye(const Bent<C>& b, const Vec3& l, float u_lobe, const Vec2& u) {
-  const bool has_choice = has_image(b, l), takes_image = has_choice && u_lobe < 0.5f;
-  if (has_choice) u_lobe = takes_image ? 2 * u_lobe : 2 * u_lobe - 1;
+  const auto toss = [&] {
+    const bool first = u_lobe < 0.5f;
+    u_lobe = first ? 2 * u_lobe : 2 * u_lobe - 1;
+    return first;
+  };
+  const bool turns = !mirrored<C> && toss();
+  const bool has_choice = (mirrored<C> || has_delta_lobes(b.closure)) && has_image(b, l);
+  const bool takes_image = has_choice && toss();
   const Vec3 from = takes_image ? image(b, l) : l;
   std::optional<BsdfSample> s = sample(b.closure, from, u_lobe, u, Transport::importance);
   if (!s) return s;
   const bool is_mirrored = s->delta || mirrored<C>;
   if (is_mirrored ? !is_above(b, l, s->wo) : takes_image) return {};
-  if (!has_choice) return s;
-  if (mirrored<C> && !s->delta) return weighted(b, l, *s, Transport::importance);
-  s->weight *= 2 * (takes_image ? cosine_ratio(from, l) : 1.0f);
-  s->pdf *= 0.5f;
-  return s;
+  if (has_choice && is_mirrored && !s->delta) return weighted(b, l, *s, Transport::importance);
+  if (has_choice) {
+    s->weight *= 2 * (takes_image ? cosine_ratio(from, l) : 1.0f);
+    s->pdf *= 0.5f;
+  }
+  return is_mirrored ? s : choose_eye(b, l, *s, turns);
+}
+
+inline std::optional<BsdfSample> sample_eye(const Bent<Diffuse>& b, const Vec3& l, float /*u_lobe: one lobe*/,
+                                            const Vec2& u) {
+  std::optional<BsdfSample> result;
+  const float side = dot(l, b.plane) < 0 ? -1.0f : 1.0f;
+  const Vec3 e = side * Frame(b.plane).to_world(sample_cosine_hemisphere(u));
+  if (!is_lit(b, e, l) || !(side * l.z > 0)) return result;
+  BsdfSample& s = result.emplace();
+  s.wo = e;
+  s.pdf = pdf_cosine_hemisphere(std::fabs(dot(e, b.plane)));
+  s.weight = s.pdf > 0 ? b.closure.reflectance * (inv_pi * std::fabs(e.z) / s.pdf) : Spectrum();
+  return result;
 }
 
 }  // namespace bent_detail
@@ -142,9 +243,18 @@ std::optional<BsdfSample> sample(const Bent<C>& b, const Vec3& wi, float u_lobe,
                                           : bent_detail::sample_eye(b, wi, u_lobe, u);
 }
 
+/// Share of the light of a cosine lobe around the shading normal that comes from above the horizon.
+template <class C>
+float share_above_horizon(const Bent<C>& b) {
+  return 0.5f * (1 + b.horizon.z);
+}
+
 template <class C>
 Spectrum albedo(const Bent<C>& b, const Vec3& wi) {
   return albedo(b.closure, wi);
+}
+inline Spectrum albedo(const Bent<Diffuse>& b, const Vec3& wi) {
+  return albedo(b.closure, wi) * share_above_horizon(b);
 }
 template <class C>
 LobeWeights lobe_weights(const Bent<C>& b, const Vec3& wi) {

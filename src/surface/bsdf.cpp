@@ -26,23 +26,27 @@ float pdf_reverse_by(const C& closure, const Vec3& wi, const Vec3& wo, Transport
 // Facets whose shading normal equals the geometric one up to rounding are not bent.
 constexpr float least_bent_cosine = 1 - 1e-6f;
 
-// Rough coats cannot tell which lobe light belongs to, and rough plastic as a whole scatters like a matte surface.
-bool has_lobes_to_mirror(const Conductor&) { return true; }
-bool has_lobes_to_mirror(const Plastic& p) { return is_smooth(p); }
-bool has_lobes_to_mirror(const ClearCoated& c) { return is_smooth(c.passage->coat()); }
-template <class Base>
-bool has_lobes_to_mirror(const Coated<Base>& c) {
-  return is_smooth(c.coat);
+template <class C>
+Bent<C> with_planes(const C& closure, const Normal& plane, const Normal& horizon) {
+  return {closure, plane, horizon};
+}
+Bent<Diffuse> with_planes(Diffuse closure, const Normal& plane, const Normal& horizon) {
+  Bent<Diffuse> result{closure, plane, horizon};
+  result.closure.reflectance /= share_above_horizon(result);
+  return result;
 }
 
 }  // namespace
 
-std::optional<Bsdf> bent(const Bsdf& bsdf, const Normal& plane) {
+std::optional<Bsdf> bent(const Bsdf& bsdf, const Normal& plane, const Normal& horizon) {
+  if (!(plane.z < least_bent_cosine)) return {};
   return std::visit(
       [&](const auto& closure) -> std::optional<Bsdf> {
-        if constexpr (requires { has_lobes_to_mirror(closure); })
-          if (plane.z < least_bent_cosine && has_lobes_to_mirror(closure))
-            return Bent<std::decay_t<decltype(closure)>>{closure, plane};
+        if constexpr (std::is_same_v<std::decay_t<decltype(closure)>, DiffuseTransmission>) {
+          if (closure.transmittance.is_black()) return with_planes(Diffuse{closure.reflectance}, plane, horizon);
+        } else if constexpr (requires { Bsdf(with_planes(closure, plane, horizon)); }) {
+          return with_planes(closure, plane, horizon);
+        }
         return {};
       },
       bsdf);

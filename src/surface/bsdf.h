@@ -30,14 +30,14 @@
 
 namespace lanthorn {
 
-using Bsdf =
-    ClosureVariant<Diffuse, DiffuseTransmission, Conductor, Dielectric, ThinDielectric, ClearCoated, CoatedDiffuse,
-                   CoatedConductor, CoatedPlastic, Hair, Plastic, Cloth, Measured, Bent<Conductor>, Bent<Plastic>,
-                   Bent<ClearCoated>, Bent<CoatedDiffuse>, Bent<CoatedConductor>, Bent<CoatedPlastic>>;
+using Bsdf = ClosureVariant<Diffuse, DiffuseTransmission, Conductor, Dielectric, ThinDielectric, ClearCoated,
+                            CoatedDiffuse, CoatedConductor, CoatedPlastic, Hair, Plastic, Cloth, Measured,
+                            Bent<Diffuse>, Bent<Conductor>, Bent<Plastic>, Bent<ClearCoated>, Bent<CoatedDiffuse>,
+                            Bent<CoatedConductor>, Bent<CoatedPlastic>, Bent<Cloth>, Bent<Measured>>;
 
-/// The closure for the geometric normal `plane`, given in the shading frame. Nullopt if it does not differ: closures
-/// other than metals and smooth coats scatter below the surface as above it.
-std::optional<Bsdf> bent(const Bsdf& bsdf, const Normal& plane);
+/// The closure on a facet with the normals `plane` and `horizon` (`Bent`), unit, in the shading frame. Nullopt if the
+/// closure is the same there: if `plane` is the shading normal, or if light passes through the surface.
+std::optional<Bsdf> bent(const Bsdf& bsdf, const Normal& plane, const Normal& horizon);
 
 /// f(wi, wo), 1/sr, without the cosine (`cosine`) and without delta lobes. `transport` is the quantity that the walk
 /// carries: `radiance` from the eye (refraction scales f by the squared index ratio), `importance` from a light (no
@@ -72,16 +72,20 @@ inline constexpr auto all_traits = traits_of(static_cast<const Bsdf*>(nullptr));
 inline bool is_fibre(const Bsdf& bsdf) { return bsdf_detail::all_traits[bsdf.index()].is_fibre; }
 /// True if light may continue behind the surface.
 inline bool transmits(const Bsdf& bsdf) { return bsdf_detail::all_traits[bsdf.index()].transmits; }
+/// True if all light leaves a surface on the side on which it arrives.
+inline bool is_opaque(const Bsdf& bsdf) { return !is_fibre(bsdf) && !transmits(bsdf); }
 
 /// The cosine factor of f for light along `w`: |cos| to the normal; on a fibre |cos| to the plane perpendicular to it.
 inline float cosine(const Bsdf& bsdf, const Vec3& w) {
   return is_fibre(bsdf) ? cosine_across_fibre(w) : abs_cos_theta(w);
 }
 
-/// The reflectance of a closure that is purely Lambertian reflection; null for all others. Used by irradiance caches.
+/// The reflectance of a closure that is purely Lambertian reflection, of light from above the facet on a bent one; null
+/// for all others. Used by irradiance caches.
 inline const Spectrum* lambertian_reflectance(const Bsdf& bsdf) {
-  const auto* diffuse = std::get_if<Diffuse>(&bsdf);
-  return diffuse ? &diffuse->reflectance : nullptr;
+  if (const auto* diffuse = std::get_if<Diffuse>(&bsdf)) return &diffuse->reflectance;
+  const auto* facet = std::get_if<Bent<Diffuse>>(&bsdf);
+  return facet ? &facet->closure.reflectance : nullptr;
 }
 
 /// Samples wo. `u_lobe` and `u` are uniform in [0,1). Returns nullopt if the walk is absorbed or wo is below the

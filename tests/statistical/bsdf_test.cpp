@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -102,7 +103,11 @@ TEST(Chi2, Bent) {
   const Normal plane = at_angles(25, 0);
   const std::vector<Bsdf> closures{Bent<Conductor>{{gold_eta, gold_k, 0.1f, 0.1f}, plane},
                                    Bent<Conductor>{{gold_eta, gold_k, 0.5f, 0.3f}, plane},
-                                   Bent<Plastic>{{.reflectance = colour}, plane}};
+                                   Bent<Plastic>{{.reflectance = colour}, plane},
+                                   Bent<Plastic>{{.reflectance = colour, .alpha = 0.3f}, plane, plane},
+                                   Bent<Diffuse>{{colour}, plane, plane},
+                                   Bent<Diffuse>{{colour}, plane, at_angles(10, 0)},
+                                   Bent<Cloth>{{{.reflectance = colour, .alpha = 0.3f}, colour, 0.4f}, plane, plane}};
   const std::vector<Vec3> above{at_angles(0, 0), at_angles(60, 180), at_angles(80, 10), at_angles(84, 100),
                                 at_angles(97, 0)};
   const test::Chi2Options options{.samples = 50000, .tests = static_cast<int>(2 * closures.size() * above.size())};
@@ -404,6 +409,20 @@ TEST(Energy, BentMetalsReflectAllThatTheyReflect) {
         const Mean alone = sampled_albedo(metal, wi, 40000, true);
         EXPECT_TRUE(test::within(bent.mean(), alone.mean(), limit_of(32) * std::hypot(bent.error(), alone.error())))
             << bent.mean() << " instead of " << alone.mean() << ": " << wi.z << " alpha " << alpha << " tilt " << tilt;
+      }
+}
+
+// Nor does it remove anything from a diffuse surface, even if the eye is behind the shading normal.
+TEST(Energy, BentDiffuseSurfacesReflectAllThatTheyReflect) {
+  for (const double tilt : {5.0, 30.0, 60.0})
+    for (const double horizon : {0.0, tilt / 2, tilt})
+      for (const Vec3& wi : {at_angles(10, 0), at_angles(29, 180), at_angles(75, 100), at_angles(92, 0)}) {
+        const std::optional<Bsdf> white = bent(Diffuse{Spectrum(1)}, at_angles(tilt, 0), at_angles(horizon, 0));
+        ASSERT_TRUE(white);
+        const Mean seen = sampled_albedo(*white, wi, 40000, true, Transport::radiance);
+        EXPECT_TRUE(test::within(seen.mean(), 1, limit_of(36) * seen.error() + 1e-4))
+            << seen.mean() << " tilt " << tilt;
+        EXPECT_NEAR(albedo(*white, wi)[0], 1, 1e-5) << tilt;
       }
 }
 

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <map>
@@ -77,6 +78,34 @@ std::string icosahedron() {
          "1 1 7 6 3 6 7 3 7 11 3 11 2 3 2 10 3 10 6]\n";
 }
 
+// The same body with the normals of each facet mirrored in the facet's own: it looks dented, and no ray leaves it from
+// a smooth surface above its facets (`SurfacePoint::rise`), where no light path can end.
+std::string dented_ball() {
+  constexpr float a = 0.5257f, b = 0.8507f;
+  const std::array<Vec3, 12> corners{Vec3(0, a, b), {0, -a, b},  {0, a, -b}, {0, -a, -b}, {a, b, 0},  {-a, b, 0},
+                                     {a, -b, 0},    {-a, -b, 0}, {b, 0, a},  {-b, 0, a},  {b, 0, -a}, {-b, 0, -a}};
+  const float edge2 = 4.1f * a * a;
+  std::string points, normals;
+  for (std::size_t i = 0; i < corners.size(); ++i)
+    for (std::size_t j = i + 1; j < corners.size(); ++j)
+      for (std::size_t k = j + 1; k < corners.size(); ++k) {
+        const std::array<Vec3, 3> facet{corners[i], corners[j], corners[k]};
+        if (distance_squared(facet[0], facet[1]) > edge2 || distance_squared(facet[1], facet[2]) > edge2 ||
+            distance_squared(facet[2], facet[0]) > edge2)
+          continue;
+        const Normal n = normalize(facet[0] + facet[1] + facet[2]);
+        for (const Vec3& p : facet) {
+          const Vec3 mirrored = 2 * dot(p, n) * n - p;
+          points += fmt::format("{} {} {} ", p.x, p.y, p.z);
+          normals += fmt::format("{} {} {} ", mirrored.x, mirrored.y, mirrored.z);
+        }
+      }
+  std::string indices;
+  for (int i = 0; i < 60; ++i) indices += fmt::format("{} ", i);
+  return "Shape \"trianglemesh\" \"point3 P\" [" + points + "] \"normal N\" [" + normals + "] \"integer indices\" [" +
+         indices + "]\n";
+}
+
 // A loose ball of hairs in all directions.
 std::string hairs() {
   std::string text = "Material \"hair\" \"rgb color\" [0.9 0.5 0.1] \"float beta_m\" [0.8] \"float beta_n\" [0.3]\n";
@@ -120,10 +149,12 @@ struct Case {
 };
 
 const std::map<std::string, std::string>& scenes() {
-  const auto ball = [](const std::string& material) {
-    return "AttributeBegin\n" + material + smooth_ball_material + icosahedron() + "AttributeEnd\n";
+  const auto placed = [](const std::string& material, const std::string& shape) {
+    return "AttributeBegin\n" + material + smooth_ball_material + shape + "AttributeEnd\n";
   };
-  const std::string diffuse_ball = ball("Material \"diffuse\" \"rgb reflectance\" [0.6 0.6 0.2]\n");
+  const auto ball = [&](const std::string& material) { return placed(material, icosahedron()); };
+  const std::string ochre = "Material \"diffuse\" \"rgb reflectance\" [0.6 0.6 0.2]\n";
+  const std::string diffuse_ball = placed(ochre, dented_ball());
   const std::string under_lamp = overview + film + area_light + walls;
   // A lamp in a glass globe: all light comes from photons, and illuminates a ball whose shading normals differ much
   // from its facets'.
@@ -132,6 +163,9 @@ const std::map<std::string, std::string>& scenes() {
       "Shape \"sphere\" \"float radius\" [0.3]\nAttributeEnd\n";
   static const std::map<std::string, std::string> all{
       {"shading_normals", under_lamp + diffuse_ball},
+      // Facets that stand in for a surface which bulges out: eye paths alone find the light that they themselves would
+      // block.
+      {"smooth_ball", under_lamp + ball(ochre)},
       {"small_lights", overview + film + small_lights + walls + diffuse_ball},
       {"rough_glass", under_lamp + ball("Material \"dielectric\" \"float eta\" [1.5] \"float roughness\" [0.3]\n")},
       {"rough_metal", under_lamp + ball("Material \"conductor\" \"float roughness\" [0.3]\n")},
@@ -198,6 +232,9 @@ const std::vector<Case> cases{
     {"rough_metal", "ppm", spectral},
     // Many techniques, whose weights must add up to 1.
     {"shading_normals", "bdpt", rgb},
+    {"smooth_ball", "bdpt", rgb},
+    {"smooth_ball", "vcm", rgb},
+    {"smooth_ball", "probppm", rgb},
     {"rough_glass", "bdpt", rgb},
     {"rough_metal", "bdpt", spectral},
     {"sky", "bdpt", rgb},
@@ -257,6 +294,8 @@ const std::vector<Case> nightly_cases{
     {"curve_lamps", "bdpt", rgb},
     {"shading_normals", "vcm", rgb},
     {"shading_normals", "auto", rgb},
+    {"smooth_ball", "auto", rgb},
+    {"smooth_ball", "mlt", rgb},
     {"rough_metal", "auto", spectral},
     {"sky", "auto", rgb},
     {"clear_glass", "auto", rgb},

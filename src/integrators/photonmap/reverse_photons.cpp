@@ -25,9 +25,9 @@ void ReversePhotons::add(const SurfaceVertex& vertex, const Wavelengths& w, cons
     return;
   }
   const Spectrum throughput = state.beta * *reflectance * inv_pi;
-  if (throughput.is_black() || vertex.wi_local.z == 0) return;
-  diffuse.push_back({throughput, at.position, at.normal, vertex.wi_local.z < 0 ? -at.shading.n : at.shading.n,
-                     state.scatterings() - 1, term});
+  if (throughput.is_black()) return;
+  const float side = dot(vertex.wi, at.normal) < 0 ? -1.0f : 1.0f;
+  diffuse.push_back({throughput, at.position, side * at.normal, side * at.shading.n, state.scatterings() - 1, term});
 }
 
 InfluencePhotons InfluencePhotons::of(const PhotonMap<BucketKdTree>& map, std::span<const float> radii) {
@@ -122,12 +122,12 @@ class DiffuseBundle {
     const float support2 = sqr(photon.radius), inverse2 = 1 / support2;
     const LaneVec3 offset = in_lanes(photon.place) - position_;
     const Lanes dist2 = dot(offset, offset), height = dot(offset, normal_);
-    const Lanes cosine = dot(wo, eye_normal_), incidence = dot(wo, normal_), geometric = abs(incidence);
+    const Lanes cosine = dot(wo, eye_normal_), incidence = dot(wo, normal_);
     const float least_cosine = photon.surface_normal == Normal(0) ? 0.0f : one_surface_cosine;
     const LaneMask counts = (dist2 <= support2) & are_on_surface(height, incidence, photon.last_flight, photon.radius) &
-                            (least_cosine <= abs(dot(own, normal_))) & (0.0f < cosine) &
+                            (least_cosine <= abs(dot(own, normal_))) & (0.0f < incidence) & (0.0f < cosine) &
                             (scatterings_ <= static_cast<float>(photon.path_flags.eye_scatterings));
-    const Lanes divisor = max(geometric, grazing_cosine);  // incidence_ratio
+    const Lanes divisor = max(incidence, grazing_cosine);  // incidence_ratio
     const Lanes weight = select(counts, profile_of<shape>(kernel, dist2 * inverse2) * cosine / divisor, 0.0f);
     const Spectrum density =
         (photon.path_flags.dispersed ? photon.flux * w.dispersed : photon.flux) * (inv_pi * inverse2);

@@ -79,6 +79,7 @@ class GatherVertex {
   std::optional<PhotonHit> scatter(const Direction& wi) const {
     std::optional<PhotonHit> result;
     const SurfacePoint& at = vertex_.at;
+    if (is_behind(at, vertex_.wi, wi)) return result;  // light for `offset_origin`, which no photon brings
     const Vec3 wo_local = at.shading.to_local(wi);
     BsdfValues value;
     if constexpr (both_densities)

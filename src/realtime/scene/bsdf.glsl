@@ -90,9 +90,16 @@ vec3 eval_plastic(Material m, vec4 colour, vec4 lobe, float cos_i, float cos_o, 
   return below + eval_microfacets(fresnel, cos_m, cos_i, cos_o, colour.a);
 }
 
+// Nothing passes an opaque facet (surface/bent.h).
+bool is_blocked(Surface at, vec3 wi, vec3 wo) {
+  bool is_opaque = at.material.kind != kind_diffuse || at.lobe.rgb == vec3(0);
+  return is_opaque && dot(wi, at.facing) * dot(wo, at.facing) <= 0;
+}
+
 // f(wi, wo), 1/sr, without the cosine and without delta lobes.
 vec3 eval_bsdf(Surface at, vec3 wi, vec3 wo) {
   Material m = at.material;
+  if (is_blocked(at, wi, wo)) return vec3(0);
   float cos_i = dot(wi, at.normal), cos_o = dot(wo, at.normal);
   if (m.kind == kind_diffuse) return (cos_i * cos_o > 0 ? at.colour.rgb : at.lobe.rgb) / pi;
   if (cos_i * cos_o <= 0 || m.kind == kind_none) return vec3(0);

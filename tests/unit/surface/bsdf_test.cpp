@@ -222,14 +222,15 @@ TEST(Bsdf, EvalAndPdfTogetherAreThoseOfEach) {
     }
 }
 
-// Sampling, both densities and f are consistent for eye and light paths, and a metal scatters nothing below the
-// geometric plane.
+// Sampling, both densities and f are consistent for eye and light paths, and nothing is scattered below the geometric
+// plane.
 TEST(Bent, IsOneFunctionOfEyeAndLight) {
   const Normal plane = at_angles(25, 40);
   HashRng rng(6);
   int bent_away = 0;
-  for (const Bsdf& bsdf : {Bsdf(Bent<Conductor>{{gold_eta, gold_k, 0.3f, 0.2f}, plane}),
-                           Bsdf(Bent<Plastic>{{.reflectance = colour}, plane})})
+  for (const Bsdf& bsdf :
+       {Bsdf(Bent<Conductor>{{gold_eta, gold_k, 0.3f, 0.2f}, plane}),
+        Bsdf(Bent<Plastic>{{.reflectance = colour}, plane, plane}), Bsdf(Bent<Diffuse>{{colour}, plane, plane})})
     for (int n = 0; n < 3000; ++n) {
       const Vec3 wi = sample_uniform_sphere(rng.next2());
       const float u1 = rng.next();
@@ -238,7 +239,7 @@ TEST(Bent, IsOneFunctionOfEyeAndLight) {
       const auto s = sample(bsdf, wi, u1, rng.next2(), transport);
       if (!s || s->delta || abs_cos_theta(s->wo) < 1e-3f || abs_cos_theta(wi) < 1e-3f) continue;
       const bool is_metal = std::holds_alternative<Bent<Conductor>>(bsdf);
-      ASSERT_TRUE(!is_metal || dot(wi, plane) * dot(s->wo, plane) > 0);
+      ASSERT_GT(dot(wi, plane) * dot(s->wo, plane), 0);
       bent_away += !same_hemisphere(wi, s->wo);
       EXPECT_NEAR(pdf(bsdf, wi, s->wo, transport), s->pdf, 5e-3f * s->pdf);
       const Spectrum f = eval(bsdf, wi, s->wo, transport);
@@ -258,18 +259,27 @@ TEST(Bent, IsOneFunctionOfEyeAndLight) {
   EXPECT_GT(bent_away, 100);
 }
 
-TEST(Bent, IsMetalOrASmoothCoatWhoseNormalsDiffer) {
-  const Dielectric rough{.eta = 1.5f, .alpha_x = 0.25f, .alpha_y = 0.25f};
-  const Normal plane = at_angles(5, 0);
-  for (const Bsdf& bsdf :
-       {Bsdf(Conductor{gold_eta, gold_k}), Bsdf(Conductor{gold_eta, gold_k, 0.3f, 0.3f}), Bsdf(Plastic{}),
-        Bsdf(ClearCoated{&smooth_coat, colour}), Bsdf(CoatedDiffuse{}), Bsdf(CoatedPlastic{})}) {
-    EXPECT_TRUE(bent(bsdf, plane)) << bsdf.index();
-    EXPECT_FALSE(bent(bsdf, {0, 0, 1})) << bsdf.index();
+// Every closure is either transparent or has an opaque form whose light stays on one side of the facet.
+TEST(Bent, NothingPassesAnOpaqueClosure) {
+  const Normal plane = at_angles(35, 0);
+  HashRng rng(7);
+  for (const auto& [name, bsdf] : all_closures()) {
+    EXPECT_FALSE(bent(bsdf, {0, 0, 1}, {0, 0, 1})) << name;
+    const std::optional<Bsdf> facet = bent(bsdf, plane, plane);
+    EXPECT_EQ(facet.has_value(), is_opaque(bsdf)) << name;
+    for (int n = 0; facet && n < 300; ++n) {
+      const Vec3 wi = sample_uniform_sphere(rng.next2()), wo = sample_uniform_sphere(rng.next2());
+      const float u = rng.next();
+      for (const Transport transport : {Transport::radiance, Transport::importance}) {
+        const auto s = sample(*facet, wi, u, rng.next2(), transport);
+        EXPECT_TRUE(!s || s->weight.is_black() || dot(wi, plane) * dot(s->wo, plane) >= 0) << name;
+        if (dot(wi, plane) * dot(wo, plane) > 0) continue;
+        EXPECT_TRUE(eval(*facet, wi, wo, transport).is_black()) << name;
+        EXPECT_EQ(pdf(*facet, wi, wo, transport), 0) << name;
+      }
+    }
   }
-  for (const Bsdf& bsdf : {Bsdf(Diffuse{colour}), Bsdf(Dielectric{}), Bsdf(Plastic{.alpha = 0.2f}),
-                           Bsdf(ClearCoated{&rough_coat, colour}), Bsdf(CoatedDiffuse{.coat = rough})})
-    EXPECT_FALSE(bent(bsdf, plane)) << bsdf.index();
+  EXPECT_TRUE(bent(DiffuseTransmission{colour}, plane, plane));  // nothing is transmitted
 }
 
 TEST(Bsdf, RefractionScalesRadianceByTheSquaredIndexRatio) {
