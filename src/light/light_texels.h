@@ -19,8 +19,8 @@ class LightTexels {
  public:
   LightTexels() = default;
   LightTexels(std::vector<Rgb> colours) : colours_(std::move(colours)) {}
-  /// `bytes`: the texels' channels, interleaved. `channels`: 1, 3 or 4; the fourth is ignored. `values`: the value of
-  /// each byte, finite and >= 0.
+  /// `bytes`: the texels' channels, interleaved. `channels`: 1 to 4; the last of two or four, alpha, is ignored.
+  /// `values`: the value of each byte, finite and >= 0.
   LightTexels(std::vector<std::uint8_t> bytes, std::size_t channels, const std::array<float, 256>& values)
       : bytes_(std::move(bytes)), channels_(channels), values_(values) {}
 
@@ -28,7 +28,7 @@ class LightTexels {
   Rgb operator[](std::size_t texel) const {
     if (channels_ == 0) return colours_[texel];
     const auto value = [&](std::size_t channel) { return values_[bytes_[texel * channels_ + channel]]; };
-    return channels_ == 1 ? Rgb{value(0), value(0), value(0)} : Rgb{value(0), value(1), value(2)};
+    return channels_ < 3 ? Rgb{value(0), value(0), value(0)} : Rgb{value(0), value(1), value(2)};
   }
   /// Replaces negative and non-finite values by 0.
   void clean() {

@@ -87,13 +87,14 @@ int levels_for(const TextureFormat& format, const ImageWish& wish) {
 }
 
 bool is_opaque_row(const TextureFormat& format, const std::byte* row) {
-  const auto width = static_cast<std::size_t>(format.width);
+  const auto width = static_cast<std::size_t>(format.width), stride = static_cast<std::size_t>(format.channels);
   for (std::size_t x = 0; x < width; ++x) {
     float alpha = 1;
+    const std::size_t place = stride * x + stride - 1;
     if (format.is_8_bit)
-      alpha = static_cast<float>(row[4 * x + 3]) / 255.0f;
+      alpha = static_cast<float>(row[place]) / 255.0f;
     else
-      std::memcpy(&alpha, row + (4 * x + 3) * sizeof alpha, sizeof alpha);
+      std::memcpy(&alpha, row + place * sizeof alpha, sizeof alpha);
     if (alpha != 1.0f) return false;
   }
   return true;
@@ -102,16 +103,17 @@ bool is_opaque_row(const TextureFormat& format, const std::byte* row) {
 template <class Texel>
 Rgb colour_of(const Texel& texel, int channels) {
   const float first = texel[0];
-  if (channels == 1) return {first, first, first};
+  if (channels < 3) return {first, first, first};
   return {first, texel[1], texel[2]};
 }
 
 template <class Texel>
 float scalar_of(const Texel& texel, int channels, std::optional<int> channel) {
-  if (channel == alpha_channel) return channels == 4 ? texel[3] : 1.0f;
-  if (channel) return texel[channels == 1 ? 0 : *channel];
+  if (channel == alpha_channel) return channels == 4 ? texel[3] : channels == 2 ? texel[1] : 1.0f;
+  if (channel) return texel[channels < 3 ? 0 : *channel];
   switch (channels) {
     case 1:
+    case 2:
       return texel[0];
     case 3:
       return (texel[0] + texel[1] + texel[2]) / 3.0f;
@@ -155,7 +157,7 @@ TextureImage::TextureImage(const ImageSource& source, const FileAccess& access, 
     floats_.resize(count);
     reader.read(reinterpret_cast<std::byte*>(floats_.data()));
   }
-  if (channels_ == 4 && is_opaque()) drop_alpha();
+  if (format_.has_alpha() && is_opaque()) drop_alpha();
   levels_ = levels;
   if (levels_ > 1) make_levels();
 }
@@ -171,10 +173,10 @@ TextureImage::TextureImage(const ImageSource& source, const FileAccess& access, 
   cached_ = &cache_->add(
       reader, levels_,
       [&](const std::byte* row) {
-        if (format_.channels == 4) is_opaque = is_opaque && is_opaque_row(format_, row);
+        if (format_.has_alpha()) is_opaque = is_opaque && is_opaque_row(format_, row);
       },
       location);
-  channels_ = format_.channels == 4 && is_opaque ? 3 : format_.channels;
+  channels_ = format_.has_alpha() && is_opaque ? format_.channels - 1 : format_.channels;
 }
 
 bool TextureImage::is_opaque() const {
@@ -187,16 +189,17 @@ bool TextureImage::is_opaque() const {
 
 void TextureImage::drop_alpha() {
   const std::size_t texels = static_cast<std::size_t>(width()) * static_cast<std::size_t>(height());
+  const auto stride = static_cast<std::size_t>(format_.channels), left = stride - 1;
   const auto drop = [&](auto& values) {
     if (values.empty()) return;
     for (std::size_t i = 0; i < texels; ++i)
-      for (std::size_t c = 0; c < 3; ++c) values[3 * i + c] = values[4 * i + c];
-    values.resize(3 * texels);
+      for (std::size_t c = 0; c < left; ++c) values[left * i + c] = values[stride * i + c];
+    values.resize(left * texels);
     values.shrink_to_fit();
   };
   drop(bytes_);
   drop(floats_);
-  channels_ = format_.channels = 3;
+  channels_ = format_.channels = static_cast<int>(left);
 }
 
 void TextureImage::make_levels() {

@@ -69,8 +69,8 @@ class TextureImage {
   /// Samples at texture coordinates (s, t), t upwards: the nearest texel of a level, or bilinear interpolation of four.
   /// `colour` makes them a colour.
   Rgb rgb(const Vec2& st, const WrapModes& wrap, description::ImageFilter filter, int level = 0) const;
-  /// Scalar value: `channel` (see description::ImageTexture) if given; else the only channel, the alpha channel if it
-  /// is not 1 everywhere, or the mean of three channels.
+  /// Scalar value: `channel` (see description::ImageTexture) if given; else the value of a grey image, the alpha
+  /// channel of a coloured one if it is not 1 everywhere, or the mean of three channels.
   float scalar(const Vec2& st, const WrapModes& wrap, description::ImageFilter filter,
                std::optional<int> channel = {}) const;
 
@@ -87,7 +87,7 @@ class TextureImage {
   int height() const { return format_.height; }
   int levels() const { return levels_; }
   bool has_colour() const { return channels_ >= 3; }
-  bool has_alpha() const { return channels_ == 4; }  ///< other than 1 somewhere
+  bool has_alpha() const { return channels_ == 2 || channels_ == 4; }  ///< other than 1 somewhere
   bool is_cached() const { return cached_ != nullptr; }
   /// True for the typical colours of normal maps: means of red and green near .5, and blue above them.
   bool has_colours_of_normals() const;
@@ -126,7 +126,7 @@ class TextureImage {
   void make_levels();
 
   TextureFormat format_;
-  int channels_ = 1;  // 1, 3 or 4; fewer than stored ones if a cached image is opaque
+  int channels_ = 1;  // as in format_, but fewer than stored ones if a cached image is opaque
   int levels_ = 1;
   std::vector<std::size_t> level_begins_;  // texels
   std::vector<std::uint8_t> bytes_;

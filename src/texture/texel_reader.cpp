@@ -54,9 +54,11 @@ TexelReader::TexelReader(const ImageSource& source, const FileAccess& access, co
   const ImageHeader& header = file_->header();
   format_.width = header.width;
   format_.height = header.height;
+  const std::size_t stored = header.channels.size();
   // The fourth channel of OpenEXR files may be a depth, for example.
   const bool may_have_alpha = file_->format() != "openexr" || header.alpha_channel == 3;
-  format_.channels = header.channels.size() >= 4 && may_have_alpha ? 4 : header.channels.size() >= 3 ? 3 : 1;
+  const bool is_grey_with_alpha = stored == 2 && header.alpha_channel == 1;
+  format_.channels = stored >= 4 && may_have_alpha ? 4 : stored >= 3 ? 3 : is_grey_with_alpha ? 2 : 1;
   const bool is_8_bit = header.samples == SampleType::uint8;
   read_as_ = is_8_bit ? SampleType::uint8 : SampleType::float32;
   is_integer_ = is_8_bit || header.samples == SampleType::uint16;
@@ -85,7 +87,7 @@ void TexelReader::convert(const std::byte* read, std::size_t texels, std::byte* 
         continue;
       }
       std::memcpy(&v[c], read + (i * stride + c) * sizeof(float), sizeof(float));
-      if (is_integer_ && c < 3) v[c] = decode(v[c], colours_.encoding, colours_.gamma);
+      if (is_integer_ && !format_.is_alpha(static_cast<int>(c))) v[c] = decode(v[c], colours_.encoding, colours_.gamma);
     }
     if (colours_.space != ColorSpace::srgb && stride >= 3) {
       const Rgb there{std::fmax(0.0f, v[0]), std::fmax(0.0f, v[1]), std::fmax(0.0f, v[2])};

@@ -72,7 +72,7 @@ void LevelMaker::add(std::size_t i, const std::byte* row) {
 
 // Encodes a value as the sample below or the one above it, with probabilities such that the mean is the value.
 std::uint8_t LevelMaker::encoded(float value, int channel, float u) const {
-  if (channel == 3) return static_cast<std::uint8_t>(std::min(255.0f, std::floor(value * 255.0f + u)));
+  if (format_.is_alpha(channel)) return static_cast<std::uint8_t>(std::min(255.0f, std::floor(value * 255.0f + u)));
   const auto& decode = format_.decode;
   const float range = decode.back() - decode.front();
   if (!(range > 0)) return 0;

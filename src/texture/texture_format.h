@@ -13,18 +13,20 @@
 
 namespace lanthorn {
 
-/// Texels as they are stored: 8-bit samples with a table of their linear values, or linear floats. The fourth channel
-/// is alpha, which 8-bit samples hold in 255ths.
+/// Texels as they are stored: 8-bit samples with a table of their linear values, or linear floats. The last of two or
+/// four channels is alpha, which 8-bit samples hold in 255ths.
 struct TextureFormat {
   int width = 0, height = 0;
-  int channels = 1;  ///< stored: 1, 3 or 4
+  int channels = 1;  ///< stored: grey, grey and alpha, RGB, or RGB and alpha
   bool is_8_bit = false;
   std::array<float, 256> decode{};  ///< of 8-bit samples
 
   std::size_t texel_bytes() const { return static_cast<std::size_t>(channels) * (is_8_bit ? 1 : sizeof(float)); }
   std::size_t row_bytes() const { return texel_bytes() * static_cast<std::size_t>(width); }
+  bool has_alpha() const { return channels == 2 || channels == 4; }
+  bool is_alpha(int channel) const { return has_alpha() && channel == channels - 1; }
   float value_8_bit(std::uint8_t sample, int channel) const {
-    return channel == 3 ? static_cast<float>(sample) / 255.0f : decode[sample];
+    return is_alpha(channel) ? static_cast<float>(sample) / 255.0f : decode[sample];
   }
 };
 

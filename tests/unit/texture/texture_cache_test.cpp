@@ -66,7 +66,8 @@ class TextureCaches : public ::testing::Test {
     HashRng rng(7);
     for (std::size_t i = 0; i < texels.size(); ++i) {
       texels[i] = rng.next();
-      if (channels == 4 && i % 4 == 3) texels[i] = std::max(texels[i], least_alpha);
+      const std::size_t stride = static_cast<std::size_t>(channels);
+      if (stride % 2 == 0 && i % stride == stride - 1) texels[i] = std::max(texels[i], least_alpha);
     }
     const std::string path = (folder_.path() / name).string();
     const auto output = OIIO::ImageOutput::create(path);
@@ -107,6 +108,8 @@ TEST_F(TextureCaches, CachedTexelsAreThoseInMemory) {
       {write("c.png", 65, 70, 3, OIIO::TypeDesc::UINT16), {{}, true}},
       {write("d.exr", 129, 70, 1, OIIO::TypeDesc::HALF), {{}, true}},
       {write("e.tif", 129, 70, 4, OIIO::TypeDesc::FLOAT), {{}, true}},
+      {write("grey-b.png", 300, 201, 2, OIIO::TypeDesc::UINT8), {{}, true}},
+      {write("grey-opaque.png", 130, 64, 2, OIIO::TypeDesc::UINT16, 1), {{}, true}},
       {write("wide.png", 129, 70, 3, OIIO::TypeDesc::UINT8), {{Encoding::automatic, 1, ColorSpace::rec2020}, true}},
       {bytes, {{Encoding::gamma, 1.8f}, false}}};
   const auto cache = std::make_shared<TextureCache>(mebi);
