@@ -17,13 +17,6 @@ namespace {
 
 using namespace description;
 
-// A shape of the scene, or an instance.
-struct Part {
-  Bounds box;
-  std::size_t place = 0;
-  bool is_instance = false;
-};
-
 float size_of(const Bounds& box) { return box.empty() ? 0 : std::sqrt(length_squared(box.extent())); }
 
 // The axis along which a box is thin, if the box is wide along both other axes.
@@ -38,18 +31,9 @@ std::optional<int> thin_axis(const Bounds& box) {
 }
 
 // Sorted by size, largest first.
-std::vector<Part> parts_of(const SceneDescription& scene) {
-  std::vector<Part> parts;
-  const std::vector<Bounds> shapes = bounds_of(scene.shapes);
-  for (std::size_t i = 0; i < shapes.size(); ++i) parts.push_back({shapes[i], i, false});
-  std::vector<Bounds> objects(scene.objects.size());
-  for (std::size_t i = 0; i < objects.size(); ++i)
-    for (const Bounds& box : bounds_of(scene.objects[i].shapes)) objects[i].extend(box);
-  for (std::size_t i = 0; i < scene.instances.size(); ++i) {
-    const Bounds& object = objects[scene.instances[i].object];
-    if (!object.empty()) parts.push_back({scene.instances[i].object_to_world.start.bounds(object), i, true});
-  }
-  std::erase_if(parts, [](const Part& part) { return part.box.empty() || !std::isfinite(size_of(part.box)); });
+std::vector<Part> sorted_parts(const SceneDescription& scene) {
+  std::vector<Part> parts = parts_of(scene);
+  std::erase_if(parts, [](const Part& part) { return !std::isfinite(size_of(part.box)); });
   std::stable_sort(parts.begin(), parts.end(),
                    [](const Part& a, const Part& b) { return size_of(a.box) > size_of(b.box); });
   return parts;
@@ -121,7 +105,7 @@ void insert(std::vector<T>& into, std::vector<std::pair<std::size_t, T>> taken) 
 }  // namespace
 
 Grounds::Grounds(SceneDescription& scene) {
-  const std::vector<Part> parts = parts_of(scene);
+  const std::vector<Part> parts = sorted_parts(scene);
   const FoundGrounds found = find_grounds(parts);
   if (found.count == 0) return;
   side_ = found.side;

@@ -36,17 +36,24 @@ class Irradiances {
     add_emitters(scene);
   }
 
-  std::vector<LitSides> lit() const {
-    constexpr float least = 0.05f;
+  // The median of the brighter sides of lit samples; 0 if none is lit, or if it cannot be known.
+  float typical() const {
     std::vector<float> brighter;
     for (const auto& [front, back] : sides_)
       if (front > 0 || back > 0) brighter.push_back(std::max(front, back));
-    if (brighter.empty() || !knows_all_) return {};
+    if (brighter.empty() || !knows_all_) return 0;
     const auto middle = brighter.begin() + static_cast<std::ptrdiff_t>(brighter.size() / 2);
     std::nth_element(brighter.begin(), middle, brighter.end());
+    return *middle;
+  }
+
+  std::vector<LitSides> lit() const {
+    constexpr float share = 0.05f;
+    const float least = share * typical();
     std::vector<LitSides> result;
+    if (!(least > 0)) return result;
     result.reserve(sides_.size());
-    for (const auto& [front, back] : sides_) result.push_back({front >= least * *middle, back >= least * *middle});
+    for (const auto& [front, back] : sides_) result.push_back({front >= least, back >= least});
     return result;
   }
 
@@ -143,6 +150,10 @@ bool shines(const AreaLight& light) {
 
 std::vector<LitSides> lit_sides(const SceneDescription& scene, const ModelSamples& model) {
   return Irradiances(scene, model).lit();
+}
+
+float typical_irradiance(const SceneDescription& scene, const ModelSamples& model) {
+  return Irradiances(scene, model).typical();
 }
 
 }  // namespace lanthorn

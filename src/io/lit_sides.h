@@ -19,5 +19,8 @@ bool shines(const description::AreaLight& light);
 /// that shine: at least a twentieth of the typical irradiance. Clear surfaces do not block light. Empty, which means
 /// all sides, if no sample is lit or if there are lights of other kinds.
 std::vector<LitSides> lit_sides(const SceneDescription& scene, const ModelSamples& model);
+/// The median of the irradiance on the brighter sides of the samples that this light reaches; 0 where `lit_sides` is
+/// empty.
+float typical_irradiance(const SceneDescription& scene, const ModelSamples& model);
 
 }  // namespace lanthorn

@@ -66,12 +66,14 @@ class DistanceCube {
 
 }  // namespace
 
-ViewFrame view_from(float azimuth, float elevation) {
+ViewFrame view_from(float azimuth, float elevation, bool is_z_up) {
   const float a = to_radians(azimuth), e = to_radians(elevation);
   ViewFrame frame;
   frame.towards_eye = {std::sin(a) * std::cos(e), std::sin(e), std::cos(a) * std::cos(e)};
   frame.right = {std::cos(a), 0, -std::sin(a)};
   frame.up = cross(frame.towards_eye, frame.right);
+  if (is_z_up)
+    for (Direction* axis : {&frame.right, &frame.up, &frame.towards_eye}) *axis = {axis->x, -axis->z, axis->y};
   return frame;
 }
 

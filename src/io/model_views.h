@@ -18,8 +18,9 @@ namespace lanthorn {
 struct ViewFrame {
   Direction right{1, 0, 0}, up{0, 1, 0}, towards_eye{0, 0, 1};
 };
-/// Angles in degrees: azimuth from +z towards +x, elevation above the horizon.
-ViewFrame view_from(float azimuth, float elevation);
+/// Angles in degrees: azimuth from +z towards +x, elevation above the horizon. With `is_z_up`, -y takes the place of
+/// +z.
+ViewFrame view_from(float azimuth, float elevation, bool is_z_up = false);
 
 /// Materials of surfaces whose back should not be shown.
 struct OneSided {
@@ -57,7 +58,7 @@ struct ModelSamples {
   std::set<description::Index> clear_materials_;
 };
 
-constexpr float view_outside = 40, view_inside = 60;  ///< fields of view, degrees
+constexpr float view_outside = 40, view_inside_angle = 60;  ///< fields of view, degrees
 
 /// The samples visible to an eye outside that looks at the whole model.
 class OutsideView {

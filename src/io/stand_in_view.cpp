@@ -6,11 +6,11 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <span>
 #include <utility>
 #include <vector>
 
 #include "io/lit_sides.h"
+#include "io/surfaces.h"
 #include "math/vec.h"
 
 namespace lanthorn {
@@ -157,82 +157,6 @@ std::vector<const Candidate*> with_most_meshes(const SceneDescription& scene, co
   return result;
 }
 
-// Candidate positions in the bounding box.
-std::vector<Point> places_inside(const Bounds& bounds) {
-  constexpr std::array<float, 5> across{0.08f, 0.3f, 0.5f, 0.7f, 0.92f};
-  constexpr std::array<float, 2> heights{0.4f, 0.6f};
-  std::vector<Point> places;
-  for (const float x : across)
-    for (const float y : heights)
-      for (const float z : across) places.push_back(bounds.min + Vec3(x, y, z) * bounds.extent());
-  return places;
-}
-
-// The positions from which surfaces are visible in nearly all directions.
-std::vector<Panorama> surrounded_places(const ModelSamples& model) {
-  constexpr float least_closed = 0.95f;
-  std::vector<Panorama> places;
-  for (const Point& place : places_inside(model.bounds))
-    if (Panorama panorama(model, place); panorama.closed() >= least_closed) places.push_back(std::move(panorama));
-  return places;
-}
-
-// What is visible from outside, from any viewpoint.
-struct Outside {
-  std::vector<char> is_seen;   ///< for each sample
-  double backs = 0, dull = 0;  ///< fractions: backs of one-sided surfaces; these or faces of a box
-
-  Outside(const ModelSamples& model, std::span<const Candidate> candidates) : is_seen(model.samples.size()) {
-    constexpr float tolerance = 0.05f;
-    double all = 0;
-    for (const Candidate& candidate : candidates)
-      for (const std::size_t i : candidate.view.in_front()) {
-        const bool is_back = candidate.view.is_back(i);
-        is_seen[i] = 1;
-        ++all;
-        if (is_back) ++backs;
-        if (is_back || model.is_on_box(i, tolerance)) ++dull;
-      }
-    backs /= all;
-    dull /= all;
-  }
-};
-
-// True if objects other than walls are visible from these positions but hardly visible from outside.
-bool has_things_inside(const ModelSamples& model, const Outside& outside, const std::vector<Panorama>& places) {
-  constexpr float wall = 0.1f;
-  constexpr double least_things = 0.05, most_seen_outside = 0.25;
-  std::vector<char> is_seen(model.samples.size());
-  for (const Panorama& place : places)
-    for (const std::size_t i : place.seen()) is_seen[i] = 1;
-  double all = 0, things = 0, seen_outside = 0;
-  for (std::size_t i = 0; i < is_seen.size(); ++i) {
-    if (is_seen[i] == 0) continue;
-    ++all;
-    if (model.is_on_box(i, wall)) continue;
-    ++things;
-    if (outside.is_seen[i] != 0) ++seen_outside;
-  }
-  return things > least_things * all && seen_outside < most_seen_outside * things;
-}
-
-// True if the model has no opening, and hardly anything visible from these positions is the back of a one-sided
-// surface.
-bool shows_fronts_inside(const ModelSamples& model, const std::vector<Panorama>& places) {
-  constexpr float closed = 0.99f;
-  constexpr double most_backs = 0.1;
-  double all = 0, backs = 0;
-  bool is_closed = false;
-  for (const Panorama& place : places) {
-    is_closed = is_closed || place.closed() >= closed;
-    for (const std::size_t i : place.seen()) {
-      ++all;
-      if (model.is_back(i, place.eye())) ++backs;
-    }
-  }
-  return is_closed && backs < most_backs * all;
-}
-
 // True if the scene's own lights illuminate hardly anything that is visible from outside.
 bool is_lit_inside_alone(const ModelSamples& model, const std::vector<Candidate>& candidates) {
   constexpr double most_lit_outside = 0.05;
@@ -246,82 +170,10 @@ bool is_lit_inside_alone(const ModelSamples& model, const std::vector<Candidate>
          });
 }
 
-// Sum of weights in a square picture.
-double amount_seen(const ModelSamples& model, const Panorama& panorama, const ViewFrame& frame) {
-  const float edge = std::tan(to_radians(view_inside / 2));
-  double sum = 0;
-  for (const std::size_t i : panorama.seen()) {
-    const Vec3 p = model.samples[i].position - panorama.eye();
-    const float depth = -dot(p, frame.towards_eye);
-    if (std::fabs(dot(p, frame.right)) < edge * depth && std::fabs(dot(p, frame.up)) < edge * depth)
-      sum += model.weight(i, panorama.eye());
-  }
-  return sum;
-}
-
-// The position, apart from the eye's own, that sees most of what the eye sees.
-StandInView::Inside with_lamp(const ModelSamples& model, const std::vector<Panorama>& rooms, const Panorama& eye) {
-  std::vector<char> is_seen(model.samples.size());
-  for (const std::size_t i : eye.seen()) is_seen[i] = 1;
-  const Panorama* best = &eye;
-  std::ptrdiff_t most = 0;
-  for (const Panorama& room : rooms) {
-    if (&room == &eye) continue;
-    const auto shared =
-        std::count_if(room.seen().begin(), room.seen().end(), [&](std::size_t i) { return is_seen[i] != 0; });
-    if (shared <= most) continue;
-    most = shared;
-    best = &room;
-  }
-  constexpr float largest = 0.05f;
-  return {eye.eye(), best->eye(), std::min(best->clearance() / 3, largest * model.radius), model.radius / 2};
-}
-
-// True if the walls around these positions belong to the whole model, not to a figure or a lamp in it.
-bool enclose_the_model(const ModelSamples& model, const std::vector<Panorama>& places) {
-  constexpr float least = 0.8f;
-  Bounds walls;
-  for (const Panorama& place : places)
-    for (const std::size_t i : place.seen()) walls.extend(model.samples[i].position);
-  if (walls.empty()) return false;
-  const Vec3 extent = walls.extent(), whole = model.bounds.extent();
-  return extent.x >= least * whole.x && extent.y >= least * whole.y && extent.z >= least * whole.z;
-}
-
-std::optional<StandInView> best_view_inside(const ModelSamples& model, std::span<const Candidate> from_outside,
-                                            bool is_dark_outside) {
-  constexpr float most_height = 0.6f;
-  constexpr double dull_share = 0.9, backs_share = 0.9;
-  const Outside outside(model, from_outside);
-  // Rooms are wider than high; chests often are not.
-  const Vec3 extent = model.bounds.extent();
-  const bool may_be_room = extent.y <= most_height * std::max(extent.x, extent.z) && outside.dull >= dull_share;
-  // Walls that viewers cull from outside, or the sphere of a sky.
-  const bool may_face_inwards = model.one_sided.is_certain && outside.backs >= backs_share;
-  if (!may_be_room && !may_face_inwards && !is_dark_outside) return {};
-  const std::vector<Panorama> rooms = surrounded_places(model);
-  if (!enclose_the_model(model, rooms)) return {};
-  if (!(may_be_room && has_things_inside(model, outside, rooms)) &&
-      !(may_face_inwards && shows_fronts_inside(model, rooms)) && !is_dark_outside)
-    return {};
-  double most = 0;
-  std::optional<StandInView> best;
-  for (const Panorama& room : rooms)
-    for (int i = 0; i < 8; ++i) {
-      const ViewFrame frame = frame_of({45.0f * static_cast<float>(i), 10});
-      const double amount = amount_seen(model, room, frame);
-      if (amount <= most) continue;
-      most = amount;
-      best = StandInView{
-          .frame = frame, .field_of_view = view_inside, .name = "from inside", .inside = with_lamp(model, rooms, room)};
-    }
-  return best;
-}
-
 }  // namespace
 
-StandInView stand_in_view(const SceneDescription& scene, const OneSided& one_sided, bool has_own_light,
-                          const std::optional<Vec3>& side_of_ground) {
+StandInView stand_in_view(const SceneDescription& scene, const OneSided& one_sided, std::vector<Bounds> parts,
+                          bool has_own_light, const std::optional<Vec3>& side_of_ground) {
   ModelSamples model(scene, one_sided);
   constexpr float largest = 1e18f;  // squares of distances must fit into floats
   if (model.samples.empty() || !(model.radius > 0) || !(model.radius < largest))
@@ -342,8 +194,15 @@ StandInView stand_in_view(const SceneDescription& scene, const OneSided& one_sid
   for (const Viewpoint& viewpoint : from)
     candidates.push_back({viewpoint, OutsideView(model, frame_of(viewpoint)), is_behind_ground(viewpoint)});
   const bool is_dark_outside = is_lit_inside_alone(model, candidates);
-  if (auto inside = best_view_inside(model, std::span(candidates).first(viewpoints.size()), is_dark_outside))
-    return *inside;
+  std::vector<const OutsideView*> around;
+  for (std::size_t i = 0; i < viewpoints.size(); ++i) around.push_back(&candidates[i].view);
+  for (const Part& part : parts_of(scene)) parts.push_back(part.box);
+  if (auto inside = view_inside(model, parts, around, is_dark_outside, is_open_room))
+    return {.frame = inside->frame,
+            .field_of_view = view_inside_angle,
+            .name = "from inside",
+            .up = inside->up,
+            .inside = inside};
   if (is_dark_outside) model.lit.clear();
   const Viewpoint& best = best_viewpoint(with_most_meshes(scene, model, candidates, is_open_room));
   return {.frame = frame_of(best),

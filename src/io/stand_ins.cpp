@@ -43,7 +43,7 @@ void add_camera(SceneDescription& scene, const StandInView& view) {
 }
 
 // Adds an invisible ball that emits light, so that white surfaces at the typical distance have radiance of about 1.
-void add_lamp(SceneDescription& scene, const StandInView::Inside& room) {
+void add_lamp(SceneDescription& scene, const ViewInside& room) {
   AreaLight& light = scene.area_lights.emplace_back();
   const float radiance = sqr(room.lamp_distance / room.lamp_radius);
   light.radiance.value = RgbSpectrum{{radiance, radiance, radiance}};
@@ -58,7 +58,8 @@ void add_lamp(SceneDescription& scene, const StandInView::Inside& room) {
   ball.location.file = scene.filename;
 }
 
-void add_studio(SceneDescription& scene, const Direction& up) {
+// The studio, with its radiances times `scale`.
+void add_studio(SceneDescription& scene, const Direction& up, float scale = 1) {
   constexpr int width = 256, height = width / 2;
   const auto texels = static_cast<std::size_t>(width) * height;
   InfiniteLight studio;
@@ -73,6 +74,7 @@ void add_studio(SceneDescription& scene, const Direction& up) {
       picture.rows.push_back({radiance, radiance, radiance});
     }
   studio.texels = std::make_shared<const SphericalTexels>(std::move(picture));
+  studio.radiance.scale = scale;
   const Vec3 seen = scene.view.camera.camera_to_world.start.vector({0, 0, -1});
   const Vec3 level = seen - dot(seen, up) * up;
   const Direction towards = length_squared(level) > 0 ? normalize(level) : Direction(0, 0, 1);
@@ -88,7 +90,7 @@ std::string message_of(const StandIns& lacking, const std::optional<StandInView>
   const bool is_inside = view && view->inside, hides_lights = view && view->hides_lights;
   const bool has_studio = !lacking.gets_environment && !is_inside;
   const std::string studio = "a studio of three soft lamps";
-  if (!view) return has_studio ? "the file has no light: " + studio + " stands in" : "";
+  if (!view) return lacking.light && has_studio ? "the file has no light: " + studio + " stands in" : "";
   std::string text = lacking.has_blind_camera ? "the file has no camera that sees anything" : "the file has no camera";
   if (hides_lights) text += ", and its lights are inside closed meshes, whose outside they do not illuminate";
   const bool has_lamp = lacking.light && is_inside, is_in_studio = (lacking.light || hides_lights) && has_studio;
@@ -101,6 +103,33 @@ std::string message_of(const StandIns& lacking, const std::optional<StandInView>
   if (has_lamp) text += ", lit by a lamp in the room,";
   if (is_in_studio) text += ", in " + studio + ",";
   return text + " stands in";
+}
+
+}  // namespace
+
+namespace {
+
+// True if light from around the scene cannot reach the camera's surroundings. A camera that frames the model is
+// outside.
+bool is_in_closed_room(const SceneDescription& scene, const ModelSamples& model) {
+  constexpr float least_closed = 0.95f;
+  if (scene.view.camera.subject) return false;
+  const Point eye = scene.view.camera.camera_to_world.start.point(Point(0));
+  return Panorama(model, eye, Panorama::Sight::through_glass).closed() >= least_closed;
+}
+
+// Light around metal and glass that reflect the darkness around the file's own lights.
+void add_image_light(SceneDescription& scene, const StandIns& lacking, const Direction& up) {
+  constexpr float share = 1.0f / 3;
+  const ModelSamples model(scene, lacking.one_sided);
+  if (model.samples.empty()) return;
+  const float irradiance = typical_irradiance(scene, model);
+  if (!(irradiance > 0) || is_in_closed_room(scene, model)) return;
+  add_studio(scene, up, share * irradiance / pi);
+  scene.warnings.push_back(
+      {{scene.filename},
+       "the file's lights are points and directions, of which metal and glass reflect next to nothing: a dim studio is "
+       "added, as viewers do; --environment studio --environment-scale 0 leaves it dark"});
 }
 
 }  // namespace
@@ -120,13 +149,13 @@ bool is_lit_by(const SceneDescription& scene, std::span<const Index> lamps) {
 
 void add_stand_ins(SceneDescription& scene, const StandIns& lacking) {
   scene.view.film.measures_exposure = !lacking.light || lacking.gets_environment;
-  if (!lacking.camera && !lacking.light) return;
+  if (!lacking.camera && !lacking.light && !lacking.reflects_darkness) return;
   std::optional<StandInView> view;
   bool has_ground = false;
   if (lacking.camera) {
     Grounds grounds(scene);
     has_ground = grounds.side().has_value();
-    view = stand_in_view(scene, lacking.one_sided, !lacking.light, grounds.side());
+    view = stand_in_view(scene, lacking.one_sided, lacking.parts, !lacking.light, grounds.side());
     add_camera(scene, *view);
     grounds.put_back(scene);
   }
@@ -135,6 +164,8 @@ void add_stand_ins(SceneDescription& scene, const StandIns& lacking) {
     scene.view.film.measures_exposure = true;  // walls may be close to the lamp
   } else if (lacking.light || (view && view->hides_lights)) {
     add_studio(scene, view ? view->up : Direction(0, 1, 0));
+  } else if (lacking.reflects_darkness && !lacking.gets_environment) {
+    add_image_light(scene, lacking, view ? view->up : Direction(0, 1, 0));
   }
   const std::string message = message_of(lacking, view, has_ground);
   if (!message.empty()) scene.warnings.push_back({{scene.filename}, message});

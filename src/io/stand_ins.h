@@ -4,6 +4,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "io/stand_in_view.h"
 #include "lanthorn/scene_description.h"
@@ -19,8 +20,10 @@ bool is_lit_by(const SceneDescription& scene, std::span<const description::Index
 struct StandIns {
   bool camera = false, light = false;
   OneSided one_sided = {};
-  bool has_blind_camera = false;  ///< `camera` is set although it has one, which sees nothing
-  bool gets_environment = false;  ///< the user's environment will replace the studio
+  std::vector<Bounds> parts = {};  ///< boxes of the file's objects, if they are not shapes
+  bool has_blind_camera = false;   ///< `camera` is set although it has one, which sees nothing
+  bool gets_environment = false;   ///< the user's environment will replace the studio
+  bool reflects_darkness = false;  ///< metal or glass is lit by its point, spot and distant lights alone
 };
 
 /// Result of a reader of model files.
@@ -38,7 +41,9 @@ struct ModelFile {
 ///
 /// The light is a studio: an environment of three large soft lights and a grey gradient, oriented by the camera. A
 /// white wall there has about radiance 1, so that its pictures need no exposure; pictures in the scene's own light
-/// measure it.
+/// measure it. Metal and glass that only point, spot and distant lights illuminate would reflect darkness, unlike in
+/// viewers, which add image light: they get the studio at a third of the lights' typical irradiance, unless the camera
+/// is in a closed room.
 void add_stand_ins(SceneDescription& scene, const StandIns& lacking);
 /// The file's scene, completed by default camera and light.
 SceneDescription with_stand_ins(ModelFile file);

@@ -71,6 +71,21 @@ std::vector<Bounds> bounds_of(const std::vector<Shape>& shapes) {
   return bounds;
 }
 
+std::vector<Part> parts_of(const SceneDescription& scene) {
+  std::vector<Part> parts;
+  const std::vector<Bounds> shapes = bounds_of(scene.shapes);
+  for (std::size_t i = 0; i < shapes.size(); ++i) parts.push_back({shapes[i], i, false});
+  std::vector<Bounds> objects(scene.objects.size());
+  for (std::size_t i = 0; i < objects.size(); ++i)
+    for (const Bounds& box : bounds_of(scene.objects[i].shapes)) objects[i].extend(box);
+  for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+    const Bounds& object = objects[scene.instances[i].object];
+    if (!object.empty()) parts.push_back({scene.instances[i].object_to_world.start.bounds(object), i, true});
+  }
+  std::erase_if(parts, [](const Part& part) { return part.box.empty(); });
+  return parts;
+}
+
 Bounds bounds_of(const SceneDescription& scene, const Transform& from_world) {
   return bounds_of(scene, std::array{from_world}).front();
 }

@@ -23,6 +23,15 @@ std::vector<Bounds> bounds_of(const std::vector<description::Shape>& shapes);
 /// Like the first function, for several spaces.
 std::vector<Bounds> bounds_of(const SceneDescription& scene, std::span<const Transform> from_world);
 
+/// A shape of the scene, or an instance.
+struct Part {
+  Bounds box;
+  std::size_t place = 0;  ///< in the scene's list of shapes or instances
+  bool is_instance = false;
+};
+/// The triangle meshes and instances with their bounding boxes in world space, which are not empty.
+std::vector<Part> parts_of(const SceneDescription& scene);
+
 /// All triangle meshes of a scene, positioned as when the shutter opens. Refers to the description.
 class Surfaces {
  public:

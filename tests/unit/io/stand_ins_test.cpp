@@ -125,6 +125,19 @@ std::vector<Shape> room(const Vec3& half, std::vector<Shape> things, int walls =
   things.insert(things.end(), all.begin(), all.begin() + walls);
   return things;
 }
+// These shapes as a single mesh, moved.
+Shape joined(const std::vector<Shape>& shapes, const Transform& place = {}) {
+  TriangleMesh all;
+  for (const Shape& shape : shapes) {
+    const auto& mesh = std::get<TriangleMesh>(shape.geometry);
+    const auto first = static_cast<std::uint32_t>(all.positions.size());
+    for (const Point& p : mesh.positions) all.positions.push_back(place.point(p));
+    for (const auto& [a, b, c] : mesh.triangles) all.triangles.push_back({first + a, first + b, first + c});
+  }
+  Shape shape;
+  shape.geometry = std::move(all);
+  return shape;
+}
 // Positions, from 0 to 1, of the corners of a box in a square picture. The box has this half extent and is centred at
 // `centre`.
 Bounds seen_box(const SceneDescription& scene, const Point& centre, float half) {
@@ -235,10 +248,10 @@ TEST(StandIns, TheUsersEnvironmentMovesNoCamera) {
 TEST(StandIns, ChestsEmptyRoomsAndOpenBoxesAreSeenFromOutside) {
   const Vec3 half(4, 1.5f, 3), chest(2, 2, 2);
   const Shape ball = sphere({1, -0.5f, 0}, 1);
-  EXPECT_FALSE(is_inside(seen(room(half, {}), {}), half));
+  EXPECT_FALSE(is_inside(seen({joined(room(half, {}))}, {}), half));
   EXPECT_FALSE(is_inside(seen(room(chest, {ball}), {}), chest));
   EXPECT_FALSE(is_inside(seen(room(half, {ball}, 5), {}), half));
-  EXPECT_FALSE(is_inside(seen(room(half, {sphere({1, -0.5f, 0}, 0.3f)}), {}), half));
+  EXPECT_FALSE(is_inside(seen({joined(room(half, {})), sphere({1, -0.5f, 0}, 0.3f)}, {}), half));
   // Not a box: a flattened ball with another one inside.
   Shape flat = sphere({0, 0, 0}, 3);
   for (Point& p : std::get<TriangleMesh>(flat.geometry).positions) p.y *= 0.5f;
@@ -284,7 +297,7 @@ TEST(StandIns, WhatFacesInwardsIsSeenFromInside) {
     return shapes;
   };
   const OneSided certain{{0}, true};
-  const std::vector<Shape> empty = inwards(room(half, {}));
+  const std::vector<Shape> empty = inwards({joined(room(half, {}))});
   EXPECT_TRUE(is_inside(seen(empty, certain), half));
   EXPECT_FALSE(is_inside(seen(empty, {{0}, false}), half)) << "may be wound the wrong way";
   EXPECT_FALSE(is_inside(seen(empty, {{}, true}), half)) << "has outsides";
@@ -303,6 +316,54 @@ TEST(StandIns, WhatFacesInwardsIsSeenFromInside) {
   std::vector<Shape> open = room(half, {});
   open[3] = square({-3, -1.5f, 0}, {1, 0, 0}, {0, 0, 3});
   EXPECT_FALSE(is_inside(seen(inwards(open), certain), half));
+}
+
+// Six separate walls are a room, even an empty one, with y up or with z up.
+TEST(StandIns, RoomsOfSeparateWallsAreSeenFromInside) {
+  const auto inside = [](const std::vector<Shape>& shapes, const Vec3& half) {
+    const SceneDescription scene = seen(shapes, {});
+    if (is_inside(scene, half)) EXPECT_EQ(scene.area_lights.size(), 1u) << "lit";
+    return is_inside(scene, half);
+  };
+  const Vec3 half(3, 1.3f, 2.5f), upright(3, 2.5f, 1.3f);
+  EXPECT_TRUE(inside(room(half, {}), half));
+  EXPECT_TRUE(inside(room(upright, {}), upright)) << "z up";
+  EXPECT_TRUE(inside(room({1.6f, 1.25f, 1.6f}, {}), {1.6f, 1.25f, 1.6f})) << "small";
+  for (int wall = 0; wall < 6; ++wall) {
+    std::vector<Shape> open = room(half, {});
+    open.erase(open.begin() + wall);
+    EXPECT_FALSE(inside(open, half)) << "without wall " << wall;
+  }
+  // Walls of some thickness, of which one has a window; and in one piece each.
+  std::vector<Shape> thick;
+  const auto slab = [](const Point& centre, const Vec3& size) { return joined(room(size, {}), translate(centre)); };
+  for (const float side : {-1.0f, 1.0f}) {
+    thick.push_back(slab({3.1f * side, 0, 0}, {0.1f, 1.3f, 2.5f}));
+    thick.push_back(slab({0, 1.4f * side, 0}, {3.2f, 0.1f, 2.7f}));
+    thick.push_back(slab({2.2f * side, 0, 2.6f}, {0.9f, 1.3f, 0.1f}));
+    thick.push_back(slab({0, 0.95f * side, 2.6f}, {1.3f, 0.35f, 0.1f}));
+  }
+  thick.push_back(slab({0, 0, -2.6f}, {3.2f, 1.3f, 0.1f}));
+  EXPECT_TRUE(inside(thick, {3, 1.3f, 2.5f}));
+  // A sideboard, a wardrobe and a cube.
+  for (const Vec3& furniture : {Vec3(0.8f, 0.4f, 0.22f), Vec3(0.5f, 1, 0.3f), Vec3(1)})
+    EXPECT_FALSE(inside(room(furniture, {}), furniture)) << furniture.x;
+  // Walls of glTF whose backs viewers do not draw.
+  EXPECT_FALSE(is_inside(seen(room(half, {}), {{0}, true}), half));
+}
+
+// A room of one mesh with things on the floor of z.
+TEST(StandIns, FurnishedRoomsMayHaveZUp) {
+  const Vec3 half(4, 3, 1.5f);
+  const auto furnished = [&](float height) {
+    return seen({joined(room(half, {})), sphere({-2, 1, height}, 0.6f), sphere({1, -1.5f, height}, 0.6f),
+                 sphere({2, 1, height}, 0.6f)},
+                {});
+  };
+  const SceneDescription scene = furnished(-0.8f);
+  ASSERT_TRUE(is_inside(scene, half));
+  EXPECT_GT(scene.view.camera.camera_to_world.start.vector({0, 1, 0}).z, 0.9f) << "up in the picture";
+  EXPECT_FALSE(is_inside(furnished(0), half)) << "nothing stands on this floor";
 }
 
 SceneDescription seen_in_own_light(SceneDescription scene) {
@@ -537,6 +598,36 @@ TEST(StandIns, OneLineSaysWhatStandsIn) {
   EXPECT_EQ(said(true, false), "model: the file has no camera: a view of all of it from the front stands in\n");
   EXPECT_EQ(said(false, true), "model: the file has no light: a studio of three soft lamps stands in\n");
   EXPECT_EQ(said(false, false), "");
+}
+
+// A wall that a distant light of irradiance 3 meets at right angles, from the camera's side. A third of that light, as
+// the radiance of a white wall, is 3 / 3 / pi.
+TEST(StandInLight, MetalUnderPointLightsGetsADimStudio) {
+  SceneDescription scene = scene_of({square({0, 0, 0}, {1, 0, 0}, {0, 1, 0})});
+  add_light(scene, distant_light({0, 0, 1}, 3));
+  scene.view.camera.camera_to_world = AnimatedTransform(look_at({0, 0, 9}, {0, 0, 0}, {0, 1, 0}).inverted());
+  const auto lit = [](SceneDescription s, const StandIns& lacking) {
+    add_stand_ins(s, lacking);
+    return s;
+  };
+  const SceneDescription helped = lit(scene, {.reflects_darkness = true});
+  ASSERT_EQ(helped.lights.size(), 2u);
+  EXPECT_NEAR(std::get<InfiniteLight>(helped.lights[1].node).radiance.scale, 1 / pi, 1e-3f);
+  EXPECT_TRUE(helped.view.film.measures_exposure);
+  ASSERT_EQ(helped.warnings.size(), 1u);
+  EXPECT_NE(helped.warnings[0].message.find("a dim studio is added"), std::string::npos);
+  EXPECT_EQ(lit(scene, {}).lights.size(), 1u);
+  EXPECT_EQ(lit(scene, {.gets_environment = true, .reflects_darkness = true}).lights.size(), 1u);
+  SceneDescription ball = scene_of({sphere({0, 0, 0}, 1)});
+  add_light(ball, distant_light({0, 0, 1}, 3));
+  EXPECT_EQ(lit(ball, {.camera = true, .reflects_darkness = true}).lights.size(), 2u);
+  // No light comes into a closed room.
+  SceneDescription inside = scene_of(room({2, 1, 2}, {}));
+  add_light(inside, point_light({0, 0, 0}));
+  inside.view.camera.camera_to_world = AnimatedTransform(look_at({1, 0, 1}, {0, 0, 0}, {0, 1, 0}).inverted());
+  EXPECT_EQ(lit(inside, {.reflects_darkness = true}).lights.size(), 1u);
+  inside.view.camera.camera_to_world = AnimatedTransform(look_at({9, 3, 9}, {0, 0, 0}, {0, 1, 0}).inverted());
+  EXPECT_EQ(lit(inside, {.reflects_darkness = true}).lights.size(), 2u);
 }
 
 TEST(StandIns, ASceneIsLitByLampsThatSendEnoughLight) {
