@@ -20,6 +20,9 @@ std::string excerpt(std::string_view text);
 /// `text` in quotes for a message: printable, quotes and backslashes in it escaped, and cut after 32 characters.
 std::string in_quotes(std::string_view text);
 
+/// The first eight names in quotes, separated by commas; "..." stands for the rest.
+std::string quoted_list(std::span<const std::string> names);
+
 /// The message with "..." in place of all quoted text, so that it reveals nothing of a file's content.
 std::string without_quotations(std::string_view message);
 

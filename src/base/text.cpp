@@ -78,6 +78,13 @@ std::string in_quotes(std::string_view text) {
   return result + (text.empty() ? "\"" : "...\"");
 }
 
+std::string quoted_list(std::span<const std::string> names) {
+  constexpr std::size_t most = 8;
+  std::string result;
+  for (std::size_t i = 0; i < std::min(names.size(), most); ++i) result += (i > 0 ? ", " : "") + in_quotes(names[i]);
+  return result + (names.size() > most ? ", ..." : "");
+}
+
 std::string without_quotations(std::string_view message) {
   std::string result;
   bool quoted = false;

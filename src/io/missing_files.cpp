@@ -47,37 +47,50 @@ std::vector<MissingFile> missing_files(const SceneDescription& scene, const File
   return missing;
 }
 
+void sort_by_line(std::vector<MissingFile>& missing) {
+  std::sort(missing.begin(), missing.end(), [](const auto& a, const auto& b) {
+    return std::tie(a.location.line, a.name) < std::tie(b.location.line, b.name);
+  });
+}
+
+std::string names_of(const std::vector<MissingFile>& missing) {
+  constexpr std::size_t most_named = 20;
+  std::string names;
+  for (std::size_t i = 0; i < std::min(missing.size(), most_named); ++i)
+    names += (i == 0 ? "" : ", ") + file_in_quotes(missing[i].name);
+  return names + (missing.size() > most_named ? ", ..." : "");
+}
+
 }  // namespace
 
-void report_missing_files(SceneDescription& scene, const FileAccess& access, const Error* problem) {
+void warn_of_missing_files(SceneDescription& scene, const FileAccess& access) {
   std::vector<MissingFile> missing = missing_files(scene, access);
-  if (access.skip_missing) {
-    for (const MissingFile& file : missing)
-      scene.warnings.push_back(
-          {file.location,
-           "the file " + file_in_quotes(file.name) +
-               " is missing: a mesh or medium is left out, a texture has the neutral value of its use (a grey colour, "
-               "no "
-               "emission, no relief), a measured material is grey, a spectrum 1, an included file empty, a lens one of "
-               "50 mm"});
-    return;
-  }
+  if (missing.empty()) return;
+  sort_by_line(missing);
+  const std::string which =
+      missing.size() == 1
+          ? "the file " + names_of(missing) + " is missing"
+          : std::to_string(missing.size()) + " files are missing, the first of them here: " + names_of(missing);
+  scene.warnings.push_back(
+      {missing.front().location,
+       which +
+           ": a mesh or medium is left out, a texture has the neutral value of its use (a grey colour, no emission, no "
+           "relief), a measured material is grey, a spectrum 1, an included file empty, a lens one of 50 mm"});
+}
+
+void report_missing_files(SceneDescription& scene, const FileAccess& access, const Error* problem) {
+  if (access.skip_missing) return warn_of_missing_files(scene, access);
+  std::vector<MissingFile> missing = missing_files(scene, access);
   if (missing.empty()) return;
   if (missing.size() == 1)
     throw Error(
         problem != nullptr ? problem->where : missing.front().location,
         (problem != nullptr ? problem->message : missing.front().problem) + "; --missing skip renders without it");
-  std::sort(missing.begin(), missing.end(), [](const auto& a, const auto& b) {
-    return std::tie(a.location.line, a.name) < std::tie(b.location.line, b.name);
-  });
-  constexpr std::size_t most_named = 20;
-  std::string names;
-  for (std::size_t i = 0; i < std::min(missing.size(), most_named); ++i)
-    names += (i == 0 ? "" : ", ") + file_in_quotes(missing[i].name);
+  sort_by_line(missing);
   const auto pointers = std::count_if(missing.begin(), missing.end(), [](const auto& file) { return file.is_pointer; });
   throw Error(missing.front().location,
-              std::to_string(missing.size()) + " files are missing, the first of them here: " + names +
-                  (missing.size() > most_named ? ", ..." : "") + "; --missing skip renders without them" +
+              std::to_string(missing.size()) + " files are missing, the first of them here: " + names_of(missing) +
+                  "; --missing skip renders without them" +
                   (pointers > 0 ? ", git lfs pull fetches " + std::to_string(pointers) + " of them" : ""));
 }
 

@@ -18,9 +18,12 @@ std::string file_in_quotes(const std::string& name);
 std::filesystem::path find_file(const std::filesystem::path& folder, const std::string& name, const FileAccess* access,
                                 const std::function<void(std::string)>& warn);
 
+/// Adds a single warning that names the scene's files that do not exist, if any.
+void warn_of_missing_files(SceneDescription& scene, const FileAccess& access);
+
 /// Checks that the scene's files exist. If any are missing, throws a single Error that names them all; for a single
-/// file, `problem` if the caller that tried to read it has a more specific error. If missing files are skipped, adds a
-/// warning for each instead.
+/// file, `problem` if the caller that tried to read it has a more specific error. If missing files are skipped, warns
+/// instead.
 void report_missing_files(SceneDescription& scene, const FileAccess& access, const Error* problem = nullptr);
 
 }  // namespace lanthorn

@@ -250,7 +250,7 @@ TEST_F(FirstSight, AllMissingFilesAreNamedAtOnce) {
     EXPECT_TRUE(contains(said, name)) << said;
   const Ending ending = run({"render", "a.pbrt", "--missing", "skip", "-i", "path", "-p", "1", "-o", "a.exr"});
   EXPECT_EQ(ending.exit_code, 0) << ending.err;
-  for (const char* name : {"a.pbrt:18:", "\"no.png\" is missing", "\"no.ply\" is missing", "\"sky.exr\" is missing"})
+  for (const char* name : {"a.pbrt:18:", "3 files are missing", "\"no.png\"", "\"no.ply\"", "\"sky.exr\""})
     EXPECT_TRUE(contains(ending.err, name)) << ending.err;
   refuse({"info", "a.pbrt", "--missing", "perhaps"}, "--missing");
 }

@@ -3,6 +3,8 @@
 // The format: Wavefront, "MTL Material Format", Advanced Visualizer manual (1995); its PBR extension: Clara.io (2014).
 #include "io/obj/materials.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -27,7 +29,7 @@ struct Source {
   int illumination = 2;
   std::optional<ImageTexture> map_kd, map_ks, map_ke, map_d, map_pr, map_pm, norm, bump;
   float bump_multiplier = 1;
-  bool lost_colours = false, lost_emission = false;  ///< the image is missing and skipped
+  bool lost_colours = false, lost_emission = false;  ///< the image is missing
   std::map<std::string, File> files;
 };
 
@@ -55,7 +57,7 @@ std::string lower(std::string_view text) {
 class MaterialFile {
  public:
   MaterialFile(std::string_view text, const std::filesystem::path& folder, const std::string& name,
-               const FileAccess* access, SceneDescription& scene, Materials& materials, const Warn& warn)
+               const FileAccess* access, SceneDescription& scene, Materials& materials, const Warnings& warnings)
       : words_(text, name),
         names_alpha_(text.starts_with(start_by_blender)),
         by_blender_(has_blender_version(text)),
@@ -63,7 +65,7 @@ class MaterialFile {
         access_(access),
         scene_(scene),
         materials_(materials),
-        warn_(warn) {}
+        warnings_(warnings) {}
 
   void read() {
     std::optional<Source> current;
@@ -75,7 +77,7 @@ class MaterialFile {
         current->location = words_.location(key);
         current->name = words_.rest().text;
         if (current->name.empty())
-          warn_("mtl name", words_.location(), "the material has no name: usemtl without a name refers to it");
+          warnings_.add("mtl name", words_.location(), "the material has no name: usemtl without a name refers to it");
       } else if (current) {
         read_line(key, *current);
       } else {
@@ -91,8 +93,9 @@ class MaterialFile {
     if (read_colour(name, m) || read_number(name, m) || read_map(name, m)) return;
     // Ambient light has no physical meaning; sharpness belongs to reflection maps.
     if (name == "ka" || name == "map_ka" || name == "sharpness") return;
-    warn_("mtl " + std::string(key.text), words_.location(key),
-          in_quotes(key.text) + " in materials is not supported: ignored");
+    warnings_.add_name("mtl keyword", words_.location(key), std::string(key.text), [](const auto& names) {
+      return fmt::format("{} in materials {} not supported: ignored", quoted_list(names), is_or_are(names));
+    });
   }
 
   bool read_colour(std::string_view name, Source& m) {
@@ -103,8 +106,8 @@ class MaterialFile {
     Rgb* const colour = found->second;
     const Word first = words_.word("a colour");
     if (first.text == "spectral" || first.text == "xyz") {
-      warn_("mtl " + std::string(first.text), words_.location(first),
-            "colours specified by " + in_quotes(first.text) + " are not supported: ignored");
+      warnings_.add("mtl " + std::string(first.text), words_.location(first),
+                    "colours specified by " + in_quotes(first.text) + " are not supported: ignored");
       return true;
     }
     colour->r = colour->g = colour->b = not_negative(first);
@@ -144,7 +147,7 @@ class MaterialFile {
       if (value.text == "-halo") value = words_.word("a number");
       *target = not_negative(value);
       if (name == "ni" && m.index == 0.0f)
-        warn_("mtl Ni", words_.location(value), "the index of refraction Ni is 0: 1.5 is used");
+        warnings_.add("mtl Ni", words_.location(value), "the index of refraction Ni is 0: 1.5 is used");
       return true;
     }
     return false;
@@ -175,7 +178,7 @@ class MaterialFile {
   }
 
   bool is_left_out(const ImageTexture& image) const {
-    return access_ != nullptr && access_->skip_missing && access_->is_missing(image.filename);
+    return access_ != nullptr && access_->is_missing(image.filename);
   }
   // A lost image is replaced by the neutral value of its role: grey colours and no emission; otherwise it has no
   // effect.
@@ -198,7 +201,7 @@ class MaterialFile {
     if (!more.text.empty()) file.assign(word.text.data(), more.text.data() + more.text.size());
     std::replace(file.begin(), file.end(), '\\', '/');
     const std::filesystem::path path = find_file(folder_, file, access_, [&](const std::string& message) {
-      warn_("elsewhere", words_.location(word), message);
+      warnings_.add("elsewhere", words_.location(word), message);
     });
     m.files.try_emplace(file, File{path, {}, words_.location(word)});
     image.filename = path.string();
@@ -227,8 +230,10 @@ class MaterialFile {
     } else if (name == "clamp") {
       if (words_.word("on or off").text == "on") image.wrap = Wrap::clamp;
     } else {
-      warn_("mtl option " + std::string(name), words_.location(option),
-            "the option " + in_quotes(option.text) + " of texture maps is not supported: ignored");
+      warnings_.add_name("mtl option", words_.location(option), std::string(option.text), [](const auto& names) {
+        return fmt::format("the option{} {} of texture maps {} not supported: ignored", names.size() > 1 ? "s" : "",
+                           quoted_list(names), is_or_are(names));
+      });
       if (name == "colorspace" || name == "imfchan" || name == "type") words_.word("its value");
       Word next = words_.word("a file name");
       while (looks_like_number(next.text) || next.text == "on" || next.text == "off") next = words_.word("a file name");
@@ -345,9 +350,9 @@ class MaterialFile {
     const bool is_glass = std::holds_alternative<DielectricMaterial>(scene_.materials.back().node);
     const float opacity = std::clamp(m.opacity.value_or(1), 0.0f, 1.0f);
     if (opacity == 0 && !is_glass && !m.map_d)
-      warn_("mtl d", m.location,
-            "material " + in_quotes(m.name) +
-                " would be invisible because of \"d\" or \"Tr\", usually a mistake: it is opaque");
+      warnings_.add("mtl d", m.location,
+                    "material " + in_quotes(m.name) +
+                        " would be invisible because of \"d\" or \"Tr\", usually a mistake: it is opaque");
     if (m.map_d)
       surface.alpha = add_float(m, *m.map_d, Encoding::linear);
     else if (!is_glass)
@@ -360,8 +365,8 @@ class MaterialFile {
       scene_.area_lights.push_back(light);
     }
     if (!materials_.emplace(m.name, surface).second)
-      warn_("mtl twice", m.location,
-            "material " + in_quotes(m.name) + " is defined twice: the first definition is used");
+      warnings_.add("mtl twice", m.location,
+                    "material " + in_quotes(m.name) + " is defined twice: the first definition is used");
   }
 
   Words words_;
@@ -371,7 +376,7 @@ class MaterialFile {
   const FileAccess* access_;
   SceneDescription& scene_;
   Materials& materials_;
-  const Warn& warn_;
+  const Warnings& warnings_;
 };
 
 SpectrumParameter* reflectance_of(Material& material) {
@@ -388,8 +393,8 @@ SpectrumParameter* reflectance_of(Material& material) {
 }  // namespace
 
 void read_materials(std::string_view text, const std::filesystem::path& folder, const std::string& name,
-                    const FileAccess* access, SceneDescription& scene, Materials& materials, const Warn& warn) {
-  MaterialFile(text, folder, name, access, scene, materials, warn).read();
+                    const FileAccess* access, SceneDescription& scene, Materials& materials, const Warnings& warnings) {
+  MaterialFile(text, folder, name, access, scene, materials, warnings).read();
 }
 
 void add_vertex_colors(SceneDescription& scene) {

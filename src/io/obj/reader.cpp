@@ -3,6 +3,8 @@
 // The format: Wavefront, "Object Files (.obj)", Advanced Visualizer manual, appendix B1 (1995).
 #include "io/obj/reader.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -61,7 +63,9 @@ class Reader {
     std::set<Index> materials;
     for (Index i = 0; i < scene_.materials.size(); ++i) materials.insert(materials.end(), i);
     const bool is_lit = is_lit_by(scene_, lamps);
-    return {std::move(scene_), {true, !is_lit, {std::move(materials), false}}};
+    ModelFile file{std::move(scene_), {true, !is_lit, {std::move(materials), false}}};
+    for (const auto& [name, box] : objects_) file.lacking.parts.push_back(box);
+    return file;
   }
 
  private:
@@ -82,6 +86,10 @@ class Reader {
   void warn(const std::string& key, const SourceLocation& place, const std::string& message) {
     warnings_.add(scene_.warnings, key, place, message);
   }
+  void warn_of_name(const std::string& key, const SourceLocation& place, const std::string& name,
+                    const MessageOfNames& message_of) {
+    warnings_.add_name(scene_.warnings, key, place, name, message_of);
+  }
 
   void read_line(const Word& key) {
     const std::string_view word = key.text;
@@ -101,8 +109,12 @@ class Reader {
       read_libraries();
     } else if (word == "s") {
       read_smoothing();
-    } else if (word != "g" && word != "o") {
-      warn("obj " + std::string(word), words_.location(key), in_quotes(word) + " is not supported: ignored");
+    } else if (word == "g" || word == "o") {
+      object_ = &objects_[std::string(words_.rest().text)];
+    } else {
+      warn_of_name("keyword", words_.location(key), std::string(word), [](const auto& names) {
+        return quoted_list(names) + " " + is_or_are(names) + " not supported: ignored";
+      });
     }
   }
 
@@ -174,7 +186,12 @@ class Reader {
   }
 
   void warn_of_library(const Error& problem) {
-    warn("mtllib " + problem.message, problem.where, problem.message + ": its materials are left out");
+    warn_of_name("mtllib", problem.where, problem.message, [](const auto& problems) {
+      constexpr std::size_t most = 8;
+      return fmt::format("{}{}: {} materials are left out",
+                         fmt::join(problems.begin(), problems.begin() + std::min(problems.size(), most), ", "),
+                         problems.size() > most ? ", ..." : "", problems.size() > 1 ? "their" : "its");
+    });
   }
 
   // Returns the error if the file cannot be read.
@@ -196,9 +213,11 @@ class Reader {
     }
     libraries_.insert(path);
     read_materials(text, path.parent_path(), name, access_, scene_, materials_,
-                   [&](const std::string& key, const SourceLocation& place, const std::string& message) {
-                     warn(key, place, message);
-                   });
+                   {[&](const std::string& key, const SourceLocation& place, const std::string& message) {
+                      warn(key, place, message);
+                    },
+                    [&](const std::string& key, const SourceLocation& place, const std::string& word,
+                        const MessageOfNames& message_of) { warn_of_name(key, place, word, message_of); }});
     return {};
   }
 
@@ -255,6 +274,8 @@ class Reader {
       warn("small faces", words_.location(key), "faces of fewer than three corners are left out");
       return;
     }
+    if (object_ != nullptr)
+      for (const Corner& c : corners_) object_->extend(positions_[c.v]);
     if (all_have(&Corner::vn)) return add_face(key);
     const BareFace face{bare_corners_.size(), static_cast<std::uint32_t>(corners_.size()), smoothing_group_};
     bare_corners_.insert(bare_corners_.end(), corners_.begin(), corners_.end());
@@ -336,9 +357,10 @@ class Reader {
   const Surface& surface(const std::string& material, const SourceLocation& place) {
     if (const auto found = materials_.find(material); found != materials_.end()) return found->second;
     if (!material.empty())
-      warn("material " + material, place,
-           "there is no material " + in_quotes(material) +
-               (colors_.empty() ? ": grey is used" : ": the colours of its vertices are used"));
+      warn_of_name("material", place, material, [&](const auto& names) {
+        return (names.size() > 1 ? "there are no materials " : "there is no material ") + quoted_list(names) +
+               (colors_.empty() ? ": grey is used" : ": the colours of the vertices are used");
+      });
     const auto [it, is_new] = materials_.try_emplace("");
     if (is_new) {
       it->second.material = static_cast<Index>(scene_.materials.size());
@@ -401,9 +423,11 @@ class Reader {
   std::vector<Point> positions_;
   std::vector<Normal> normals_;
   std::vector<Vec2> uvs_;
-  std::vector<Vec3> colors_;  // one per position; empty until one has a colour
-  float largest_color_ = 0;   // largest colour component
-  std::string material_;      // current
+  std::vector<Vec3> colors_;               // one per position; empty until one has a colour
+  float largest_color_ = 0;                // largest colour component
+  std::string material_;                   // current
+  std::map<std::string, Bounds> objects_;  // boxes, by the names of o and g
+  Bounds* object_ = nullptr;               // current
   std::map<std::string, std::uint32_t> smoothing_groups_;
   std::uint32_t smoothing_group_ = flat_group;  // current
   bool names_smoothing_groups_ = false, has_images_ = false;
@@ -425,7 +449,7 @@ class Reader {
 ModelFile read(std::string_view text, const std::filesystem::path& folder, const std::string& name,
                FileReader read_file, const FileAccess* access) {
   ModelFile file = Reader(text, folder, name, std::move(read_file), access).read();
-  if (access != nullptr) report_missing_files(file.scene, *access);
+  if (access != nullptr) warn_of_missing_files(file.scene, *access);  // a model has its shape without its pictures
   return file;
 }
 
