@@ -105,7 +105,11 @@ OptionTable scene_options(ReadOptions& o) {
   return joined({{.names = "--camera",
                   .value = into(o.camera, text_type("NAME")),
                   .brief = "A camera of a glTF file, by name or number (from 1)",
-                  .otherwise = "the first one"}},
+                  .otherwise = "the first one"},
+                 {.names = "--variant",
+                  .value = into(o.variant, text_type("NAME")),
+                  .brief = "A variant of a glTF file's materials, by name or number (from 1)",
+                  .otherwise = "the materials that the file gives to its meshes"}},
                 environment_options(o.environment));
 }
 

@@ -35,6 +35,7 @@ struct ReadOptions {
   bool window_glass = false;        ///< calls `replace_window_glass`
   std::optional<double> at{};       ///< seconds into the first animation of a glTF file; nullopt: the rest pose
   std::string camera{};             ///< of a glTF file: name, or number starting at 1; empty: the first one
+  std::string variant{};            ///< of a glTF file's materials: name, or number starting at 1; empty: the default
   EnvironmentChoice environment{};  ///< calls `replace_environment`, unless it is the scene's own
 };
 
@@ -191,6 +192,9 @@ std::vector<description::Warning> warnings_of(const Scene& scene, const ViewDesc
 /// Why a picture of this view is entirely black, as the end of a message: the scene has no light, its lights have no
 /// power, the camera sees no surface, all visible surfaces are sealed off from the lights, ...
 std::string reason_for_black(const Scene& scene, const ViewDescription& view);
+/// Why hardly any light arrives in a picture of this view that is not black, likewise: the camera sees no surface or is
+/// enclosed, no light is in sight of what it sees, or the lights are faint.
+std::string reason_for_faint(const Scene& scene, const ViewDescription& view);
 
 /// What is in a scene.
 struct SceneSummary {

@@ -114,7 +114,6 @@ struct ImageTexture {
   /// Channel that a float texture reads (0 is red; a grey image has its value in 0 to 2; a missing alpha is 1).
   /// nullopt: see TextureImage::scalar.
   std::optional<int> channel;
-  std::optional<float> threshold;  ///< for float textures: results from this value on become 1, smaller ones 0
 };
 /// tex1 where the sum of the floors of the coordinates is even, else tex2; "dimension" 3 has a SolidMapping.
 template <class Parameter>
@@ -134,6 +133,12 @@ struct MixTexture {
 };
 /// The interpolated colours of a mesh's vertices; a float texture reads their alpha. 1 on surfaces without colours.
 struct VertexColorTexture {};
+/// 1 where `value` is at least `least`, else 0.
+template <class Parameter>
+struct ThresholdTexture {
+  Parameter value;
+  float least = 0.5f;
+};
 template <class Parameter>
 struct ConstantTexture {
   Parameter value;
@@ -185,7 +190,7 @@ struct FloatTexture {
   std::variant<ConstantTexture<FloatParameter>, ImageTexture, Checkerboard<FloatParameter>,
                ScaleTexture<FloatParameter>, MixTexture<FloatParameter>, DirectionMixTexture<FloatParameter>,
                BilerpTexture<FloatParameter>, DotsTexture<FloatParameter>, FbmTexture, WrinkledTexture, WindyTexture,
-               VertexColorTexture>
+               VertexColorTexture, ThresholdTexture<FloatParameter>>
       node;
   SourceLocation location;
 };

@@ -24,9 +24,14 @@ SeenScene built(SceneDescription description) {
 }
 
 SeenScene load_file(const std::filesystem::path& path, const py::object& environment, const std::string& camera,
-                    const std::optional<double>& at, bool sandbox, bool skip_missing, bool window_glass) {
-  ReadOptions options{
-      .sandbox = sandbox, .skip_missing = skip_missing, .window_glass = window_glass, .at = at, .camera = camera};
+                    const std::string& variant, const std::optional<double>& at, bool sandbox, bool skip_missing,
+                    bool window_glass) {
+  ReadOptions options{.sandbox = sandbox,
+                      .skip_missing = skip_missing,
+                      .window_glass = window_glass,
+                      .at = at,
+                      .camera = camera,
+                      .variant = variant};
   if (!environment.is_none()) options.environment = environment_of(environment);
   const py::gil_scoped_release release;
   return built(read_scene(path, options));
@@ -207,12 +212,14 @@ void bind_scene(py::module_& module) {
       .def("__repr__", &text_of);
   module.def(
       "load_file", &load_file, py::arg("path"), py::kw_only(), py::arg("environment") = py::none(),
-      py::arg("camera") = "", py::arg("at") = py::none(), py::arg("sandbox") = false, py::arg("skip_missing") = false,
-      py::arg("window_glass") = false,
+      py::arg("camera") = "", py::arg("variant") = "", py::arg("at") = py::none(), py::arg("sandbox") = false,
+      py::arg("skip_missing") = false, py::arg("window_glass") = false,
       "Reads a scene from a .pbrt, .gltf, .glb or .obj file, each also gzipped, and builds it.\n\n"
       "environment: a name (see `environments`), an image file, or a dict {'source', 'rotation' (degrees), 'scale',\n"
-      "'up' ('y' or 'z')}, which replaces the scene's own. camera: of a glTF file, name or number from 1. at: seconds\n"
-      "into a glTF animation. sandbox: reads only files below the scene's folder. skip_missing: continues without\n"
+      "'up' ('y' or 'z')}, which replaces the scene's own. camera, variant (of the materials): of a glTF file, name "
+      "or\n"
+      "number from 1. at: seconds into a glTF animation. sandbox: reads only files below the scene's folder. "
+      "skip_missing: continues without\n"
       "missing files. window_glass: light passes straight through clear panes.\n"
       "Raises Error with file, line and column.");
   module.def("load_string", &load_string, py::arg("text"), py::kw_only(), py::arg("folder") = ".",

@@ -141,6 +141,8 @@ SceneSource::SceneSource(const std::filesystem::path& path, const ReadOptions& o
                 way_of_other_formats(scene_extension(path)));
   if (!options.camera.empty() && !is_gltf(path))
     throw Error(name_ + ": --camera: only glTF files have several cameras");
+  if (!options.variant.empty() && !is_gltf(path))
+    throw Error(name_ + ": --variant: only glTF files have variants of their materials");
 }
 SceneSource::~SceneSource() = default;
 
@@ -159,13 +161,17 @@ SceneDescription SceneSource::read(const std::optional<double>& seconds, const M
   files_ = scene.files;
   if (!options_.camera.empty())
     scene.hash = hash_words({scene.hash, hash_bytes(std::as_bytes(std::span(options_.camera)))});
+  if (!options_.variant.empty()) {
+    const std::string variant = "variant " + options_.variant;  // differs from a camera of this name
+    scene.hash = hash_words({scene.hash, hash_bytes(std::as_bytes(std::span(variant)))});
+  }
   if (seconds) scene.hash = hash_words({scene.hash, std::bit_cast<std::uint64_t>(*seconds)});
   return scene;
 }
 
 SceneDescription SceneSource::read_model(const std::optional<double>& seconds) {
   if (!gltf_) gltf_ = std::make_unique<gltf::File>(bytes_, folder_, name_, reader(access_), &access_);
-  return completed(gltf_->read({seconds, options_.camera}), options_);
+  return completed(gltf_->read({seconds, options_.camera, options_.variant}), options_);
 }
 
 UpgradedScene upgrade_pbrt(const std::filesystem::path& path, const std::filesystem::path& target,

@@ -112,6 +112,10 @@ auto combined(const DirectionMixTexture<Input>& t, const TexturePoint& at, const
   return mixed(t.tex2, t.tex1, std::fabs(dot(at.normal, t.direction)), get);
 }
 template <class Input, class Get>
+float combined(const ThresholdTexture<Input>& t, const TexturePoint&, const Get& get) {
+  return get(t.value) >= t.least ? 1.0f : 0.0f;
+}
+template <class Input, class Get>
 auto combined(const BilerpTexture<Input>& t, const TexturePoint& at, const Get& get) {
   const Vec2 st = plane_point(t.mapping, at);
   return (1 - st.y) * mixed(t.v00, t.v10, st.x, get) + st.y * mixed(t.v01, t.v11, st.x, get);
@@ -203,6 +207,7 @@ struct TextureGraph::Compiler {
   DotsTexture<Input> node(const DotsTexture<P>& t) {
     return {t.mapping, input(t.inside), input(t.outside)};
   }
+  ThresholdTexture<Input> node(const ThresholdTexture<FloatParameter>& t) { return {input(t.value), t.least}; }
   FbmTexture node(const FbmTexture& t) const { return t; }
   WrinkledTexture node(const WrinkledTexture& t) const { return t; }
   WindyTexture node(const WindyTexture& t) const { return t; }
@@ -314,12 +319,14 @@ ImageInput TextureGraph::compile_image(const ImageTexture& texture, const Source
           texture.tint,
           texture.invert,
           role,
-          texture.channel,
-          texture.threshold};
+          texture.channel};
 }
 
 FloatInput TextureGraph::without_opaque_image(const FloatInput& alpha) const {
-  const auto* image = alpha.node ? std::get_if<ImageInput>(&float_nodes_[*alpha.node]) : nullptr;
+  const FloatNode* node = alpha.node ? &float_nodes_[*alpha.node] : nullptr;
+  if (const auto* mask = node != nullptr ? std::get_if<ThresholdTexture<FloatInput>>(node) : nullptr)
+    node = mask->value.node ? &float_nodes_[*mask->value.node] : nullptr;
+  const auto* image = node != nullptr ? std::get_if<ImageInput>(node) : nullptr;
   const bool is_alpha = image != nullptr && image->channel == alpha_channel && !image->image->has_alpha();
   const auto shows_nothing = [](Wrap wrap) { return wrap == Wrap::black; };
   if (!is_alpha || shows_nothing(image->wrap.s) || shows_nothing(image->wrap.t)) return alpha;
@@ -395,9 +402,8 @@ struct TextureGraph::FloatLookup {
   float operator()(const FloatInput& input) const { return graph.evaluate(input, at); }
 
   float value(const ImageInput& t) const {
-    float v = t.scale * t.image->scalar(plane_point(t.mapping, at), t.wrap, t.filter, t.channel);
-    if (t.invert) v = std::fmax(0.0f, 1 - v);
-    return t.threshold ? static_cast<float>(v >= *t.threshold) : v;
+    const float v = t.scale * t.image->scalar(plane_point(t.mapping, at), t.wrap, t.filter, t.channel);
+    return t.invert ? std::fmax(0.0f, 1 - v) : v;
   }
   float value(const FbmTexture& t) const {
     return fbm(solid_point(t.mapping, at), t.octaves.roughness, t.octaves.count);
@@ -537,6 +543,7 @@ struct TextureGraph::DetailLookup {
   TextureDetail value(const Scale<FloatInput>& t) const { return finest(t.tex, t.scale); }
   TextureDetail value(const Mix<FloatInput>& t) const { return finest(t.tex1, t.tex2, t.amount); }
   TextureDetail value(const DirectionMixTexture<FloatInput>& t) const { return finest(t.tex1, t.tex2); }
+  TextureDetail value(const ThresholdTexture<FloatInput>& t) const { return finest(t.value); }
   TextureDetail value(const BilerpTexture<FloatInput>& t) const { return finest(t.v00, t.v01, t.v10, t.v11); }
   TextureDetail value(const DotsTexture<FloatInput>& t) const { return finest(t.inside, t.outside); }
 };

@@ -49,8 +49,7 @@ struct ImageInput {
   Rgb tint{1, 1, 1};
   bool invert = false;
   description::SpectrumRole role{};  ///< of spectrum nodes
-  std::optional<int> channel;        ///< of float nodes, like `threshold`
-  std::optional<float> threshold;
+  std::optional<int> channel;        ///< of float nodes
 
   /// Colour (linear Rec.709) times `scale` and `tint`, then inverted if requested.
   Rgb rgb(const TexturePoint& at, int level = 0) const;
@@ -106,7 +105,7 @@ class TextureGraph {
   bool has_levels(const SpectrumInput& input) const;
   /// The mapped normal in the frame of dp/du, dp/dv and the smooth normal; unit.
   static Normal evaluate(const NormalMapInput& map, const TexturePoint& at);
-  /// 1 if `alpha` reads the alpha of an image without alpha, so that rays need not evaluate it; else `alpha`.
+  /// 1 if `alpha` reads the alpha of an image without alpha and is 1, so that rays need not evaluate it; else `alpha`.
   FloatInput without_opaque_image(const FloatInput& alpha) const;
   /// The finest detail of all textures behind an input.
   TextureDetail detail(const FloatInput& input) const;
@@ -135,11 +134,11 @@ class TextureGraph {
   using Scale = description::ScaleTexture<Input, FloatInput>;
   template <class Input>
   using Mix = description::MixTexture<Input, FloatInput>;
-  using FloatNode =
-      std::variant<ImageInput, description::Checkerboard<FloatInput>, Scale<FloatInput>, Mix<FloatInput>,
-                   description::DirectionMixTexture<FloatInput>, description::BilerpTexture<FloatInput>,
-                   description::DotsTexture<FloatInput>, description::FbmTexture, description::WrinkledTexture,
-                   description::WindyTexture, description::VertexColorTexture>;
+  using FloatNode = std::variant<ImageInput, description::Checkerboard<FloatInput>, Scale<FloatInput>, Mix<FloatInput>,
+                                 description::DirectionMixTexture<FloatInput>, description::BilerpTexture<FloatInput>,
+                                 description::DotsTexture<FloatInput>, description::FbmTexture,
+                                 description::WrinkledTexture, description::WindyTexture,
+                                 description::VertexColorTexture, description::ThresholdTexture<FloatInput>>;
   struct MarbleNode {
     description::MarbleTexture texture;
     description::SpectrumRole role{};

@@ -169,6 +169,9 @@ TEST_F(Lens, BadOptionsSayWhatWasExpected) {
   refuse(quick("tiny.pbrt", {"--fov", "180", "-o", "a.png"}), "--fov 180: expected a number from 0.01 to 179");
   refuse(quick("tiny.pbrt", {"--orbit", "30", "-o", "a.png"}), "--orbit 30: expected two numbers of degrees");
   refuse(quick("tiny.pbrt", {"--camera", "Wide", "-o", "a.png"}), "--camera: only glTF files have several cameras");
+  refuse(quick("tiny.pbrt", {"--variant", "red", "-o", "a.png"}),
+         "--variant: only glTF files have variants of their materials");
+  refuse(quick("moves.gltf", {"--variant", "red", "-o", "a.png"}), "the file has no variants of its materials");
   refuse(quick("moves.gltf", {"--camera", "close-up", "-o", "a.png"}),
          "--camera close-up: the file has \"Wide\", \"Close-up\"; did you mean Close-up?");
 }

@@ -133,12 +133,11 @@ template <>
 struct Fields<description::ImageTexture> {
   using T = description::ImageTexture;
   static constexpr const char* type = "image";
-  static constexpr auto list =
-      std::tuple(field("filename", &T::filename), field("embedded", &T::embedded), field("mapping", &T::mapping),
-                 field("wrap", &T::wrap), field("wrap_t", &T::wrap_t), field("filter", &T::filter),
-                 field("encoding", &T::encoding), field("gamma", &T::gamma), field("scale", &T::scale),
-                 field("tint", &T::tint), field("invert", &T::invert), field("space", &T::space),
-                 field("channel", &T::channel), field("threshold", &T::threshold));
+  static constexpr auto list = std::tuple(
+      field("filename", &T::filename), field("embedded", &T::embedded), field("mapping", &T::mapping),
+      field("wrap", &T::wrap), field("wrap_t", &T::wrap_t), field("filter", &T::filter),
+      field("encoding", &T::encoding), field("gamma", &T::gamma), field("scale", &T::scale), field("tint", &T::tint),
+      field("invert", &T::invert), field("space", &T::space), field("channel", &T::channel));
 };
 template <>
 struct Fields<description::VertexColorTexture> {
@@ -188,6 +187,12 @@ struct Fields<description::ConstantTexture<P>> {
   using T = description::ConstantTexture<P>;
   static constexpr const char* type = "constant";
   static constexpr auto list = std::tuple(field("value", &T::value));
+};
+template <class P>
+struct Fields<description::ThresholdTexture<P>> {
+  using T = description::ThresholdTexture<P>;
+  static constexpr const char* type = "threshold";
+  static constexpr auto list = std::tuple(field("value", &T::value), field("least", &T::least));
 };
 template <class P>
 struct Fields<description::DirectionMixTexture<P>> {

@@ -200,24 +200,31 @@ void apply_filter(const std::string& filter, std::string& bytes, std::size_t cou
 
 Document::Document(std::string_view bytes, std::filesystem::path folder, std::string name, FileReader read_file,
                    const FileAccess* access)
-    : name_(std::move(name)), folder_(std::move(folder)), read_file_(std::move(read_file)), access_(access) {
+    : source_{std::move(name),
+              [this](const Value& place, const std::string& key, const std::string& message) {
+                if (replaced_.insert(place.pointer()).second) warn("value " + key, place, message);
+              }},
+      folder_(std::move(folder)),
+      read_file_(std::move(read_file)),
+      access_(access) {
   if (bytes.starts_with(binary_magic)) {
-    const Chunks chunks = split_container(bytes, name_);
-    json_ = parse_json(chunks.text, name_);
+    const Chunks chunks = split_container(bytes, source_.name);
+    json_ = parse_json(chunks.text, source_.name);
     binary_ = chunks.binary;
   } else {
     constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
     if (bytes.starts_with(byte_order_mark)) bytes.remove_prefix(byte_order_mark.size());
-    json_ = parse_json(bytes, name_);
+    json_ = parse_json(bytes, source_.name);
   }
-  if (!json_.is_object()) throw Error(SourceLocation{name_}, "the file's JSON must be an object");
-  scene.filename = name_;
+  if (!json_.is_object()) throw Error(SourceLocation{source_.name}, "the file's JSON must be an object");
+  scene.filename = source_.name;
 }
 
 void Document::start_again() {
   scene = {};
-  scene.filename = name_;
+  scene.filename = source_.name;
   warnings_ = {};
+  replaced_.clear();
   embedded_.clear();
   embedded_bytes_ = 0;
   for (const Value& image : std::exchange(embedded_images_, {})) embedded_image(image);

@@ -7,6 +7,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -32,8 +33,10 @@ class Document {
   /// Starts another description of the same file. Embedded images keep their indices.
   void start_again();
 
-  Value root() const { return {json_, "", name_}; }
-  const std::string& name() const { return name_; }
+  Value root() const { return {json_, "", source_}; }
+  /// An object without members.
+  Value nothing() const { return {nothing_, "", source_}; }
+  const std::string& name() const { return source_.name; }
   /// Number of elements of the root's array; 0 if it is missing.
   std::size_t count(std::string_view array) const;
   /// Element of the root's array.
@@ -86,11 +89,11 @@ class Document {
   void add_all_files();
   std::string decompressed(const Value& view, const Value& compression);
 
-  std::string name_;
+  Source source_;
   std::filesystem::path folder_;
   FileReader read_file_;
   const FileAccess* access_;
-  nlohmann::json json_;
+  nlohmann::json json_, nothing_ = nlohmann::json::object();
   std::optional<std::string_view> binary_;  // chunk of the binary container
   std::map<std::size_t, std::string> buffers_;
   std::map<std::size_t, std::string> decompressed_;
@@ -98,6 +101,7 @@ class Document {
   std::vector<Value> embedded_images_;                  // by index
   std::size_t embedded_bytes_ = 0;
   CountedWarnings warnings_;
+  std::set<std::string> replaced_;  // JSON pointers of values with a warning: some are read several times
 };
 
 }  // namespace lanthorn::gltf

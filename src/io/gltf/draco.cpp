@@ -7,6 +7,8 @@
 #include <cmath>
 #include <string>
 
+#include "io/gltf/tangents.h"
+
 namespace lanthorn::gltf {
 
 namespace {
@@ -67,7 +69,7 @@ void apply_skin(const draco::Mesh& source, const Value& attributes, std::span<co
 
 }  // namespace
 
-description::TriangleMesh decode_draco(Document& document, const Value& extension, std::size_t uv_set,
+description::TriangleMesh decode_draco(Document& document, const Value& extension, const Surface& surface,
                                        std::span<const glm::dmat4> joints) {
   const std::string_view bytes = document.buffer_view(extension.at("bufferView")).bytes;
   draco::DecoderBuffer buffer;
@@ -81,8 +83,8 @@ description::TriangleMesh decode_draco(Document& document, const Value& extensio
   description::TriangleMesh mesh;
   mesh.positions = values<Point>(source, attributes, "POSITION");
   mesh.normals = values<Normal>(source, attributes, "NORMAL");
-  mesh.tangents = values<Vec3>(source, attributes, "TANGENT");
-  mesh.uvs = values<Vec2>(source, attributes, "TEXCOORD_" + std::to_string(uv_set));
+  mesh.uvs = values<Vec2>(source, attributes, "TEXCOORD_" + std::to_string(surface.uv_set));
+  for (Vec2& uv : mesh.uvs) uv.y = 1 - uv.y;
   mesh.colors = colors(source, attributes);
   if (mesh.positions.empty()) throw extension.error("the compressed mesh has no positions");
   mesh.triangles.reserve(source.num_faces());
@@ -95,6 +97,7 @@ description::TriangleMesh decode_draco(Document& document, const Value& extensio
     }
     mesh.triangles.push_back(corners);
   }
+  set_tangents(mesh, values<glm::vec4>(source, attributes, "TANGENT"), surface.tangent_turn);
   if (!joints.empty()) apply_skin(source, attributes, joints, mesh);
   return mesh;
 }

@@ -36,6 +36,13 @@ class MaterialReader {
 
   bool is_unlit() const { return material_.extension("KHR_materials_unlit").has_value(); }
   float tangent_turn() const { return tangent_turn_; }
+  // Very rough metal looks like a matte surface.
+  bool reflects_surroundings() const {
+    constexpr float rough = 0.7f;
+    const auto may_exceed = [](const FloatParameter& p, float limit) { return p.texture || p.value > limit; };
+    const bool is_smooth = result_.roughness.texture || result_.roughness.value < rough;
+    return is_smooth && (may_exceed(result_.metallic, 0.5f) || may_exceed(result_.transmission, 0));
+  }
 
   Index read() {
     if (is_unlit()) {
@@ -62,38 +69,33 @@ class MaterialReader {
   }
 
   FloatParameter read_alpha() {
-    const std::string mode = material_.text("alphaMode", "OPAQUE");
+    const std::string_view mode = alpha_mode();
     if (mode == "OPAQUE") return {1, {}};
-    if (mode != "MASK" && mode != "BLEND")
-      throw material_.at("alphaMode").error("must be OPAQUE, MASK or BLEND, not " + in_quotes(mode));
-    std::optional<float> cutoff;
-    if (mode == "MASK") cutoff = material_.number("alphaCutoff", 0.5f);
     const auto pbr = material_.find("pbrMetallicRoughness");
-    const float factor = pbr ? base_factor(*pbr)[3] : 1.0f;
-    auto use = pbr ? texture(*pbr, "baseColorTexture").image : std::nullopt;
-    if (!use) {
-      const FloatParameter alpha{cutoff ? static_cast<float>(factor >= *cutoff) : factor, {}};
-      return has_colors_ && !cutoff ? times_vertex_alpha(alpha) : alpha;
+    FloatParameter alpha{pbr ? base_factor(*pbr)[3] : 1.0f, {}};
+    if (auto use = pbr ? texture(*pbr, "baseColorTexture").image : std::nullopt) {
+      use->channel = alpha_channel;
+      use->scale = alpha.value;
+      use->encoding = Encoding::srgb;  // as for colours of the image: decoded once; alpha is linear
+      alpha = add(*use);
     }
-    use->channel = alpha_channel;
-    use->scale = factor;
-    use->encoding = Encoding::srgb;  // as for colours of the image: decoded once; alpha is linear
-    use->threshold = cutoff;
-    const FloatParameter alpha = add(*use);
-    return has_colors_ && !cutoff ? times_vertex_alpha(alpha) : alpha;
+    if (has_colors_) alpha = times_vertex_alpha(alpha);
+    if (mode == "BLEND") return alpha;
+    const float cutoff = material_.number("alphaCutoff", 0.5f);
+    if (alpha.texture) return add(ThresholdTexture<FloatParameter>{alpha, cutoff});
+    return {alpha.value >= cutoff ? 1.0f : 0.0f, {}};
   }
 
   // KHR_materials_volume: `attenuationColor` is the transmittance over `attenuationDistance` (metres).
   std::optional<Medium> read_medium() {
     const auto volume = material_.extension("KHR_materials_volume");
     if (!volume || result_.thin) return {};
-    const auto distance = volume->find("attenuationDistance");
-    const Vec3 colour = volume->vec3("attenuationColor", Vec3(1));
-    if (!distance || colour == Vec3(1)) return {};
-    if (!(distance->number() > 0)) throw distance->error("must be above 0");
+    const float distance = volume->number("attenuationDistance", infinity, Range::above(0));
+    const Vec3 colour = volume->colour("attenuationColor", Vec3(1));
+    if (distance == infinity || colour == Vec3(1)) return {};
     const auto absorption = [&](float left) {
       constexpr float least = 1e-6f;
-      return -std::log(std::clamp(left, least, 1.0f)) / distance->number();
+      return -std::log(std::clamp(left, least, 1.0f)) / distance;
     };
     Medium medium;
     medium.sigma_a = RgbSpectrum{{absorption(colour.x), absorption(colour.y), absorption(colour.z)}};
@@ -104,11 +106,10 @@ class MaterialReader {
 
   std::optional<AreaLight> read_emission() {
     if (is_unlit()) return read_unlit();
-    const Vec3 factor = material_.vec3("emissiveFactor", Vec3(0));
+    const Vec3 factor = material_.colour("emissiveFactor", Vec3(0));
     const auto strength = material_.extension("KHR_materials_emissive_strength");
-    const float scale = strength ? strength->number("emissiveStrength", 1) : 1.0f;
+    const float scale = strength ? strength->number("emissiveStrength", 1, Range::at_least(0)) : 1.0f;
     if (!(max_component(factor) * scale > 0)) return {};
-    if (min_component(factor) < 0) throw material_.at("emissiveFactor").error("must not be negative");
     AreaLight light;
     light.radiance = colour(material_, factor, "emissiveTexture", neutral_effect);
     const auto* constant = std::get_if<RgbSpectrum>(&light.radiance.value);
@@ -133,7 +134,15 @@ class MaterialReader {
     return light;
   }
 
-  static float min_component(const Vec3& v) { return std::min({v.x, v.y, v.z}); }
+  std::string_view alpha_mode() const {
+    constexpr std::string_view otherwise = "OPAQUE";
+    const auto mode = material_.find("alphaMode");
+    if (!mode) return otherwise;
+    if (const auto known = mode->name_among({otherwise, "MASK", "BLEND"})) return *known;
+    mode->warn("alphaMode",
+               "alphaMode must be OPAQUE, MASK or BLEND, not " + in_quotes(mode->text()) + ": OPAQUE is used");
+    return otherwise;
+  }
 
   /// Result of looking up a texture.
   struct Found {
@@ -178,7 +187,8 @@ class MaterialReader {
   // The number `key` times a channel of a texture.
   FloatParameter factor(const Value& owner, std::string_view key, float otherwise, std::string_view texture_key,
                         Channel channel, float neutral = neutral_property) {
-    const float value = owner.number(key, otherwise);
+    const float value = owner.number(key, otherwise, zero_to_one);
+    if (value == 0) return {0, {}};
     auto [image, is_lost] = texture(owner, texture_key);
     if (!image) return {is_lost ? neutral * value : value, {}};
     image->channel = channel;
@@ -197,8 +207,7 @@ class MaterialReader {
   }
 
   static std::vector<float> base_factor(const Value& pbr) {
-    const auto value = pbr.find("baseColorFactor");
-    return value ? value->numbers(4) : std::vector<float>{1, 1, 1, 1};
+    return pbr.numbers("baseColorFactor", {1, 1, 1, 1}, Range::at_least(0));
   }
 
   // Factor times texture times vertex colours.
@@ -237,13 +246,13 @@ class MaterialReader {
 
   // KHR_materials_pbrSpecularGlossiness: a diffuse base under a coloured reflection.
   void read_specular_glossiness(const Value& old) {
-    const auto diffuse = old.find("diffuseFactor");
-    const std::vector<float> base = diffuse ? diffuse->numbers(4) : std::vector<float>{1, 1, 1, 1};
+    const std::vector<float> base = old.numbers("diffuseFactor", {1, 1, 1, 1}, Range::at_least(0));
     result_.base_color = times_vertex_color(colour(old, {base[0], base[1], base[2]}, "diffuseTexture", neutral_grey));
     constexpr float dielectric = 0.04f;  // reflectance at normal incidence
-    result_.specular_color = colour(old, old.vec3("specularFactor", Vec3(1)), "specularGlossinessTexture", dielectric);
+    result_.specular_color =
+        colour(old, old.colour("specularFactor", Vec3(1)), "specularGlossinessTexture", dielectric);
     result_.eta = total_reflection;
-    const float glossiness = old.number("glossinessFactor", 1);
+    const float glossiness = old.number("glossinessFactor", 1, zero_to_one);
     result_.roughness = {1 - glossiness, {}};
     if (auto image = texture(old, "specularGlossinessTexture").image) {
       image->channel = alpha_channel;
@@ -261,16 +270,14 @@ class MaterialReader {
     if (!specular) return;
     result_.specular = factor(*specular, "specularFactor", 1, "specularTexture", alpha_channel);
     result_.specular_color =
-        colour(*specular, specular->vec3("specularColorFactor", Vec3(1)), "specularColorTexture", neutral_property);
+        colour(*specular, specular->colour("specularColorFactor", Vec3(1)), "specularColorTexture", neutral_property);
   }
 
   void read_dielectric() {
     const auto ior = material_.extension("KHR_materials_ior");
-    const float index = ior ? ior->number("ior", 1.5f) : 1.5f;
-    if (ior && index != 0 && !(index >= 1)) throw ior->at("ior").error("must be 0 or at least 1");
+    const float index = ior ? index_of(*ior) : 1.5f;
     const auto dispersion = material_.extension("KHR_materials_dispersion");
-    const float inverse_abbe = dispersion ? dispersion->number("dispersion", 0) / 20 : 0.0f;
-    if (inverse_abbe < 0) throw dispersion->at("dispersion").error("must not be negative");
+    const float inverse_abbe = dispersion ? dispersion->number("dispersion", 0, Range::at_least(0)) / 20 : 0.0f;
     if (ior || dispersion) {
       if (index == 0)
         result_.eta = total_reflection;
@@ -293,12 +300,18 @@ class MaterialReader {
                                  in_quotes(material_.text("name", ""))));
   }
 
+  // 0 stands for total reflection.
+  static float index_of(const Value& ior) {
+    const auto given = ior.find("ior");
+    return given && given->is_zero() ? 0 : ior.number("ior", 1.5f, Range::at_least(1));
+  }
+
   void read_diffuse_transmission() {
     const auto diffuse = material_.extension("KHR_materials_diffuse_transmission");
     if (!diffuse) return;
     result_.diffuse_transmission =
         factor(*diffuse, "diffuseTransmissionFactor", 0, "diffuseTransmissionTexture", alpha_channel, neutral_effect);
-    result_.diffuse_transmission_color = colour(*diffuse, diffuse->vec3("diffuseTransmissionColorFactor", Vec3(1)),
+    result_.diffuse_transmission_color = colour(*diffuse, diffuse->colour("diffuseTransmissionColorFactor", Vec3(1)),
                                                 "diffuseTransmissionColorTexture", neutral_grey);
     if (result_.diffuse_transmission.texture || result_.diffuse_transmission.value != 0)
       document_.warn("KHR_materials_diffuse_transmission", *diffuse,
@@ -335,7 +348,7 @@ class MaterialReader {
   void read_sheen() {
     const auto sheen = material_.extension("KHR_materials_sheen");
     if (!sheen) return;
-    const Vec3 factor_of_color = sheen->vec3("sheenColorFactor", Vec3(0));
+    const Vec3 factor_of_color = sheen->colour("sheenColorFactor", Vec3(0));
     if (!(max_component(factor_of_color) > 0)) return;
     result_.sheen_color = colour(*sheen, factor_of_color, "sheenColorTexture", neutral_effect);
     result_.sheen_roughness = factor(*sheen, "sheenRoughnessFactor", 0, "sheenRoughnessTexture", alpha_channel);
@@ -347,8 +360,8 @@ class MaterialReader {
     const auto iridescence = material_.extension("KHR_materials_iridescence");
     if (!iridescence) return;
     result_.iridescence = factor(*iridescence, "iridescenceFactor", 0, "iridescenceTexture", red, neutral_effect);
-    result_.film.eta = iridescence->number("iridescenceIor", 1.3f);
-    if (!(result_.film.eta >= 1)) throw iridescence->at("iridescenceIor").error("must be at least 1");
+    if (!result_.iridescence.texture && result_.iridescence.value == 0) return;
+    result_.film.eta = iridescence->number("iridescenceIor", 1.3f, Range::at_least(1));
     result_.film.thickness = {thickness(*iridescence, "iridescenceThicknessMaximum", 400), {}};
     const float least = thickness(*iridescence, "iridescenceThicknessMinimum", 100);
     if (auto image = texture(*iridescence, "iridescenceThicknessTexture").image) {
@@ -360,9 +373,7 @@ class MaterialReader {
 
   // Converts to nanometres.
   static float thickness(const Value& iridescence, std::string_view key, float otherwise) {
-    const float value = iridescence.number(key, otherwise);
-    if (!(value >= 0)) throw iridescence.at(key).error("must not be negative");
-    return value;
+    return iridescence.number(key, otherwise, Range::at_least(0));
   }
 
   void read_clearcoat() {
@@ -398,6 +409,7 @@ Surface Materials::make(const Value& material, bool has_colors) {
   Surface surface;
   surface.material = reader.read();
   if (!material.boolean("doubleSided", false)) one_sided_.insert(surface.material);
+  reflect_surroundings_ = reflect_surroundings_ || reader.reflects_surroundings();
   surface.alpha = reader.read_alpha();
   if (auto light = reader.read_emission()) {
     surface.area_light = static_cast<Index>(document_.scene.area_lights.size());
@@ -413,14 +425,25 @@ Surface Materials::make(const Value& material, bool has_colors) {
   return surface;
 }
 
+// Primitives without a mapping for the variant keep their own material.
+std::optional<Value> Materials::reference_of(const Value& primitive) const {
+  const auto variants = variant_ ? primitive.extension("KHR_materials_variants") : std::nullopt;
+  const auto mappings = variants ? variants->find_array("mappings") : std::nullopt;
+  for (std::size_t i = 0; mappings && i < mappings->size(); ++i) {
+    const Value mapping = mappings->element(i), chosen = mapping.at("variants");
+    for (std::size_t k = 0; k < chosen.size(); ++k)
+      if (chosen.element(k).integer() == *variant_) return mapping.at("material");
+  }
+  return primitive.find("material");
+}
+
 const Surface& Materials::of(const Value& primitive) {
-  const auto reference = primitive.find("material");
+  const auto reference = reference_of(primitive);
   const bool has_colors = primitive.at("attributes").find("COLOR_0").has_value();
   const std::int64_t i = reference ? static_cast<std::int64_t>(document_.index("materials", *reference)) : -1;
   auto found = made_.find({i, has_colors});
   if (found == made_.end()) {
-    static const nlohmann::json nothing = nlohmann::json::object();
-    const Value material = reference ? document_.follow("materials", *reference) : Value(nothing, "", document_.name());
+    const Value material = reference ? document_.follow("materials", *reference) : document_.nothing();
     found = made_.emplace(std::pair(i, has_colors), make(material, has_colors)).first;
   }
   return found->second;

@@ -29,15 +29,21 @@ class Materials {
  public:
   explicit Materials(Document& document) : document_(document) {}
 
-  /// The material of a primitive, by its member "material", or the default material.
+  /// Selects a variant of the file (KHR_materials_variants), an index of its list.
+  void choose_variant(std::size_t variant) { variant_ = variant; }
+  /// The material of a primitive: the one of the chosen variant, that of its member "material", or the default
+  /// material.
   const Surface& of(const Value& primitive);
   /// The area lights that may illuminate the scene. Excludes lights of unlit materials, and of materials with textured
   /// emission (a texture may be black except for a few spots).
   const std::vector<description::Index>& lamps() const { return lamps_; }
+  /// True if one of them is metal or glass that shows what is around it.
+  bool reflect_surroundings() const { return reflect_surroundings_; }
   /// Those materials of the scene that are not double-sided.
   const std::set<description::Index>& one_sided() const { return one_sided_; }
 
  private:
+  std::optional<Value> reference_of(const Value& primitive) const;
   Surface make(const Value& material, bool has_colors);
 
   Document& document_;
@@ -45,6 +51,8 @@ class Materials {
   std::map<std::pair<std::int64_t, bool>, Surface> made_;
   std::vector<description::Index> lamps_;
   std::set<description::Index> one_sided_;
+  std::optional<std::size_t> variant_;
+  bool reflect_surroundings_ = false;
 };
 
 }  // namespace lanthorn::gltf

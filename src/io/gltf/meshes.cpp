@@ -12,6 +12,7 @@
 #include "io/finite_mesh.h"
 #include "io/gltf/accessor.h"
 #include "io/gltf/draco.h"
+#include "io/gltf/tangents.h"
 #include "math/vec.h"
 
 namespace lanthorn::gltf {
@@ -140,38 +141,6 @@ void apply_skin(Document& document, const Value& attributes, std::span<const glm
   skinning.apply(mesh);
 }
 
-// Tangents along u, with w the side of the bitangent; averages over the triangles at each vertex.
-std::vector<glm::vec4> tangents_along_u(const TriangleMesh& mesh) {
-  std::vector<Vec3> along_u(mesh.positions.size(), Vec3(0)), along_t = along_u;
-  for (const auto& [a, b, c] : mesh.triangles) {
-    const Vec3 edge1 = mesh.positions[b] - mesh.positions[a], edge2 = mesh.positions[c] - mesh.positions[a];
-    const Vec2 st1 = mesh.uvs[b] - mesh.uvs[a], st2 = mesh.uvs[c] - mesh.uvs[a];
-    const float determinant = st1.x * st2.y - st1.y * st2.x;
-    if (determinant == 0) continue;
-    for (const std::uint32_t corner : {a, b, c}) {
-      along_u[corner] += (st2.y * edge1 - st1.y * edge2) / determinant;
-      along_t[corner] += (st1.x * edge2 - st2.x * edge1) / determinant;
-    }
-  }
-  std::vector<glm::vec4> result;
-  for (std::size_t i = 0; i < along_u.size(); ++i)
-    result.emplace_back(along_u[i], dot(cross(mesh.normals[i], along_u[i]), along_t[i]) < 0 ? -1 : 1);
-  return result;
-}
-
-// Rotates the tangents about the normals, counter-clockwise as seen from outside if w is 1. If the file has no
-// tangents, uses tangents along u.
-void turn_tangents(TriangleMesh& mesh, std::vector<glm::vec4> tangents, float angle) {
-  if (angle == 0 || mesh.normals.empty()) return;
-  if (tangents.empty() && !mesh.uvs.empty()) tangents = tangents_along_u(mesh);
-  if (tangents.empty()) return;
-  mesh.tangents.resize(tangents.size());
-  for (std::size_t i = 0; i < tangents.size(); ++i) {
-    const Vec3 tangent(tangents[i]), bitangent = tangents[i].w * cross(mesh.normals[i], tangent);
-    mesh.tangents[i] = std::cos(angle) * tangent + std::sin(angle) * bitangent;
-  }
-}
-
 Primitive read_plain(Document& document, const Value& primitive, std::uint64_t mode, const Surface& surface,
                      const Deformation& deformation) {
   const Value attributes = primitive.at("attributes");
@@ -192,8 +161,7 @@ Primitive read_plain(Document& document, const Value& primitive, std::uint64_t m
   std::vector<glm::vec4> tangents;
   if (const auto given = find_attribute(document, attributes, "TANGENT", 4, count))
     tangents = gather<glm::vec4>(*given, kept);
-  mesh.tangents.assign(tangents.begin(), tangents.end());
-  turn_tangents(mesh, std::move(tangents), surface.tangent_turn);
+  set_tangents(mesh, std::move(tangents), surface.tangent_turn);
   morph(document, primitive, deformation.weights, kept, mesh);
   if (!deformation.joints.empty()) apply_skin(document, attributes, deformation.joints, count, kept, mesh);
   return result;
@@ -201,10 +169,9 @@ Primitive read_plain(Document& document, const Value& primitive, std::uint64_t m
 
 Primitive read_compressed(Document& document, const Value& primitive, const Value& compressed, const Surface& surface,
                           const Deformation& deformation) {
-  Primitive result{decode_draco(document, compressed, surface.uv_set, deformation.joints), {}};
+  Primitive result{decode_draco(document, compressed, surface, deformation.joints), {}};
   if (!std::all_of(deformation.weights.begin(), deformation.weights.end(), [](float w) { return w == 0; }))
     document.warn("Draco targets", primitive, "morph targets of meshes compressed by Draco are ignored");
-  for (Vec2& uv : result.mesh.uvs) uv.y = 1 - uv.y;
   return result;
 }
 

@@ -3,6 +3,8 @@
 // glTF 2.0 §3.11 and appendix C.
 #include "io/gltf/pose.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <glm/gtc/quaternion.hpp>
 #include <string>
@@ -32,7 +34,11 @@ glm::dmat4 matrix_of(const Value& matrix) {
   for (int column = 0; column < 4; ++column)
     for (int row = 0; row < 4; ++row)
       result[column][row] = m[4 * static_cast<std::size_t>(column) + static_cast<std::size_t>(row)];
-  if (m[3] != 0 || m[7] != 0 || m[11] != 0 || m[15] != 1) throw matrix.error("must be affine: its last row is 0 0 0 1");
+  if (m[3] == 0 && m[7] == 0 && m[11] == 0 && m[15] == 1) return result;
+  // Other programs ignore the row.
+  matrix.warn("matrix", fmt::format("the matrix must be affine, but its last row is {} {} {} {}: 0 0 0 1 is used", m[3],
+                                    m[7], m[11], m[15]));
+  for (int column = 0; column < 4; ++column) result[column][3] = column == 3 ? 1 : 0;
   return result;
 }
 

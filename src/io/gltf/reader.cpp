@@ -43,9 +43,7 @@ constexpr std::array<std::string_view, 23> extensions_read = {
     "KHR_materials_ior", "KHR_materials_pbrSpecularGlossiness", "KHR_materials_specular", "KHR_materials_transmission",
     "KHR_materials_volume", "KHR_mesh_quantization", "KHR_texture_transform", "KHR_materials_anisotropy",
     "KHR_materials_diffuse_transmission", "KHR_materials_sheen", "KHR_materials_unlit", "KHR_materials_iridescence",
-    "KHR_meshopt_compression",
-    // Meshes use the materials that apply without a selected variant.
-    "KHR_materials_variants",
+    "KHR_meshopt_compression", "KHR_materials_variants",
     // A warning follows where it is used.
     "KHR_texture_basisu"};
 
@@ -59,21 +57,24 @@ void check_version(const Document& document) {
 }
 
 void check_extensions(Document& document) {
-  const auto for_each_unknown = [&](const char* list, const auto& visit) {
+  const auto unknown = [&](const char* list) {
+    std::vector<Value> result;
     const auto names = document.root().find_array(list);
-    for (std::size_t i = 0; names && i < names->size(); ++i) {
-      const Value name = names->element(i);
-      if (std::find(extensions_read.begin(), extensions_read.end(), name.text()) == extensions_read.end()) visit(name);
-    }
+    for (std::size_t i = 0; names && i < names->size(); ++i)
+      if (std::find(extensions_read.begin(), extensions_read.end(), names->element(i).text()) == extensions_read.end())
+        result.push_back(names->element(i));
+    return result;
   };
-  for_each_unknown("extensionsRequired", [](const Value& name) {
+  for (const Value& name : unknown("extensionsRequired"))
     throw name.error("the file cannot be read without extension " + in_quotes(name.text()) +
                      ", which is not supported");
-  });
-  for_each_unknown("extensionsUsed", [&](const Value& name) {
-    const std::string shown = in_quotes(name.text());
-    document.warn("extension " + shown, name, "extension " + shown + " is not supported: ignored");
-  });
+  const std::vector<Value> ignored = unknown("extensionsUsed");
+  if (ignored.empty()) return;
+  std::vector<std::string> names;
+  for (const Value& name : ignored) names.push_back(name.text());
+  document.warn("extensions", ignored.front(),
+                names.size() > 1 ? "extensions " + quoted_list(names) + " are not supported: ignored"
+                                 : "extension " + quoted_list(names) + " is not supported: ignored");
 }
 
 class SceneReader {
@@ -83,6 +84,7 @@ class SceneReader {
   /// Reads the scene and returns what it lacks.
   StandIns read(const Choice& choice) {
     SceneDescription& scene = document_.scene;
+    choose_variant(choice.variant);
     const Pose pose(document_, choice.seconds);
     const std::vector<PlacedNode> nodes = placed_nodes(document_, pose);
     for (const PlacedNode& placed : nodes) to_world_[placed.node] = placed.to_world;
@@ -96,9 +98,14 @@ class SceneReader {
     for (const auto& [mesh, places] : mesh_uses_) add_mesh(document_.element("meshes", mesh), places, {});
     add_strokes();
     choose_camera(choice.camera);
-    const bool has_light = !scene.lights.empty() || is_lit_by(scene, materials_.lamps());
+    const bool is_lit_by_area = is_lit_by(scene, materials_.lamps());
+    const bool has_light = !scene.lights.empty() || is_lit_by_area;
     const bool has_blind_camera = !cameras_.empty() && choice.camera.empty() && is_blind(scene.view.camera);
-    return {cameras_.empty() || has_blind_camera, !has_light, {materials_.one_sided(), true}, has_blind_camera};
+    return {.camera = cameras_.empty() || has_blind_camera,
+            .light = !has_light,
+            .one_sided = {materials_.one_sided(), true},
+            .has_blind_camera = has_blind_camera,
+            .reflects_darkness = !is_lit_by_area && materials_.reflect_surroundings()};
   }
 
  private:
@@ -277,55 +284,68 @@ class SceneReader {
       names.push_back(cameras_[i].node.text("name", cameras_[i].source.text("name", std::to_string(i + 1))));
     return names;
   }
-  std::string list_of_cameras() const {
-    constexpr std::size_t most = 8;
-    std::vector<std::string> names = camera_names();
-    for (std::string& name : names) name = in_quotes(name);
-    if (names.size() > most) {
-      names.resize(most);
-      names.emplace_back("...");
-    }
-    return fmt::format("{}", fmt::join(names, ", "));
-  }
   const PlacedCamera& find_camera(const std::string& wanted) const {
     for (std::size_t i = 0; i < cameras_.size(); ++i)
       if (wanted == cameras_[i].node.text("name", "") || wanted == cameras_[i].source.text("name", "") ||
           wanted == std::to_string(i + 1))
         return cameras_[i];
     if (cameras_.empty()) throw Error({document_.name()}, "--camera " + printable(wanted) + ": the file has no camera");
-    throw Error({document_.name()}, fmt::format("--camera {}: the file has {}{}", printable(wanted), list_of_cameras(),
-                                                printable(did_you_mean(wanted, camera_names()))));
+    throw Error({document_.name()},
+                fmt::format("--camera {}: the file has {}{}", printable(wanted), quoted_list(camera_names()),
+                            printable(did_you_mean(wanted, camera_names()))));
   }
   void choose_camera(const std::string& wanted) {
     if (!wanted.empty()) return use_camera(find_camera(wanted));
     if (cameras_.empty()) return;
     use_camera(cameras_.front());
     if (cameras_.size() > 1)
-      document_.warn(
-          "cameras", cameras_[1].source,
-          "the file has several cameras: the first one is used; --camera takes another of " + list_of_cameras());
+      document_.warn("cameras", cameras_[1].source,
+                     "the file has several cameras: the first one is used; --camera takes another of " +
+                         quoted_list(camera_names()));
+  }
+
+  // KHR_materials_variants.
+  void choose_variant(const std::string& wanted) {
+    const auto extension = document_.root().extension("KHR_materials_variants");
+    const auto variants = extension ? extension->find_array("variants") : std::nullopt;
+    std::vector<std::string> names;
+    for (std::size_t i = 0; variants && i < variants->size(); ++i)
+      names.push_back(variants->element(i).text("name", std::to_string(i + 1)));
+    if (wanted.empty()) {
+      if (!names.empty())
+        document_.warn("variants", *extension,
+                       "the file has variants of its materials: --variant takes one of " + quoted_list(names));
+      return;
+    }
+    for (std::size_t i = 0; i < names.size(); ++i)
+      if (wanted == names[i]) return materials_.choose_variant(i);
+    for (std::size_t i = 0; i < names.size(); ++i)
+      if (wanted == std::to_string(i + 1)) return materials_.choose_variant(i);
+    throw Error({document_.name()},
+                names.empty() ? "--variant " + printable(wanted) + ": the file has no variants of its materials"
+                              : fmt::format("--variant {}: the file has {}{}", printable(wanted), quoted_list(names),
+                                            printable(did_you_mean(wanted, names))));
   }
 
   void use_camera(const PlacedCamera& placed) {
     const auto& [node, source, to_world] = placed;
     Camera& camera = document_.scene.view.camera;
     camera.location = source.location();
-    const std::string type = source.at("type").text();
+    const auto type = source.at("type").name_among({"perspective", "orthographic"});
+    if (!type)
+      throw source.at("type").error("must be perspective or orthographic, not " + in_quotes(source.at("type").text()));
     float across = 1;  // half the film's shorter side, in the units of the camera's node
-    if (type == "perspective") {
+    if (*type == "perspective") {
       const Value lens = source.at("perspective");
       near_ = lens.number("znear", 0);
       camera.node = perspective(lens);
-    } else if (type == "orthographic") {
+    } else {
       const Value lens = source.at("orthographic");
-      const float x = std::fabs(lens.at("xmag").number()), y = std::fabs(lens.at("ymag").number());
-      if (!(x > 0 && y > 0)) throw lens.error("xmag and ymag must not be 0");
+      const float x = half_size(lens, "xmag"), y = half_size(lens, "ymag");
       near_ = lens.number("znear", 0);
-      set_aspect(lens, x / y);
+      set_aspect(std::clamp(x / y, aspects.least, aspects.most));
       across = std::min(x, y);
       camera.node = OrthographicCamera{};
-    } else {
-      throw source.at("type").error("must be perspective or orthographic, not " + in_quotes(type));
     }
     // glTF's cameras look along -z, ours along z. The scale of a camera's node is ignored.
     glm::dmat4 rigid = to_world;
@@ -339,21 +359,30 @@ class SceneReader {
   }
 
   PerspectiveCamera perspective(const Value& lens) {
-    const float yfov = lens.at("yfov").number();
-    if (!(yfov > 0 && yfov < pi)) throw lens.at("yfov").error("must lie between 0 and pi");
+    lens.at("yfov");
+    const float yfov = lens.number("yfov", pi / 4, {0, pi, false, false});
     const Film& film = document_.scene.view.film;
     float aspect = static_cast<float>(film.width) / static_cast<float>(film.height);
-    if (const auto given = lens.find("aspectRatio")) {
-      aspect = given->number();
-      set_aspect(*given, aspect);
+    if (lens.find("aspectRatio")) {
+      aspect = lens.number("aspectRatio", aspect, aspects);
+      set_aspect(aspect);
     }
     const float shorter = 2 * std::atan(std::tan(yfov / 2) * std::min(aspect, 1.0f));
     return {.fov = shorter * 180 / pi};
   }
 
+  // Half the width or the height of an orthographic camera's view. Exporters may write a negative one.
+  static float half_size(const Value& lens, const char* key) {
+    lens.at(key);
+    const float size = std::fabs(lens.number(key, 1));
+    if (size > 0) return size;
+    lens.at(key).warn(key, fmt::format("{} must not be 0: 1 is used", key));
+    return 1;
+  }
+
+  static constexpr Range aspects{1e-3f, 1e3f, false, false};
   // Sets the film's aspect ratio; its longer side keeps its number of pixels.
-  void set_aspect(const Value& place, float aspect) {
-    if (!(aspect >= 1e-3f && aspect <= 1e3f)) throw place.error("the aspect ratio must lie between 1/1000 and 1000");
+  void set_aspect(float aspect) {
     Film& film = document_.scene.view.film;
     const int longer = film.width;
     const auto pixels = [&](float fraction) {
@@ -369,15 +398,14 @@ class SceneReader {
     if (i >= lights.size())
       throw reference.error("is " + std::to_string(i) + ", but there are " + std::to_string(lights.size()) + " lights");
     const Value source = lights.element(static_cast<std::size_t>(i));
-    const Vec3 colour = source.vec3("color", Vec3(1));
-    const float intensity = source.number("intensity", 1);
-    if (!(intensity >= 0) || std::min({colour.x, colour.y, colour.z}) < 0)
-      throw source.error("intensity and color must not be negative");
+    const Vec3 colour = source.colour("color", Vec3(1));
+    const float intensity = source.number("intensity", 1, Range::at_least(0));
     if (!(intensity * max_component(colour) > 0)) return;                             // the light is off
     const Emission emission{RgbSpectrum{{colour.x, colour.y, colour.z}}, intensity};  // lm/sr or lx
     Light light;
     light.location = source.location();
-    const std::string type = source.at("type").text();
+    const Value kind = source.at("type");
+    const auto type = kind.name_among({"point", "spot", "directional"});
     if (type == "point") {
       PointLight point;
       point.intensity = emission;
@@ -390,21 +418,26 @@ class SceneReader {
     } else if (type == "spot") {
       light.node = spot(source, emission);
     } else {
-      throw source.at("type").error("must be point, spot or directional, not " + in_quotes(type));
+      return kind.warn("light type", fmt::format("must be point, spot or directional, not {}: the light is left out",
+                                                 in_quotes(kind.text())));
     }
     if (source.find("range"))
       document_.warn("range", source, "the range of lights is ignored: they reach any distance");
     light.light_to_world = Transform(to_world);
-    if (light.light_to_world.is_singular()) throw reference.error("the light's node has a singular transformation");
+    if (light.light_to_world.is_singular())
+      return reference.warn("singular light", "the light's node has a singular transformation: the light is left out");
     document_.scene.lights.push_back(std::move(light));
   }
 
+  // Equal cones, which many programs write, make a hard edge.
   static SpotLight spot(const Value& source, const Emission& emission) {
     const auto cone = source.find("spot");
-    const float inner = cone ? cone->number("innerConeAngle", 0) : 0.0f;
-    const float outer = cone ? cone->number("outerConeAngle", pi / 4) : pi / 4;
-    if (!(inner >= 0 && inner < outer && outer <= pi / 2 + 1e-4f))
-      throw source.error("0 <= innerConeAngle < outerConeAngle <= pi / 2 must hold");
+    constexpr float otherwise = pi / 4, widest = pi / 2 + 1e-4f;  // pi / 2, however it is rounded
+    float outer = otherwise, inner = 0;
+    if (cone) {
+      outer = cone->number("outerConeAngle", otherwise, {0, widest, false});
+      inner = cone->number("innerConeAngle", 0, {0, outer});
+    }
     const float to_degrees = 180 / pi;
     SpotLight light;
     light.intensity = emission;

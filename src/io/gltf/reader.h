@@ -19,6 +19,7 @@ class Document;
 struct Choice {
   std::optional<double> seconds{};  ///< into the first animation; nullopt: the rest pose
   std::string camera{};             ///< its name, that of its node, or its number starting at 1; empty: the first one
+  std::string variant{};            ///< of materials: its name, or its number starting at 1; empty: the file's default
 };
 
 /// A glTF file that is parsed once, for descriptions at several times.

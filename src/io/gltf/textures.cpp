@@ -25,7 +25,8 @@ Wrap wrap_mode(const Value& sampler, std::string_view key) {
     case 10497:
       return Wrap::repeat;
     default:
-      throw sampler.at(key).error("there is no wrapping mode " + std::to_string(mode));
+      sampler.at(key).warn(key, "there is no wrapping mode " + std::to_string(mode) + ": the texture repeats");
+      return Wrap::repeat;
   }
 }
 
@@ -87,9 +88,7 @@ bool read_image(Document& document, const Value& image, ImageTexture& texture) {
 UvMapping mapping(const Value* transform) {
   if (transform == nullptr) return {};
   const auto pair = [&](std::string_view key, float otherwise) {
-    const auto value = transform->find(key);
-    if (!value) return Vec2(otherwise);
-    const std::vector<float> v = value->numbers(2);
+    const std::vector<float> v = transform->numbers(key, {otherwise, otherwise});
     return Vec2(v[0], v[1]);
   };
   const Vec2 offset = pair("offset", 0), scale = pair("scale", 1);

@@ -6,6 +6,7 @@
 #include <meshoptimizer.h>
 
 #include <array>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -59,6 +60,48 @@ TEST(GltfCompression, Draco) {
   // Found by fuzzing.
   const std::string booleans = read_file(LANTHORN_SOURCE_DIR "/tests/fuzz/corpus/gltf/draco-booleans");
   EXPECT_NE(gltf_error(booleans).find("the attribute consists of booleans"), std::string::npos) << gltf_error(booleans);
+}
+
+// Directions of anisotropy in a compressed mesh: a quarter turn about the normal from the tangents of the file, towards
+// w times the bitangent; without them, from u.
+TEST(GltfCompression, DracoTurnsTangents) {
+  for (const float w : {1.0f, -1.0f, 0.0f}) {
+    draco::TriangleSoupMeshBuilder builder;
+    builder.Start(1);
+    const int position = builder.AddAttribute(draco::GeometryAttribute::POSITION, 3, draco::DT_FLOAT32);
+    const int normal = builder.AddAttribute(draco::GeometryAttribute::NORMAL, 3, draco::DT_FLOAT32);
+    const int other = w == 0 ? builder.AddAttribute(draco::GeometryAttribute::TEX_COORD, 2, draco::DT_FLOAT32)
+                             : builder.AddAttribute(draco::GeometryAttribute::GENERIC, 4, draco::DT_FLOAT32);
+    const Vec3 up(0, 0, 1);
+    const glm::vec4 tangent(1, 0, 0, w);
+    const std::vector<Vec2> uvs = {{0, 1}, {1, 1}, {0, 0}};  // u runs along x
+    builder.SetAttributeValuesForFace(position, draco::FaceIndex(0), &corners[0], &corners[1], &corners[2]);
+    builder.SetAttributeValuesForFace(normal, draco::FaceIndex(0), &up, &up, &up);
+    if (w == 0)
+      builder.SetAttributeValuesForFace(other, draco::FaceIndex(0), &uvs[0], &uvs[1], &uvs[2]);
+    else
+      builder.SetAttributeValuesForFace(other, draco::FaceIndex(0), &tangent, &tangent, &tangent);
+    const auto mesh = builder.Finalize();
+    draco::ExpertEncoder encoder(*mesh);
+    draco::EncoderBuffer buffer;
+    ASSERT_TRUE(encoder.EncodeToBuffer(&buffer).ok());
+    const auto file = one_mesh([&](GltfWriter& f, json& primitive) {
+      primitive["extensions"]["KHR_draco_mesh_compression"] = {
+          {"bufferView", f.view({buffer.data(), buffer.size()})},
+          {"attributes", {{"POSITION", position}, {"NORMAL", normal}, {w == 0 ? "TEXCOORD_0" : "TANGENT", other}}}};
+      primitive["material"] = f.add(
+          "materials",
+          {{"extensions",
+            {{"KHR_materials_anisotropy", {{"anisotropyStrength", 0.9}, {"anisotropyRotation", std::acos(0.0)}}}}}});
+    });
+    const TriangleMesh decoded = mesh_of(read_gltf(file).shapes.at(0));
+    ASSERT_EQ(decoded.tangents.size(), 3u);
+    for (const Vec3& t : decoded.tangents) {
+      EXPECT_NEAR(t.x, 0, 1e-5f);
+      EXPECT_NEAR(t.y, w < 0 ? -1 : 1, 1e-5f);
+      EXPECT_NEAR(t.z, 0, 1e-5f);
+    }
+  }
 }
 
 TEST(GltfCompression, Meshopt) {

@@ -15,7 +15,6 @@ namespace {
 using namespace description;
 using nlohmann::json;
 using test::corners;
-using test::gltf_error;
 using test::GltfWriter;
 using test::one_mesh;
 using test::read_gltf;
@@ -162,10 +161,12 @@ TEST(GltfMaterial, TexturesKeepTheirChannels) {
     EXPECT_EQ(material.normal_map->image.encoding, Encoding::linear);
     EXPECT_EQ(material.normal_map->image.embedded, 1u);
   }
-  const ImageTexture alpha = image(scene.shapes[0].alpha);
+  const auto& mask =
+      std::get<ThresholdTexture<FloatParameter>>(scene.float_textures.at(scene.shapes[0].alpha.texture.value()).node);
+  const ImageTexture alpha = image(mask.value);
   EXPECT_EQ(alpha.channel, 3);
   EXPECT_EQ(alpha.scale, 0.75f);
-  EXPECT_EQ(alpha.threshold, 0.5f);
+  EXPECT_EQ(mask.least, 0.5f);
 }
 
 TEST(GltfMaterial, TextureTransform) {
@@ -389,15 +390,6 @@ TEST(GltfMaterial, IridescenceVaries) {
   EXPECT_EQ(thickness.tex1.value, 100);
   EXPECT_EQ(thickness.tex2.value, 400);
   EXPECT_EQ(std::get<ImageTexture>(scene.float_textures.at(*thickness.amount.texture).node).channel, 1);
-  const auto error = [](const char* key) {
-    GltfWriter bad;
-    bad.mesh(corners, {0, 1, 2}, bad.add("materials", {{"extensions", {{"KHR_materials_iridescence", {{key, -1}}}}}}));
-    bad.node({{"mesh", 0}});
-    return gltf_error(bad);
-  };
-  const std::string place = "t.gltf#/materials/0/extensions/KHR_materials_iridescence/";
-  EXPECT_EQ(error("iridescenceIor"), place + "iridescenceIor: must be at least 1");
-  EXPECT_EQ(error("iridescenceThicknessMinimum"), place + "iridescenceThicknessMinimum: must not be negative");
 }
 
 TEST(GltfMaterial, AnisotropyStretchesAndTurns) {
@@ -423,6 +415,28 @@ TEST(GltfMaterial, AnisotropyStretchesAndTurns) {
   file.root["meshes"][0]["primitives"][0]["attributes"]["TANGENT"] =
       file.accessor<float>({0, 1, 0, -1, 0, 1, 0, -1, 0, 1, 0, -1}, 4);
   EXPECT_NEAR(turned_to().x, 1, 1e-5f);  // with w = -1, in the opposite sense, from y
+}
+
+// The mask compares the product of the factor's, the texture's and the vertices' alpha with the cutoff.
+TEST(GltfMaterial, AlphaOfVerticesCountsWithMasks) {
+  const auto is_hit = [](float factor, float of_vertices, const char* mode) {
+    GltfWriter file;
+    file.mesh(corners, {0, 1, 2},
+              file.add("materials", {{"alphaMode", mode},
+                                     {"alphaCutoff", 0.5},
+                                     {"pbrMetallicRoughness", {{"baseColorFactor", {1, 1, 1, factor}}}}}));
+    json& attributes = file.root["meshes"][0]["primitives"][0]["attributes"];
+    const float a = of_vertices;
+    attributes["COLOR_0"] = file.accessor<float>({1, 1, 1, a, 1, 1, 1, a, 1, 1, 1, a}, 4);
+    file.node({{"mesh", 0}});
+    return Scene(read_gltf(file)).intersect({{0.25f, 0.25f, 1}, {0, 0, -1}}, Wavelengths::rgb(0.5f)).has_value();
+  };
+  EXPECT_TRUE(is_hit(1, 0.6f, "MASK"));
+  EXPECT_FALSE(is_hit(1, 0.4f, "MASK"));
+  EXPECT_FALSE(is_hit(0.8f, 0.6f, "MASK"));
+  EXPECT_FALSE(is_hit(1, 0, "MASK"));
+  EXPECT_FALSE(is_hit(1, 0, "BLEND"));
+  EXPECT_TRUE(is_hit(1, 0, "OPAQUE"));
 }
 
 TEST(GltfMaterial, BothAxesOfATextureWrapAsTheyAre) {
