@@ -75,8 +75,9 @@ void warn_of_exposure(const fs::path& path, const Image& image, const DisplaySet
   const auto bright =
       brightest.begin() + static_cast<std::ptrdiff_t>((1 - few) * static_cast<double>(brightest.size()));
   std::nth_element(brightest.begin(), bright, brightest.end());
-  warn("{}: {:.0f} % of the pixels are brighter than white: --exposure {:.1f} or --view-transform filmic shows them",
-       path.string(), 100 * clipped, std::floor(-10 * std::log2(static_cast<double>(*bright))) / 10);
+  warn(
+      "{}: {:.0f} % of the pixels are brighter than white: --exposure {:.1f} or --view-transform highlights shows them",
+      path.string(), 100 * clipped, std::floor(-10 * std::log2(static_cast<double>(*bright))) / 10);
 }
 
 }  // namespace
@@ -118,7 +119,12 @@ OptionTable display_options(OutputSettings& settings, const std::string& default
            .brief = "Exposure in stops, or auto; .exr files do not change",
            .details = "auto makes a white surface in the picture's light white and prints the number.",
            .otherwise = default_exposure},
-          view_transform_option(settings.display),
+          {.names = "--view-transform",
+           .value = into(settings.curve, view_transform_type()),
+           .brief = "Tone curve for bright colours",
+           .details = "none clips them; highlights compresses only what is bright, as far as the brightest part of the "
+                      "picture needs; filmic rolls colours off; agx also desaturates them, as film does.",
+           .otherwise = "highlights where the exposure is measured, else none"},
           {.names = "--ocio",
            .value = into(settings.display.ocio, ocio_type()),
            .brief = "Use a view of an OpenColorIO configuration instead",
@@ -128,15 +134,14 @@ OptionTable display_options(OutputSettings& settings, const std::string& default
 }
 
 ValueType<ToneCurve> view_transform_type() {
-  return choice_type<ToneCurve>({{"none", ToneCurve::none}, {"filmic", ToneCurve::filmic}, {"agx", ToneCurve::agx}});
+  return choice_type<ToneCurve>({{"none", ToneCurve::none},
+                                 {"highlights", ToneCurve::highlights},
+                                 {"filmic", ToneCurve::filmic},
+                                 {"agx", ToneCurve::agx}});
 }
 
-Option view_transform_option(DisplaySettings& display) {
-  return {.names = "--view-transform",
-          .value = into(display.curve, view_transform_type()),
-          .brief = "Tone curve for bright colours",
-          .details = "none clips them; filmic rolls them off; agx also desaturates them, as film does.",
-          .otherwise = "none"};
+ToneCurve curve_of(const OutputSettings& settings, bool is_measured) {
+  return settings.curve.value_or(is_measured ? ToneCurve::highlights : ToneCurve::none);
 }
 
 OutputSettings shown_as(const DisplaySettings& display, bool measures_exposure, bool film_measures) {
@@ -144,6 +149,7 @@ OutputSettings shown_as(const DisplaySettings& display, bool measures_exposure, 
   settings.display = display;
   const bool is_default = measures_exposure ? film_measures : !film_measures && display.exposure == 0;
   if (!is_default) settings.measures_exposure = measures_exposure;
+  if (display.curve != curve_of({}, measures_exposure)) settings.curve = display.curve;
   return settings;
 }
 
@@ -194,6 +200,7 @@ DisplaySettings write(const fs::path& path, const Image& image, const OutputSett
                       const std::string& metadata) {
   DisplaySettings display = settings.display;
   display.display_emission = displays_emission(metadata);
+  display.curve = curve_of(settings, measures_exposure);
   if (measures_exposure) display.exposure = measured_exposure(image);
   write_image(path, image, display, metadata);
   return display;
@@ -262,7 +269,8 @@ void write_picture(const fs::path& path, const Image& image, const OutputSetting
   const DisplaySettings display = write(path, image, settings, is_measured, metadata);
   if (!settings.hints || has_layers(path)) return;
   if (is_measured)
-    announce("{}: --exposure {:.1f}, measured from the picture\n", path.string(), display.exposure);
+    announce("{}: --exposure {:.1f}{}, measured from the picture\n", path.string(), display.exposure,
+             settings.curve || display.ocio ? "" : " --view-transform highlights");
   else
     warn_of_exposure(path, image, display);
 }

@@ -18,7 +18,8 @@
 namespace lanthorn::program {
 
 struct OutputSettings {
-  DisplaySettings display;                ///< for all pictures but .exr
+  DisplaySettings display;                ///< for all pictures but .exr, apart from its curve
+  std::optional<ToneCurve> curve;         ///< nullopt: highlights where the exposure is measured, else none
   std::optional<bool> measures_exposure;  ///< of each picture; false: use the display's; nullopt: the scene decides
   bool reproducible = false;              ///< omit times from the files
   bool denoise = false;                   ///< .exr files also get the denoised layers, all others show them
@@ -30,8 +31,8 @@ struct OutputSettings {
 inline constexpr const char* exposure_of_scene =
     "auto for glTF and OBJ files with lights, since they have no exposure; else 0";
 ValueType<ToneCurve> view_transform_type();
-/// --view-transform.
-Option view_transform_option(DisplaySettings& display);
+/// The curve that applies if the exposure is measured or not.
+ToneCurve curve_of(const OutputSettings& settings, bool is_measured);
 /// --exposure, --view-transform and --ocio. `default_exposure`: for the help.
 OptionTable display_options(OutputSettings& settings, const std::string& default_exposure);
 /// The settings that correspond to a displayed picture. `film_measures`: measure the exposure if --exposure is not

@@ -122,26 +122,33 @@ Observer make_observer(const RenderCommand& a, Onlookers& onlookers) {
   return observer;
 }
 
-// An entirely black picture does not show its cause: explain it.
-void explain_black(const RenderCommand& a, const Scene& scene, const ViewDescription& view, const fs::path& output,
-                   const Session& session) {
+// An entirely black picture, or one that needs a huge exposure, does not show its cause: explain it. `exposure`: if it
+// was measured.
+void explain_darkness(const RenderCommand& a, const Scene& scene, const ViewDescription& view, const fs::path& output,
+                      const Session& session, const std::optional<float>& exposure) {
+  constexpr float most_stops = 12;
   if (a.quiet) return;
+  if (exposure > most_stops)
+    warn("{}: the camera sees next to nothing, so that an exposure of {:.1f} stops was measured: {}", output.string(),
+         *exposure, reason_for_faint(scene, view));
   const auto color = select_layer(picture_without_error(session.state()), "color");
   if (!color || std::any_of(color->pixels.begin(), color->pixels.end(), [](float x) { return x != 0; })) return;
   warn("{}: the picture is black: {}", output.string(), reason_for_black(scene, view));
 }
 
-// Shared state of the frames of a film: all use the exposure measured from the first frame and, where the file has no
-// camera that sees anything, the previous frame's. No message is repeated for a later frame.
+// Shared state of the frames of a film: all use the exposure and highlights of the first frame and, where the file has
+// no camera that sees anything, the previous frame's. No message is repeated for a later frame.
 struct Film {
   SaidLines said{};
-  std::optional<float> exposure{};
+  std::optional<DisplaySettings> measured{};
   std::optional<description::Camera> camera{};
   DVec3 origin{0.0};  ///< of camera space
 
   void keep_exposure(OutputSettings& settings) const {
-    if (!exposure) return;
-    settings.display.exposure = *exposure;
+    if (!measured) return;
+    settings.display.exposure = measured->exposure;
+    settings.display.brightest = measured->brightest;
+    settings.curve = measured->curve;
     settings.measures_exposure = false;
     settings.hints = false;
   }
@@ -166,9 +173,11 @@ void explain_coarse(const CoarsePicture& coarse) {
       coarse.width, coarse.height, format_duration(coarse.pass_seconds));
 }
 
-std::optional<float> exposure_measured(const RenderCommand& a, const Session& session) {
+std::optional<DisplaySettings> measured_display(const RenderCommand& a, const Session& session) {
   if (!a.output.measures_exposure.value_or(summarize(session.state()).measures_exposure)) return {};
-  return measured_exposure(picture_without_error(session.state()));
+  const Image picture = picture_without_error(session.state());
+  return DisplaySettings{
+      .exposure = measured_exposure(picture), .curve = curve_of(a.output, true), .brightest = brightest_level(picture)};
 }
 
 // What is checked and read once before the render.
@@ -207,8 +216,10 @@ void save_view(const RenderCommand& a, const std::vector<fs::path>& outputs, con
                const ViewDescription& view, const Session& session, const RenderStatistics& statistics,
                std::optional<DenoisedLooks::Found> found, Film& film) {
   save_render(a, a.options, outputs, scene, session.state(), statistics, std::move(found));
-  if (!film.exposure) film.exposure = exposure_measured(a, session);
-  explain_black(a, scene, view, outputs.front(), session);
+  const bool is_first_frame = !film.measured;
+  if (is_first_frame) film.measured = measured_display(a, session);
+  explain_darkness(a, scene, view, outputs.front(), session,
+                   is_first_frame && film.measured ? std::optional(film.measured->exposure) : std::nullopt);
   if (statistics.out_of_memory)
     throw Error(
         fmt::format("not enough memory for a pass: the pictures hold the {} passes before it; fewer --photons "

@@ -151,6 +151,7 @@ void run_view(const ViewCommand& a) {
   SceneDescription description = read_scene(a.scene, a.reading);
   const bool film_measures = description.view.film.measures_exposure;
   options.measures_exposure = a.picture.measures_exposure.value_or(film_measures);
+  options.display.curve = curve_of(a.picture, options.measures_exposure);
   options.command = [&a, film_measures](const ShownRender& shown) { return command_of(a, shown, film_measures); };
   check_view(description.view, options.render);
   std::vector<OutputFile> outputs;

@@ -20,6 +20,9 @@ enum class ToneCurve : std::uint8_t {
   none,    ///< clamp
   filmic,  ///< a film-like shoulder and toe (Narkowicz 2015, fit of the ACES curve)
   agx,     ///< bright colours desaturate, as on film (Sobotka's AgX)
+  /// Unchanged up to 70 % of white; brighter components are compressed logarithmically, so that the brightest part of
+  /// the picture becomes white. A picture that is nowhere brighter than white does not change.
+  highlights,
 };
 
 /// A view of an OpenColorIO configuration.
@@ -33,8 +36,9 @@ struct DisplaySettings {
   static constexpr float largest_exposure = 64;
   float exposure = 0;  ///< stops: colours are scaled by 2^exposure
   ToneCurve curve = ToneCurve::none;
-  std::optional<OcioView> ocio{};  ///< instead of the curve
-  bool display_emission = false;   ///< show the layer `emission` unchanged: without exposure, curve and view
+  std::optional<float> brightest{};  ///< for ToneCurve::highlights; nullopt: `brightest_level` of the picture
+  std::optional<OcioView> ocio{};    ///< instead of the curve
+  bool display_emission = false;     ///< show the layer `emission` unchanged: without exposure, curve and view
 };
 
 /// A picture of one layer, such as `select_layer` returns, with its channels renamed so that it is the layer `color`.
@@ -51,6 +55,10 @@ Image displayed(const Image& image, const DisplaySettings& display = {});
 /// surfaces or layers are missing, the 90 % quantile of the brightest component of all pixels that are not black
 /// becomes white. 0 for black pictures.
 float measured_exposure(const Image& image);
+
+/// The radiance that a thousandth of the pixels' brightest components exceed, in the layer `color` or the only layer; 0
+/// for other pictures.
+float brightest_level(const Image& image);
 
 /// An EXR file of all channels as 32-bit floats, except noise channels as 16-bit floats (ZIP compression), with
 /// `image.window` as data and display window. The channel depth.Z is stored as Z, as other programs expect it, and is

@@ -17,8 +17,10 @@ namespace lanthorn::plain {
 
 template <>
 struct Names<ToneCurve> {
-  static constexpr std::array<std::pair<std::string_view, ToneCurve>, 3> list{
-      {{"none", ToneCurve::none}, {"filmic", ToneCurve::filmic}, {"agx", ToneCurve::agx}}};
+  static constexpr std::array<std::pair<std::string_view, ToneCurve>, 4> list{{{"none", ToneCurve::none},
+                                                                               {"highlights", ToneCurve::highlights},
+                                                                               {"filmic", ToneCurve::filmic},
+                                                                               {"agx", ToneCurve::agx}}};
 };
 
 }  // namespace lanthorn::plain
@@ -120,8 +122,10 @@ Picture picture_of_array(const py::object& data, const std::optional<std::vector
 DisplaySettings display_of(const Picture& picture, const std::optional<float>& exposure, const py::object& curve) {
   DisplaySettings display;
   Reader reader;
-  reader.at("curve", [&] { read(reader, curve, display.curve); });
-  display.exposure = exposure ? *exposure : picture.measures_exposure ? measured_exposure(picture.image) : 0;
+  const bool is_measured = !exposure && picture.measures_exposure;
+  if (is_measured) display.curve = ToneCurve::highlights;
+  if (!curve.is_none()) reader.at("curve", [&] { read(reader, curve, display.curve); });
+  display.exposure = is_measured ? measured_exposure(picture.image) : exposure.value_or(0);
   display.display_emission = picture.display_emission;
   return display;
 }
@@ -161,7 +165,6 @@ void bind_error_estimate(py::module_& module) {
 
 void bind_picture(py::module_& module) {
   bind_error_estimate(module);
-  const py::object none_curve = py::str("none");
   py::class_<Picture>(
       module, "Picture",
       "A picture of named float32 layers in linear Rec.709 colours, rows from the top.\n\n"
@@ -194,15 +197,15 @@ void bind_picture(py::module_& module) {
       .def_readonly("error", &Picture::error,
                     "ErrorEstimate: the picture's estimated error; None for pictures that were not rendered.")
       .def("save", &save, py::arg("path"), py::kw_only(), py::arg("exposure") = py::none(),
-           py::arg("curve") = none_curve,
+           py::arg("curve") = py::none(),
            "Writes .exr (all layers), .png, .jpg or .tif, whole or not at all. `exposure`: stops; None: measured if "
            "the\n"
-           "scene's file specifies none. `curve`: 'none', 'filmic' or 'agx'. EXR files store linear values unchanged.")
-      .def("png", &png_of, py::kw_only(), py::arg("exposure") = py::none(), py::arg("curve") = none_curve,
+           "scene's file specifies none. `curve`: 'none', 'highlights', 'filmic' or 'agx'; None: 'highlights' if the\n"
+           "exposure is measured, else 'none'. EXR files store linear values unchanged.")
+      .def("png", &png_of, py::kw_only(), py::arg("exposure") = py::none(), py::arg("curve") = py::none(),
            "The bytes of an 8-bit sRGB PNG file of the layer 'color'. Parameters as `save`.")
       .def(
-          "_repr_png_", [none_curve](const Picture& p) { return png_of(p, {}, py::str("none")); },
-          "Representation in notebooks.")
+          "_repr_png_", [](const Picture& p) { return png_of(p, {}, py::none()); }, "Representation in notebooks.")
       .def("__repr__", [](const Picture& p) {
         return "<lanthorn.Picture " + std::to_string(p.image.width) + " x " + std::to_string(p.image.height) + ", " +
                std::to_string(layer_names(p.image).size()) + " layers>";

@@ -3,6 +3,7 @@
 // From linear colours to display values.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 #include "lanthorn/image_file.h"
@@ -47,23 +48,59 @@ inline Rgb agx(const Rgb& linear) {
   return {outside(inside.r), outside(inside.g), outside(inside.b)};
 }
 
-/// Linear colour to sRGB-encoded display values in [0,1]: exposure, curve, clamp, transfer. NaN becomes black, infinity
-/// white.
-inline Rgb to_display(const Rgb& linear, const DisplaySettings& display) {
-  const float gain = std::exp2(display.exposure);
-  if (display.curve == ToneCurve::agx) {
-    const auto usable = [&](float x) { return x * gain > 0 ? std::fmin(x * gain, 1e4f) : 0.0f; };
-    return agx({usable(linear.r), usable(linear.g), usable(linear.b)});
+/// The curve of ToneCurve::highlights: y = x up to the knee k = 0.7, and y = k + log(1 + a (x - k)) / a above it, which
+/// has slope 1 at the knee. The strength a is such that `white` becomes 1: a (1 - k) = log(1 + a (white - k)).
+class HighlightCurve {
+ public:
+  static constexpr float knee = 0.7f;
+
+  explicit HighlightCurve(float white) {
+    constexpr double most = 65536, least = 1.0001, strongest = 100;
+    const double span = std::min(static_cast<double>(white), most) - static_cast<double>(knee), left = 1 - knee;
+    if (!(white > least)) return;
+    // The difference of both sides is convex: Newton's method descends from the right to the positive root.
+    double a = strongest;
+    for (int i = 0; i < 64; ++i) a -= (left * a - std::log1p(a * span)) / (left - span / (1 + a * span));
+    strength_ = static_cast<float>(a);
   }
-  const auto encode = [&](float x) {
-    x *= gain;
-    if (!(x > 0)) return 0.0f;
-    // Both curves reach 1 long before this limit; larger numbers would overflow in the filmic curve.
-    x = std::fmin(x, 1e4f);
-    if (display.curve == ToneCurve::filmic) x = filmic_curve(x);
-    return srgb_from_linear(std::fmin(x, 1.0f));
-  };
-  return {encode(linear.r), encode(linear.g), encode(linear.b)};
-}
+  float operator()(float x) const {
+    return x > knee && strength_ > 0 ? knee + std::log1p(strength_ * (x - knee)) / strength_ : x;
+  }
+  /// 0: the curve is y = x.
+  float strength() const { return strength_; }
+
+ private:
+  float strength_ = 0;
+};
+
+/// Linear colours to sRGB-encoded display values in [0,1]: exposure, curve, clamp, transfer. NaN becomes black,
+/// infinity white. With ToneCurve::highlights, a missing `brightest` counts as white.
+class DisplayTransform {
+ public:
+  explicit DisplayTransform(const DisplaySettings& display)
+      : curve_(display.curve),
+        gain_(std::exp2(display.exposure)),
+        highlights_(display.curve == ToneCurve::highlights ? display.brightest.value_or(0) * gain_ : 0) {}
+
+  Rgb operator()(const Rgb& linear) const {
+    if (curve_ == ToneCurve::agx) return agx({usable(linear.r), usable(linear.g), usable(linear.b)});
+    return {encode(linear.r), encode(linear.g), encode(linear.b)};
+  }
+
+ private:
+  // All curves reach 1 before this limit; larger numbers would overflow in the filmic curve.
+  float usable(float x) const { return x * gain_ > 0 ? std::fmin(x * gain_, 65536.0f) : 0.0f; }
+  float encode(float x) const {
+    x = usable(x);
+    if (curve_ == ToneCurve::filmic) x = filmic_curve(x);
+    return srgb_from_linear(std::fmin(highlights_(x), 1.0f));
+  }
+
+  ToneCurve curve_;
+  float gain_;
+  HighlightCurve highlights_;
+};
+
+inline Rgb to_display(const Rgb& linear, const DisplaySettings& display) { return DisplayTransform(display)(linear); }
 
 }  // namespace lanthorn

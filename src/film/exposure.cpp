@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "lanthorn/image_file.h"
@@ -45,13 +46,18 @@ std::vector<float> colours(const Image& image) {
   return values;
 }
 
+// The value that the fraction 1 - `share` of the values exceeds.
+float quantile(std::vector<float> values, double share) {
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
 // The brightness exceeded by a tenth of the values, ignoring black ones. nullopt if fewer than `fewest` remain.
 std::optional<float> bright_level(std::vector<float> values, double fewest) {
   std::erase_if(values, [](float x) { return !(x > 0) || !std::isfinite(x); });
   if (values.empty() || static_cast<double>(values.size()) < fewest) return {};
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(0.9 * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
+  return quantile(std::move(values), 0.9);
 }
 
 }  // namespace
@@ -63,6 +69,12 @@ float measured_exposure(const Image& image) {
   if (!white) return 0;
   const float stops = -std::round(10 * std::log2(*white)) / 10;
   return std::clamp(stops, -DisplaySettings::largest_exposure, DisplaySettings::largest_exposure);
+}
+
+float brightest_level(const Image& image) {
+  std::vector<float> values = colours(layer_names(image).size() == 1 ? as_color(image) : image);
+  std::erase_if(values, [](float x) { return !std::isfinite(x); });
+  return values.empty() ? 0 : quantile(std::move(values), 0.999);
 }
 
 }  // namespace lanthorn

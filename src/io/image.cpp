@@ -116,8 +116,11 @@ void apply_ocio(const OcioView& ocio, float gain, Image& colors) {
 
 void apply_curve(const DisplaySettings& display, Image& colors) {
   std::vector<float>& values = colors.pixels;
+  DisplaySettings settings = display;
+  if (settings.curve == ToneCurve::highlights && !settings.brightest) settings.brightest = brightest_level(colors);
+  const DisplayTransform transform(settings);
   for (std::size_t i = 0; i + 2 < values.size(); i += 3) {
-    const Rgb encoded = to_display({values[i], values[i + 1], values[i + 2]}, display);
+    const Rgb encoded = transform({values[i], values[i + 1], values[i + 2]});
     values[i] = encoded.r, values[i + 1] = encoded.g, values[i + 2] = encoded.b;
   }
 }

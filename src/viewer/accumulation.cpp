@@ -71,6 +71,7 @@ void Accumulation::present(const ToneSettings& tone) {
   tone_.set("shown", tone.shown);
   tone_.set("exposure", tone.exposure);
   tone_.set("curve", static_cast<int>(tone.curve));
+  tone_.set("highlight_strength", tone.highlight_strength);
   tone_.set("height", 0);
   glDisable(GL_BLEND);
   screen_triangle_.draw();

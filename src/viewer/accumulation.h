@@ -22,11 +22,13 @@ struct ToneSettings {
     clipped = gpu::curve_clipped,
     reinhard = gpu::curve_reinhard,
     filmic = gpu::curve_filmic,
-    agx = gpu::curve_agx
+    agx = gpu::curve_agx,
+    highlights = gpu::curve_highlights
   };
   float exposure = 1;  ///< factor of radiance
   Curve curve = Curve::clipped;
-  glm::vec4 shown{1};  ///< factors of emission, direct, indirect, caustic
+  float highlight_strength = 0;  ///< of `HighlightCurve`
+  glm::vec4 shown{1};            ///< factors of emission, direct, indirect, caustic
 };
 
 class Accumulation {

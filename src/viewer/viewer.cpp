@@ -16,6 +16,7 @@
 #include <system_error>
 #include <utility>
 
+#include "film/display.h"
 #include "gl/context.h"
 #include "lanthorn/denoise.h"
 #include "lanthorn/file.h"
@@ -90,6 +91,7 @@ CameraPose first_pose(const ViewDescription& description, const Scene& scene, co
 
 ToneSettings::Curve window_curve(ToneCurve curve) {
   if (curve == ToneCurve::filmic) return ToneSettings::Curve::filmic;
+  if (curve == ToneCurve::highlights) return ToneSettings::Curve::highlights;
   return curve == ToneCurve::agx ? ToneSettings::Curve::agx : ToneSettings::Curve::clipped;
 }
 
@@ -175,6 +177,7 @@ class Viewer {
   Transform saved_camera_;
   SharedScene saved_scene_;
   bool is_black_ = false;               // the picture that was measured last
+  float brightest_ = 0;                 // of that picture
   std::uint64_t next_measurement_ = 1;  // frames in the mean
   ViewerClock::time_point started_ = ViewerClock::now(), last_change_ = ViewerClock::now();
   std::uint64_t frames_ = 0;
@@ -357,6 +360,7 @@ void Viewer::measure() {
   const Image image = offline_ ? offline_->image : picture_.read();
   is_black_ = std::none_of(image.pixels.begin(), image.pixels.end(), [](float value) { return value > 0; });
   if (panel_.measures_exposure && !is_black_) panel_.exposure = measured_exposure(image);
+  brightest_ = brightest_level(image);
 }
 
 std::string Viewer::notice() const {
@@ -442,6 +446,8 @@ void Viewer::present() {
   ToneSettings tone;
   tone.exposure = std::exp2(panel_.exposure);
   tone.curve = window_curve(panel_.curve);
+  if (panel_.curve == ToneCurve::highlights)
+    tone.highlight_strength = HighlightCurve(brightest_ * tone.exposure).strength();
   if (panel_.layer > 0) {
     tone.shown = glm::vec4(0);
     tone.shown[panel_.layer - 1] = 1;

@@ -171,10 +171,11 @@ TEST_F(CommandLine, IsQuotedForAShell) {
 
 // For a picture shown in a window: scenes with and without an exposure of their own.
 TEST_F(CommandLine, HasTheExposureThatIsShown) {
-  const auto line = [](float stops, bool is_measured, bool film_measures) {
+  const auto line = [](float stops, bool is_measured, bool film_measures, std::optional<ToneCurve> curve = {}) {
     RenderCommand render;
     render.scene = "tiny.pbrt";
-    render.output = shown_as({stops, ToneCurve::none}, is_measured, film_measures);
+    const ToneCurve otherwise = is_measured ? ToneCurve::highlights : ToneCurve::none;
+    render.output = shown_as({stops, curve.value_or(otherwise)}, is_measured, film_measures);
     return render_command_line(render);
   };
   const std::string plain = "lanthorn render tiny.pbrt";
@@ -184,6 +185,8 @@ TEST_F(CommandLine, HasTheExposureThatIsShown) {
   EXPECT_EQ(line(1.5f, false, true), plain + " --exposure 1.5");
   EXPECT_EQ(line(1.5f, true, true), plain);
   EXPECT_EQ(line(1.5f, true, false), plain + " --exposure auto");
+  EXPECT_EQ(line(0, true, true, ToneCurve::none), plain + " --view-transform none");
+  EXPECT_EQ(line(0, false, false, ToneCurve::highlights), plain + " --view-transform highlights");
 }
 
 TEST_F(CommandLine, OneOptionIsTheTimeOfAnAnimation) {

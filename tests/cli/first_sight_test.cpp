@@ -99,12 +99,37 @@ TEST_F(FirstSight, ModelsWithoutAnExposureGetOne) {
   const std::size_t at = said.find("a.png: --exposure ");
   ASSERT_NE(at, said.npos) << said;
   // The reported exposure reproduces the picture, and so does a state.
-  const std::string stops = said.substr(at + 18, said.find(',', at) - at - 18);
+  const std::string stops = said.substr(at + 18, said.find(' ', at + 18) - at - 18);
+  EXPECT_TRUE(contains(said, stops + " --view-transform highlights, measured from the picture")) << said;
   succeed({"merge", "a.state", "-o", "merged.png", "--reproducible"});
-  succeed({"merge", "a.state", "-o", "same.png", "--reproducible", "--exposure", stops});
+  succeed(
+      {"merge", "a.state", "-o", "same.png", "--reproducible", "--exposure", stops, "--view-transform", "highlights"});
   expect_equal_files("merged.png", "same.png");
   EXPECT_FALSE(contains(succeed(words + Words{"--exposure", "0"}).out, "--exposure"));
   EXPECT_LT(brightest(path("a.png")), 0.2f);
+}
+
+// A huge exposure means that the camera sees next to nothing: a message says why.
+TEST_F(FirstSight, TheReasonForAHugeExposureIsSaid) {
+  const auto said = [&](const std::string& file, const std::string& text) {
+    dir_.write(file, text);
+    return run({"render", file, "-i", "path", "-r", "16x16", "-p", "16", "--exposure", "auto", "-o", "a.png"}).err;
+  };
+  const std::string huge = "a.png: the camera sees next to nothing, so that an exposure of ";
+  std::string faint = dim_model;
+  faint.replace(faint.find("0.01}"), 4, "1e-7");
+  const std::string of_faint = said("faint.gltf", faint);
+  EXPECT_TRUE(contains(of_faint, huge) && contains(of_faint, "the lights are faint, or far")) << of_faint;
+  EXPECT_FALSE(contains(said("dim.gltf", dim_model), huge));
+  // A lamp that faces away from the floor lights it by way of a distant, nearly black ceiling.
+  const std::string of_hidden =
+      said("hidden.pbrt",
+           "LookAt 0 1 0  0 0 .1  0 0 1 Camera \"perspective\" WorldBegin\n"
+           "AttributeBegin Translate 0 2 0 Rotate -90 1 0 0 AreaLightSource \"diffuse\" Shape \"disk\" AttributeEnd\n"
+           "AttributeBegin Translate 0 50 0 Rotate 90 1 0 0 Material \"diffuse\" \"rgb reflectance\" [.001 .001 .001] "
+           "Shape \"disk\" \"float radius\" 50 AttributeEnd\n"
+           "Rotate -90 1 0 0 Shape \"disk\" \"float radius\" 20\n");
+  EXPECT_TRUE(contains(of_hidden, huge) && contains(of_hidden, "no light is in sight")) << of_hidden;
 }
 
 // The pixel's colour as a linear display value.

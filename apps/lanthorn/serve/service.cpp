@@ -176,17 +176,17 @@ HttpResponse ViewService::scene() const {
     environments.push_back(
         {{"source", source},
          {"label", source.empty() ? "As in the file" : std::filesystem::path(source).filename().string()}});
+  const bool is_measured = display_.measures_exposure.value_or(viewer_.first_view().film.measures_exposure);
   return {HttpStatus::ok, json_type,
-          share(json_text(
-              {{"title", title_},
-               {"lights", lights},
-               {"methods", known_methods},
-               {"environments", environments},
-               {"warnings", warnings},
-               {"exposure", display_.display.exposure},
-               {"measures_exposure", display_.measures_exposure.value_or(viewer_.first_view().film.measures_exposure)},
-               {"curve", view_transform_type().print(display_.display.curve)}},
-              one_line))};
+          share(json_text({{"title", title_},
+                           {"lights", lights},
+                           {"methods", known_methods},
+                           {"environments", environments},
+                           {"warnings", warnings},
+                           {"exposure", display_.display.exposure},
+                           {"measures_exposure", is_measured},
+                           {"curve", view_transform_type().print(curve_of(display_, is_measured))}},
+                          one_line))};
 }
 
 HttpResponse ViewService::frame(const HttpRequest& request, const IsGone& is_gone) const {

@@ -9,6 +9,7 @@ layout(binding = unit_layer_caustic) uniform sampler2D layer_caustic;
 uniform vec4 shown;     // factors of the four layers
 uniform float exposure;
 uniform int curve;      // ToneSettings::Curve; Reinhard's is x/(1+x)
+uniform float highlight_strength;  // of film/display.h's HighlightCurve
 uniform int height;     // of the picture; > 0: the first row is drawn at the upper edge
 layout(location = 0) out vec4 colour;
 
@@ -17,6 +18,13 @@ vec3 encode_srgb(vec3 x) {
 }
 // Narkowicz 2015, "ACES filmic tone mapping curve".
 vec3 filmic(vec3 x) { return (x * (2.51 * x + 0.03)) / (x * (2.43 * x + 0.59) + 0.14); }
+
+// As in film/display.h; the knee is where it is there.
+vec3 highlights(vec3 x) {
+  const float knee = 0.7;
+  vec3 bright = knee + log(1 + highlight_strength * max(x - knee, vec3(0))) / max(highlight_strength, 1e-6);
+  return highlight_strength > 0 ? mix(x, bright, greaterThan(x, vec3(knee))) : x;
+}
 
 // AgX, as in film/display.h, to display values.
 vec3 agx_sigmoid(vec3 x) {
@@ -43,5 +51,6 @@ void main() {
   x = max(x, vec3(0));
   if (curve == curve_reinhard) x = x / (1 + x);
   if (curve == curve_filmic) x = filmic(x);
+  if (curve == curve_highlights) x = highlights(x);
   colour = curve == curve_agx ? vec4(agx(x), 1) : vec4(encode_srgb(clamp(x, vec3(0), vec3(1))), 1);
 }

@@ -70,6 +70,7 @@ const int curve_clipped = 0;
 const int curve_reinhard = 1;
 const int curve_filmic = 2;
 const int curve_agx = 3;
+const int curve_highlights = 4;
 
 // Threads of a group of one-dimensional compute shaders.
 const int work_group = 64;

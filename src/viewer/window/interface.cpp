@@ -150,7 +150,7 @@ void draw_tone(Panel& panel) {
                                 ? "Pictures at rest (N): a preview while passes are rendered, full quality at the end"
                                 : "Only pictures of offline methods can be denoised");
   int curve = static_cast<int>(panel.curve);
-  if (ImGui::Combo("View", &curve, "Clipped\0Filmic\0AgX\0")) panel.curve = static_cast<ToneCurve>(curve);
+  if (ImGui::Combo("View", &curve, "Clipped\0Filmic\0AgX\0Highlights\0")) panel.curve = static_cast<ToneCurve>(curve);
   ImGui::Combo("Layer", &panel.layer, "All light\0Emission\0Direct\0Indirect\0Caustic\0");
 }
 

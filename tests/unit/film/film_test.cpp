@@ -554,6 +554,42 @@ TEST(Display, AgxKeepsGreysAndTakesSaturationFromBrightColours) {
   EXPECT_NEAR(to_display({-1, std::nanf(""), 0}, display).r, 0, 1e-6f);
 }
 
+// Properties of the curve by construction, for whites up to sixteen stops above white.
+TEST(Display, HighlightsAreCompressedUpToTheBrightest) {
+  for (const float white : {1.001f, 1.5f, 4.0f, 160.0f, 60000.0f}) {
+    const HighlightCurve curve(white);
+    for (const float x : {0.0f, 0.1f, 0.7f}) EXPECT_EQ(curve(x), x);
+    EXPECT_NEAR(curve(white), 1, 1e-4f) << white;
+    const float step = 1e-3f;
+    EXPECT_NEAR((curve(0.7f + step) - 0.7f) / step, 1, 0.05f) << "no kink at the knee";
+    for (float x = 0.7f; 1.1f * x < white; x *= 1.1f) EXPECT_GT(curve(1.1f * x), curve(x));
+    EXPECT_LE(curve(1), 1);
+    EXPECT_GT(curve(1), 0.75f) << "white surfaces stay nearly white beside any lamp";
+  }
+  for (const float white : {0.0f, 0.5f, 1.0f}) EXPECT_EQ(HighlightCurve(white)(3), 3);
+}
+
+TEST(Display, HighlightsKeepPicturesWithoutAny) {
+  Image image(100, 20, {"R", "G", "B"});  // from black to white
+  for (std::size_t i = 0; i < image.pixels.size(); ++i)
+    image.pixels[i] = static_cast<float>(i) / static_cast<float>(image.pixels.size() - 1);
+  EXPECT_EQ(displayed(image, {.curve = ToneCurve::highlights}).pixels, displayed(image).pixels);
+  EXPECT_NEAR(brightest_level(image), 0.999f, 1e-3f);
+  // A lamp in 1 % of the picture, with a gradient from 50 to 100, and a firefly.
+  constexpr std::size_t lamp = 20;
+  for (std::size_t p = 0; p < lamp; ++p)
+    for (std::size_t c = 0; c < 3; ++c) image.pixels[3 * p + c] = 50 + 2.5f * static_cast<float>(p + 1);
+  image.pixels.back() = 1e6f;
+  EXPECT_NEAR(brightest_level(image), 100, 3);
+  const Image kept = displayed(image, {.curve = ToneCurve::highlights}), burnt = displayed(image);
+  EXPECT_EQ(burnt.pixels[0], burnt.pixels[3 * lamp - 1]);
+  EXPECT_LT(kept.pixels[0], kept.pixels[3 * lamp - 1] - 0.01f);
+  EXPECT_EQ(kept.pixels[3000], burnt.pixels[3000]) << "half as bright as white";
+  // With two stops of exposure, and with the brightest level of another picture.
+  EXPECT_GT(displayed(image, {.exposure = 2, .curve = ToneCurve::highlights}).pixels[3000], kept.pixels[3000]);
+  EXPECT_LT(displayed(image, {.curve = ToneCurve::highlights, .brightest = 1e4f}).pixels[0], kept.pixels[0]);
+}
+
 // A picture of 100 x 1 pixels: surfaces of equal albedo in equal light, a lamp in a fifth of the picture, the rest
 // black.
 Image lit_picture(float albedo, float light, int surfaces) {

@@ -32,25 +32,43 @@ function rotate(v, axis, angle) {
 
 // Display
 
+/// The strength of the curve `highlights`, as in src/film/display.h: `white` becomes 1. 0: the curve is a straight line.
+const knee = 0.7;
+function highlightStrength(white) {
+  const span = Math.min(white, 65536) - knee, left = 1 - knee;
+  if (!(white > 1.0001)) return 0;
+  let a = 100;
+  for (let i = 0; i < 64; i++) a -= (left * a - Math.log1p(a * span)) / (left - span / (1 + a * span));
+  return a;
+}
+/// The value that a thousandth of the pixels' brightest components exceed.
+function brightestOf(halves, count) {
+  const step = count * Math.max(1, Math.floor(halves.length / count / 20000)), values = [];
+  for (let i = 0; i + count <= halves.length; i += step) values.push(Math.max(...Array.from({length: count}, (_, c) => numbers[halves[i + c]])));
+  values.sort((a, b) => a - b);
+  return values[Math.floor(0.999 * (values.length - 1))] ?? 0;
+}
+
 /// Converts a linear value to a display value from 0 to 255, as `lanthorn render --exposure E --view-transform
-/// none|filmic` does.
-function displayed(value, gain, filmic) {
-  let x = Math.min(value * gain, 1e4);
+/// none|filmic|highlights` does.
+function displayed(value, gain, filmic, strength) {
+  let x = Math.min(value * gain, 65536);
   if (!(x > 0)) return 0;
   if (filmic) x = x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14);
+  if (strength > 0 && x > knee) x = knee + Math.log1p(strength * (x - knee)) / strength;
   x = Math.min(x, 1);
   return Math.round(255 * (x <= 0.0031308 ? 12.92 * x : 1.055 * x ** (1 / 2.4) - 0.055));
 }
 
 let table = new Uint8Array(65536), tableKey = '';
 /// `range`: for layers of one channel, else null. Pixels without a surface (0) are black.
-function makeTable(exposure, filmic, isVector, range) {
-  const key = `${exposure} ${filmic} ${isVector} ${range?.black} ${range?.white}`;
+function makeTable(exposure, filmic, strength, isVector, range) {
+  const key = `${exposure} ${filmic} ${strength} ${isVector} ${range?.black} ${range?.white}`;
   if (key === tableKey) return;
   tableKey = key;
   const gain = 2 ** exposure;
   const shown = isVector ? (x) => 0.5 + 0.5 * x : range ? (x) => x > 0 ? (x - range.black) / (range.white - range.black) : 0 : (x) => x;
-  for (let bits = 0; bits < 65536; bits++) table[bits] = displayed(shown(numbers[bits]), gain, filmic);
+  for (let bits = 0; bits < 65536; bits++) table[bits] = displayed(shown(numbers[bits]), gain, filmic, strength);
 }
 
 /// AgX, as in src/film/display.h: the sigmoid at 4096 points from 10 stops below middle grey to 6.5 above.
@@ -79,10 +97,10 @@ function drawAgx(pixels, halves, count, gain) {
   }
 }
 
-/// Normals get no curve, and layers of one channel have no colours that AgX could change.
+/// Normals get no curve, and layers of one channel have no colours that AgX could change, and no highlights.
 function curveOfFrame() {
   if (frame.about.layer === 'normal') return 'none';
-  return display.curve === 'agx' && frame.range ? 'none' : display.curve;
+  return display.curve !== 'filmic' && frame.range ? 'none' : display.curve;
 }
 
 /// The values of a one-channel layer that are shown black and white: 0 and the largest value. For depth: far and near,
@@ -107,7 +125,8 @@ function draw() {
   if (!frame) return;
   const {width, height, channels} = frame.about, count = channels.length, isVector = frame.about.layer === 'normal';
   const curve = curveOfFrame();
-  makeTable(display.exposure, curve === 'filmic', isVector, frame.range);
+  const strength = curve === 'highlights' ? highlightStrength(frame.brightest * 2 ** display.exposure) : 0;
+  makeTable(display.exposure, curve === 'filmic', strength, isVector, frame.range);
   if (canvas.width !== width || canvas.height !== height) {
     canvas.width = width;
     canvas.height = height;
@@ -145,7 +164,7 @@ function decode(buffer) {
   const size = new DataView(buffer).getUint32(0, true), about = JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, 4, size)));
   const start = 4 + size, count = about.width * about.height * about.channels.length;
   const halves = new Uint16Array(buffer, start, count);
-  return {about, halves, range: rangeOf(about, halves)};
+  return {about, halves, range: rangeOf(about, halves), brightest: brightestOf(halves, about.channels.length)};
 }
 
 async function nextFrame() {
