@@ -51,7 +51,7 @@ static ClosureAt closure_of(const description::HairMaterial& m, MaterialCompiler
   c.is_constant = false;  // depends on the offset across the hair
   return [=](const TexturePoint& at, const Wavelengths& w) -> Bsdf {
     const float azimuthal = std::clamp(beta_n(at), 0.0f, 1.0f);
-    const float h = 1 - 2 * at.uv.y;  // v grows along the ray x the hair
+    const float h = 2 * at.uv.y - 1;
     return Hair{absorption(azimuthal, at, w),
                 h,
                 std::fmax(eta(at), 1.0001f),
