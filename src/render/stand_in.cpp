@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "base/parallel.h"
+
 namespace lanthorn {
 
 namespace {
@@ -36,11 +38,16 @@ std::vector<std::uint32_t> coarse_pixels(const View& view, const View& coarse) {
 
 // The mean of a pixel is that of the coarser pixel, in all its layers, so that its sums are the same.
 void enlarge(const Film& coarse, const std::vector<std::uint32_t>& pixels, Film& film) {
-  std::vector<std::int64_t> enlarged(pixels.size());
+  constexpr std::size_t chunk = 1u << 14;
   for (std::size_t i = 0; i < film.plane_count(); ++i) {
     const std::vector<std::int64_t> plane = coarse.plane(i);
-    std::transform(pixels.begin(), pixels.end(), enlarged.begin(), [&](std::uint32_t pixel) { return plane[pixel]; });
-    film.add_sums(i, 0, enlarged);
+    if (std::all_of(plane.begin(), plane.end(), [](std::int64_t sum) { return sum == 0; })) continue;
+    parallel_chunks(pixels.size(), chunk, [&](std::size_t, std::size_t begin, std::size_t end) {
+      std::vector<std::int64_t> enlarged;
+      enlarged.reserve(end - begin);
+      for (std::size_t p = begin; p < end; ++p) enlarged.push_back(plane[pixels[p]]);
+      film.add_sums(i, begin, enlarged);
+    });
   }
   film.add_report(coarse.report());
 }

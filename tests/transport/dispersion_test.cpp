@@ -64,7 +64,7 @@ TEST_P(DispersedLight, IsWhiteAfterOnePass) {
       "LightSource \"distant\" \"rgb L\" [1 1 1] \"point3 from\" [0 0 1] \"point3 to\" [0 0 0]\n"
       "Material \"diffuse\" \"rgb reflectance\" [0.5 0.5 0.5]\n"
       "Shape \"bilinearmesh\" \"point3 P\" [-1.5 -1.5 0  1.5 -1.5 0  -1.5 1.5 0  1.5 1.5 0]\n"
-      "Translate 0 0 3\nMaterial \"dielectric\" \"spectrum eta\" \"glass-SF11\"\nShape \"sphere\"\n");
+      "Translate 0 0 3\nMaterial \"dielectric\" \"spectrum eta\" \"glass-BK7\"\nShape \"sphere\"\n");
   RenderOptions options = test::options_for(GetParam(), 1);
   options.color = ColorMode::spectral;
   options.photons = 100'000;
