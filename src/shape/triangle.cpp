@@ -72,10 +72,10 @@ Rise rise_over_triangle(const GeometryRecord& record, std::uint32_t primitive, f
   Rise result{dot(facet.normal, wi) < 0 ? -facet.normal : facet.normal};
   for (std::size_t i = 0; i < corners.size(); ++i) {
     const Normal& n = record.vertices[corners[i]].normal;  // its length and sign do not matter
-    const float over = dot(facet.corners[i] - p, n) * dot(n, result.normal);
-    if (over > 0) result.height += weights[i] * over / length_squared(n);
+    result.height += weights[i] * dot(facet.corners[i] - p, n) * dot(n, result.normal) / length_squared(n);
   }
-  result.height *= rise_share;
+  // Normals that all tilt alike describe no bulge: the heights cancel.
+  result.height = std::max(0.0f, rise_share * result.height);
   return result;
 }
 

@@ -97,6 +97,11 @@ LobeWeights lobe_weights(const Bsdf& bsdf, const Vec3& wi) {
   return std::visit([&](const auto& closure) { return lobe_weights(closure, wi); }, bsdf);
 }
 
+// Split-sum shading takes light from the whole hemisphere of the shading normal, so what `with_planes` has added goes.
+static SplitTerms split_terms(const Bent<Diffuse>& facet, const Vec3& /*any*/) {
+  return {.diffuse = facet.closure.reflectance * share_above_horizon(facet)};
+}
+
 SplitTerms split_terms(const Bsdf& bsdf, const Vec3& wi) {
   return std::visit([&](const auto& closure) { return split_terms(closure, wi); }, bsdf);
 }
