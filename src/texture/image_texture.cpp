@@ -256,29 +256,32 @@ TextureImage::Taps TextureImage::taps(const Vec2& st, const WrapModes& wrap, Ima
 
 template <class Sum, class Value>
 Sum TextureImage::interpolated(const Taps& taps, int level, const Value& value) const {
-  Sum sum{};
-  const auto add = [&](const auto* samples, const auto& sample_of) {
+  std::array<Sum, 4> values{};
+  const auto fetch = [&](const auto* samples, const auto& sample_of) {
     for (unsigned i = 0; i < 4; ++i)
       if (taps.weight[i] != 0)
-        sum += taps.weight[i] * value(Texel<std::decay_t<decltype(*samples)>>{samples + sample_of(i), *this});
+        values[i] = value(Texel<std::decay_t<decltype(*samples)>>{samples + sample_of(i), *this});
   };
   const auto stride = static_cast<std::size_t>(format_.channels);
   const auto in_memory = [&](unsigned i) { return index_of(taps.place[i], level) * stride; };
-  if (cached_ == nullptr) {
-    if (!floats_.empty())
-      add(floats_.data(), in_memory);
+  if (!floats_.empty()) {
+    fetch(floats_.data(), in_memory);
+  } else if (cached_ == nullptr) {
+    fetch(bytes_.data(), in_memory);
+  } else {
+    alignas(float) std::array<std::byte, 4 * 4 * sizeof(float)> texels;
+    const std::size_t count = taps.weight[1] == 0 && taps.weight[2] == 0 && taps.weight[3] == 0 ? 1 : 4;
+    cache_->read(*cached_, level, {taps.place.data(), count}, texels.data());
+    const auto copied = [&](unsigned i) { return i * stride; };
+    if (format_.is_8_bit)
+      fetch(reinterpret_cast<const std::uint8_t*>(texels.data()), copied);
     else
-      add(bytes_.data(), in_memory);
-    return sum;
+      fetch(reinterpret_cast<const float*>(texels.data()), copied);
   }
-  alignas(float) std::array<std::byte, 4 * 4 * sizeof(float)> texels;
-  const std::size_t count = taps.weight[1] == 0 && taps.weight[2] == 0 && taps.weight[3] == 0 ? 1 : 4;
-  cache_->read(*cached_, level, {taps.place.data(), count}, texels.data());
-  const auto copied = [&](unsigned i) { return i * stride; };
-  if (format_.is_8_bit)
-    add(reinterpret_cast<const std::uint8_t*>(texels.data()), copied);
-  else
-    add(reinterpret_cast<const float*>(texels.data()), copied);
+  // One loop for all kinds of storage: copies of it could round differently, since the compiler may fuse the product
+  // and the sum.
+  Sum sum{};
+  for (unsigned i = 0; i < 4; ++i) sum += taps.weight[i] * values[i];
   return sum;
 }
 
