@@ -60,9 +60,10 @@ struct MediumPointVisitor : StoreVisitor {
     if (state.scatterings() > rule.max_depth) return Continuation::stop();
     if (state.depth < rule.first_medium_depth) return Continuation::go_on();
     const LightToMeet kept = LightToMeet::of(state.beta, state.dispersed, w);
-    in_media.push_back({{kept.light, vertex.position, vertex.wi, vertex.wi,
-                         flags_of(state, state.depth, state.scatterings(), kept.dispersed, rule, is_delta(start.light))},
-                        state.medium});
+    in_media.push_back(
+        {{kept.light, vertex.position, vertex.wi, vertex.wi,
+          flags_of(state, state.depth, state.scatterings(), kept.dispersed, rule, is_delta(start.light))},
+         state.medium});
     return Continuation::go_on();
   }
 };

@@ -102,9 +102,9 @@ TEST_P(DispersedTwice, FurnaceIsWhite) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Methods, DispersedTwice,
-                         testing::Values("probppm", "sppm", "vcm", "bdpt", "bpm", "photonmap", "reversephotonmap",
-                                         "mlt"),
+                         testing::Values("probppm", "sppm", "vcm", "bdpt", "bpm", "photonmap", "reversephotonmap"),
                          [](const auto& tested) { return std::string(tested.param); });
+INSTANTIATE_TEST_SUITE_P(Nightly, DispersedTwice, testing::Values("mlt"));
 
 }  // namespace
 }  // namespace lanthorn::dispersion_test

@@ -67,7 +67,7 @@ TEST(FilterLobes, AStepIsTheIntegralOfTheFilter) {
   for (std::size_t f = 0; f < filters.size(); ++f) {
     const Scene scene = scene_with(filters[f], R"(
 LightSource "infinite" "rgb L" [1 1 1]
-Material "diffuse" "rgb reflectance" 0
+Material "diffuse" "rgb reflectance" [0 0 0]
 Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-90 -90 0  -.3 -90 0  -.3 90 0  -90 90 0])");
     const Image image = test::render_image(scene, test::options_for("path", 128, f));
     const Filter filter(filter_shape(scene.description().view.filter));

@@ -58,11 +58,13 @@ TEST(Subsurface, HasTheReflectanceThatTheFileSays) {
   struct Case {
     float eta, g, reflectance;
   };
-  for (const auto& [eta, g, reflectance] : {Case{1.33f, 0, .5f}, Case{1.33f, 0, .9f}, Case{1.5f, .7f, .6f}, Case{1.8f, -.3f, .3f}}) {
+  for (const auto& [eta, g, reflectance] :
+       {Case{1.33f, 0, .5f}, Case{1.33f, 0, .9f}, Case{1.5f, .7f, .6f}, Case{1.8f, -.3f, .3f}}) {
     const std::string r = std::to_string(reflectance);
-    const Scene scene = ball_of("\"float mfp\" .002 \"rgb reflectance\" [" + r + ' ' + r + ' ' + r + "] \"float eta\" " +
-                                std::to_string(eta) + " \"float g\" " + std::to_string(g));
-    EXPECT_TRUE(test::runs_agree(mean(scene, options("path", 16)), mean_of_ball(eta, static_cast<double>(reflectance)), .004, .05, test::false_alarm_rate / 4))
+    const Scene scene = ball_of("\"float mfp\" .002 \"rgb reflectance\" [" + r + ' ' + r + ' ' + r +
+                                "] \"float eta\" " + std::to_string(eta) + " \"float g\" " + std::to_string(g));
+    EXPECT_TRUE(test::runs_agree(mean(scene, options("path", 16)), mean_of_ball(eta, static_cast<double>(reflectance)),
+                                 .004, .05, test::false_alarm_rate / 4))
         << reflectance;
   }
 }
@@ -104,11 +106,12 @@ TEST_P(SubsurfaceDepth, IsTheSameForAllMethods) {
   };
   const test::Mean expected = found("path", 64, 1);
   std::uint64_t seed = 100;
-  for (const char* integrator : {"light", "bdpt", "vcm", "vcm:volume=point", "bpm", "mlt", "probppm", "sppm", "photonmap", "reversephotonmap"})
+  for (const char* integrator :
+       {"light", "bdpt", "vcm", "vcm:volume=point", "bpm", "mlt", "probppm", "sppm", "photonmap", "reversephotonmap"})
     EXPECT_TRUE(test::runs_agree(found(integrator, 16, seed += 100), expected, .02, .1, test::false_alarm_rate / 20))
         << integrator;
 }
-INSTANTIATE_TEST_SUITE_P(Limits, SubsurfaceDepth, testing::Values(1, 2));
+INSTANTIATE_TEST_SUITE_P(Nightly, SubsurfaceDepth, testing::Values(1, 2));
 
 }  // namespace
 }  // namespace lanthorn::subsurface_test

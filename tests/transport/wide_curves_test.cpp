@@ -82,11 +82,12 @@ std::vector<Furnace> furnaces() {
   }
   return all;
 }
-INSTANTIATE_TEST_SUITE_P(Methods, WideCurves, testing::ValuesIn(furnaces()),
-                         [](const auto& info) { return std::string(info.param.name) + "_" + info.param.method; });
+INSTANTIATE_TEST_SUITE_P(Nightly, WideCurves, testing::ValuesIn(furnaces()), [](const auto& test_info) {
+  return std::string(test_info.param.name) + "_" + test_info.param.method;
+});
 
 // Light from one side, and a lamp whose distance is ten widths: the bands differ by factors.
-TEST(WideCurve, MethodsSeeTheSameProfile) {
+TEST(NightlyWideCurve, MethodsSeeTheSameProfile) {
   const std::string lights =
       "LightSource \"distant\" \"point3 from\" [.2 1 .4] \"point3 to\" [0 0 0] \"rgb L\" [2 2 2]\n"
       "AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [30 30 30] Translate .5 -2 .5 Shape \"sphere\" \"float "

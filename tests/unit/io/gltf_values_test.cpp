@@ -154,7 +154,7 @@ TEST(GltfValues, ConesOfSpots) {
         Case{nullptr, nullptr, 45, 45, 1}}) {
     const SceneDescription scene =
         with_light({{"type", "spot"}, {"spot", {{"innerConeAngle", inner}, {"outerConeAngle", outer}}}});
-    const auto& spot = std::get<SpotLight>(scene.lights.at(0).node);
+    const auto& spot = std::get<description::SpotLight>(scene.lights.at(0).node);
     EXPECT_NEAR(spot.cone_angle, cone, 0.01f) << inner << outer;
     EXPECT_NEAR(spot.cone_delta_angle, edge, 0.01f) << inner << outer;
     EXPECT_EQ(warnings(scene).size(), count) << testing::PrintToString(warnings(scene));
@@ -165,8 +165,9 @@ TEST(GltfValues, LightsThatCannotShineAreLeftOut) {
   const auto lights = [](const json& light, const json& node = json::object()) {
     const SceneDescription scene = with_light(light, node);
     EXPECT_EQ(warnings(scene).size(), 1u) << testing::PrintToString(warnings(scene));
-    return std::count_if(scene.lights.begin(), scene.lights.end(),
-                         [](const Light& l) { return !std::holds_alternative<InfiniteLight>(l.node); });
+    return std::count_if(scene.lights.begin(), scene.lights.end(), [](const description::Light& l) {
+      return !std::holds_alternative<description::InfiniteLight>(l.node);
+    });
   };
   EXPECT_EQ(lights({{"type", "area"}}), 0);
   EXPECT_EQ(lights({{"type", "point"}, {"intensity", -1}}), 0);

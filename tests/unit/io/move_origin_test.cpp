@@ -123,7 +123,7 @@ TEST(MoveOrigin, WarnsWhereStepsOfCoordinatesShow) {
   };
   const std::string ball = "Translate 50000 0 0 Shape \"sphere\" \"float radius\" .01\n";
   const std::string found = warning_of("", ball);
-  EXPECT_NE(found.find("has a size of 0.031 m, but coordinates around 5e+04 m, which are rounded to 0.004 m"),
+  EXPECT_NE(found.find("has a size of 0.031 m, but coordinates around 50000 m, which are rounded to 0.004 m"),
             std::string::npos)
       << found;
   EXPECT_EQ(warning_of("LookAt 50000 0 1  50000 0 0  0 1 0\n", ball), "");

@@ -322,7 +322,9 @@ TEST(StandIns, WhatFacesInwardsIsSeenFromInside) {
 TEST(StandIns, RoomsOfSeparateWallsAreSeenFromInside) {
   const auto inside = [](const std::vector<Shape>& shapes, const Vec3& half) {
     const SceneDescription scene = seen(shapes, {});
-    if (is_inside(scene, half)) EXPECT_EQ(scene.area_lights.size(), 1u) << "lit";
+    if (is_inside(scene, half)) {
+      EXPECT_EQ(scene.area_lights.size(), 1u) << "lit";
+    }
     return is_inside(scene, half);
   };
   const Vec3 half(3, 1.3f, 2.5f), upright(3, 2.5f, 1.3f);

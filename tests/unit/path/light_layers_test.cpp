@@ -20,7 +20,7 @@ PixelSample sample_of(const std::optional<float>& limit) {
   layers.add(PathClass::caustic, Part::rest, Spectrum(5), false);
   Sensor sensor;
   sensor.path_limit = limit;
-  return layers.sample(1, sensor);
+  return layers.sample(FilterPart::positive, sensor);
 }
 
 float layer(const PixelSample& sample, PathClass path_class) {
@@ -62,10 +62,10 @@ TEST(LightLayers, LightOutOfMediaIsKeptOnceMore) {
   layers.see(SurfaceVertex{scattered, at, {0, 0, 1}, {0, 0, 1}, true});
   layers.add(PathClass::indirect, Spectrum(4), false);
   LightLayers limited = layers;
-  EXPECT_FLOAT_EQ(layers.sample(1, {}).light[media_layer].g, 8 + 1 + 2 + 4);
+  EXPECT_FLOAT_EQ(layers.sample(FilterPart::positive, {}).light[media_layer].g, 8 + 1 + 2 + 4);
   Sensor sensor;
   sensor.path_limit = 39.0f / 2;
-  EXPECT_FLOAT_EQ(limited.sample(1, sensor).light[media_layer].g, 8 + 0.5f * (1 + 2 + 4));
+  EXPECT_FLOAT_EQ(limited.sample(FilterPart::positive, sensor).light[media_layer].g, 8 + 0.5f * (1 + 2 + 4));
 }
 
 }  // namespace

@@ -125,7 +125,7 @@ TEST(RadianceAlong, IsThatOfAFurnaceFromAnyPointInAnyDirection) {
     LightLayers layers(rgb);
     radiance_along(path, {{{0.3f, -0.2f, 0.1f}, direction}}, MediumId::vacuum, layers);
     Rgb sum;
-    for (const Rgb& light : layers.sample(1, {}).light) sum += light;
+    for (const Rgb& light : layers.sample(FilterPart::positive, {}).light) sum += light;
     mean.add(static_cast<double>(sum.g));
   }
   // Half of it comes directly from the surface, the rest is scattered.

@@ -165,7 +165,9 @@ class LampCheck {
       ASSERT_TRUE(e);
       const Normal outside(reference_.outside(DVec3(e->origin)));
       ASSERT_GT(dot(e->normal, outside), .999f);
-      if (!place_.two_sided) ASSERT_GT(dot(e->direction, outside), 0);
+      if (!place_.two_sided) {
+        ASSERT_GT(dot(e->direction, outside), 0);
+      }
       for (const bool front : {true, false}) {
         const Normal towards = front ? outside : -outside;
         const auto hit = scene_.intersect({e->origin + 1e-3f * towards, -towards, infinity, .5f}, white);
