@@ -540,8 +540,9 @@ TEST(Mtl, FilesByBlenderHaveItsRoughness) {
   for (const FloatTexture& texture : scene.float_textures)
     if (const auto* image = std::get_if<ImageTexture>(&texture.node)) files.push_back(image->filename);
   EXPECT_EQ(files, (std::vector<std::string>{"dir/rough.png", "dir/metal.png"}));
-  EXPECT_EQ(warnings(by("", maps)),
-            (std::vector<std::string>{"dir/m.mtl:4:1: \"map_Ns\", \"map_refl\" in materials are not supported: ignored"}));
+  EXPECT_EQ(
+      warnings(by("", maps)),
+      (std::vector<std::string>{"dir/m.mtl:4:1: \"map_Ns\", \"map_refl\" in materials are not supported: ignored"}));
 }
 
 TEST(Mtl, NormalAndEmissionMaps) {
