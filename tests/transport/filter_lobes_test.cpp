@@ -62,7 +62,7 @@ Shape "sphere" "float radius" 1)");
 // Black to the left of x = 7.7, white to the right. The picture of a step is the filter's integral from the step on,
 // which is below 0 and above 1 beside it. The limit of the passes is far beyond the first sample of the lobes, from
 // which on the estimate is unbiased.
-TEST(FilterLobes, AStepIsTheIntegralOfTheFilter) {
+TEST(NightlyFilterLobes, AStepIsTheIntegralOfTheFilter) {
   constexpr double step = 7.7;
   for (std::size_t f = 0; f < filters.size(); ++f) {
     const Scene scene = scene_with(filters[f], R"(
