@@ -90,12 +90,12 @@ double mean_by(const Scene& scene, const std::string& integrator, std::uint64_t 
 }
 
 TEST(ShadingNormals, NothingPassesAClosedSmoothBox) {
-  const Scene scene(read_scene(LANTHORN_SOURCE_DIR "/tests/scenes/closed-smooth-box.pbrt"));
+  const Scene scene(read_scene(LANTHORN_SOURCE_DIR "/tests/scenes/dark/closed-smooth-box.pbrt"));
   for (const char* method : every_method) EXPECT_LT(mean_by(scene, method), rounding) << method;
 }
 
 TEST(ShadingNormals, NothingPassesAnOpaqueSmoothBall) {
-  const Scene scene(read_scene(LANTHORN_SOURCE_DIR "/tests/scenes/lamp-in-smooth-ball.pbrt"));
+  const Scene scene(read_scene(LANTHORN_SOURCE_DIR "/tests/scenes/dark/lamp-in-smooth-ball.pbrt"));
   for (const char* method : every_method) EXPECT_LT(mean_by(scene, method), rounding) << method;
 }
 
