@@ -106,7 +106,7 @@ double radiance_of_ceiling(double x, double cone_degrees) {
 
 // A spot lights a small part of a floor, and the ceiling sees it: records hold up to the edge of the light only. Beyond
 // the edge, the largest radius is up to a quarter of the spot's.
-TEST(PhotonMap, PrecomputedIrradianceEndsAtTheEdgeOfTheLight) {
+TEST(NightlyPhotonMap, PrecomputedIrradianceEndsAtTheEdgeOfTheLight) {
   for (const double cone : {10.0, 3.0}) {
     const Scene scene = test::scene_from_text(
         "LookAt 0 1.5 0  0 3 0  0 0 1\nCamera \"perspective\" \"float fov\" [4]\n"
