@@ -67,7 +67,7 @@ void decode_srgb(Image& image, const ImageHeader& header) {
     if (is_color_channel(header, static_cast<int>(i % count))) image.pixels[i] = linear_from_srgb(image.pixels[i]);
 }
 
-// Converts each layer of channels R, G, B. Other channels, such as X, Y, Z of vectors and alpha, are no colours.
+// Converts each layer of channels R, G, B. Other channels, such as X, Y, Z of vectors and alpha, are not colours.
 void convert_colours(Image& image, const RgbMatrix& to_rec709) {
   constexpr std::string_view red = "R";
   for (std::size_t r = 0; r < image.channels.size(); ++r) {

@@ -117,7 +117,7 @@ struct Outside {
   Outside(const ModelSamples& model, const Slabs& slabs, std::span<const OutsideView* const> views)
       : is_seen(model.samples.size()) {
     constexpr float tolerance = 0.05f, flat = 0.9f;
-    // Corrugated roofs are no plain walls.
+    // A corrugated roof is not a flat wall.
     const auto is_in_wall = [&](const Surfaces::Sample& s) {
       return max_component(glm::abs(s.normal)) > flat && slabs.contain(s.position);
     };

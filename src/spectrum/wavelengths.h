@@ -52,7 +52,7 @@ struct Wavelengths {
 /// Light of a light path that is stored for eye paths to meet. In spectral mode both paths have drawn their heroes
 /// independently, each of the four with probability 1/4. So each path multiplies its own light by `dispersed`: the
 /// product is 16 with probability 1/16 at each wavelength if both are dispersed, and its mean is 1. In RGB mode, whose
-/// components are no wavelengths, all paths of a pass have one hero, and the path that meets the light multiplies it.
+/// components are not wavelengths, all paths of a pass have one hero, and the path that meets the light multiplies it.
 struct LightToMeet {
   Spectrum light;
   bool dispersed = false;  ///< the factor of dispersion is still to be applied
