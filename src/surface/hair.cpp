@@ -102,7 +102,8 @@ Lobes::Lobes(const Hair& hair, float offset, const Vec3& w) : phi(azimuth(w)) {
     turn[p] = 2 * static_cast<float>(p) * gamma_t - 2 * gamma_o + static_cast<float>(p) * pi;
 
   const Spectrum inside = exp(-(2 * cos_gamma_t / std::max(cos_t, 1e-4f)) * hair.sigma_a);
-  const float f = fresnel_dielectric(straight.cos * safe_sqrt(1 - h * h), hair.eta).reflectance;
+  // Some light enters even along the hair; otherwise a clear one would divide 0 by 0.
+  const float f = std::min(1 - 1e-6f, fresnel_dielectric(straight.cos * safe_sqrt(1 - h * h), hair.eta).reflectance);
   attenuation[0] = Spectrum(f);
   attenuation[1] = sqr(1 - f) * inside;
   for (std::size_t p = 2; p < last_lobe; ++p) attenuation[p] = attenuation[p - 1] * inside * f;
@@ -125,11 +126,22 @@ Spectrum seen(const Hair& hair, float offset, const Vec3& eye, const Vec3& light
   return sum / i.cos;
 }
 
+// Density with which a direction is sampled from the lobes around another.
+float density(const Lobes& lobes, const Vec3& wo) {
+  const Inclination i = inclination(wo);
+  const float phi = azimuth(wo);
+  float sum = 0;
+  for (std::size_t p = 0; p <= last_lobe; ++p)
+    sum += longitudinal(lobes.o[p], i, lobes.variance[p]) * lobes.azimuthal(p, phi) * lobes.probability[p];
+  return sum;
+}
+
 // The offset `h` as the ray `w` sees it.
 float seen_along(const Hair& hair, const Vec3& w, float h) { return hair.is_on_surface && w.z < 0 ? -h : h; }
 
 // The offset for which the lobes around wi are sampled. On the way from a light to the eye, each lobe turns the other
-// way; wo is not known yet then, so that on a surface half of the lobes may be sampled by their mirror images.
+// way; wo is not known yet then, so that on a surface half of the lobes may be sampled by their mirror images, which
+// costs light walks some noise.
 float turning_offset(const Hair& hair, const Vec3& wi, Transport transport) {
   return transport == Transport::radiance ? seen_along(hair, wi, hair.h) : -hair.h_out;
 }
@@ -157,13 +169,7 @@ Spectrum eval(const Hair& hair, const Vec3& wi, const Vec3& wo, Transport transp
 }
 
 float pdf_of(const Hair& hair, const Vec3& wi, const Vec3& wo, Transport transport) {
-  const Lobes lobes(hair, turning_offset(hair, wi, transport), wi);
-  const Inclination i = inclination(wo);
-  const float phi = azimuth(wo);
-  float sum = 0;
-  for (std::size_t p = 0; p <= last_lobe; ++p)
-    sum += longitudinal(lobes.o[p], i, lobes.variance[p]) * lobes.azimuthal(p, phi) * lobes.probability[p];
-  return sum;
+  return density(Lobes(hair, turning_offset(hair, wi, transport), wi), wo);
 }
 
 float pdf_reverse(const Hair& hair, const Vec3& wi, const Vec3& wo) {
@@ -187,11 +193,11 @@ std::optional<BsdfSample> sample(const Hair& hair, const Vec3& wi, float u_lobe,
   const float phi = lobes.phi + turn;
   const Vec3 wo(sin_i, cos_i * std::cos(phi), cos_i * std::sin(phi));
 
-  const float density = pdf_of(hair, wi, wo, transport);
-  if (!(density > 0) || !(cos_i > 0)) return std::nullopt;
+  const float pdf = density(lobes, wo);
+  if (!(pdf > 0) || !(cos_i > 0)) return std::nullopt;
   return BsdfSample{.wo = wo,
-                    .weight = eval(hair, wi, wo, transport) * (cos_i / density),
-                    .pdf = density,
+                    .weight = eval(hair, wi, wo, transport) * (cos_i / pdf),
+                    .pdf = pdf,
                     .transmission = !same_hemisphere(wi, wo)};
 }
 
