@@ -45,20 +45,17 @@ void settle_flat_curve(SurfacePoint& p, const SurfaceGeometry& surface, const Ra
     facing.h = 1 - 2 * surface.uv.y;  // v grows along the ray x the hair
     facing.h_out = offset;
     facing.is_on_surface = false;
-    p.bsdf = facing;
+    p.bsdf.emplace(facing);
   }
 }
 
 // Gives a point whose shading normal differs from the geometric one the closure of its facet. `smooth`: interpolated
 // normal of the mesh; `rise`: of its smooth surface.
-void bend(SurfacePoint& p, const Normal& smooth, float rise) {
+void bend_to_facet(SurfacePoint& p, const Normal& smooth, float rise) {
   // Below the error of the position, a ray that starts on the smooth surface would meet the facet.
   const bool bulges = std::fabs(rise) > position_error_across(p);
   const Normal& horizon = bulges ? smooth : p.normal;
-  const std::optional<Bsdf> facet = bent(p.bsdf, p.shading.to_local(p.normal), p.shading.to_local(horizon));
-  if (!facet) return;
-  p.bsdf = *facet;
-  if (bulges) p.rise = rise;
+  if (bend(p.bsdf, p.shading.to_local(p.normal), p.shading.to_local(horizon)) && bulges) p.rise = rise;
 }
 
 // The part of the surface that a footprint `width` metres wide across the ray covers at least.
@@ -95,7 +92,8 @@ std::optional<SurfacePoint> Scene::intersect(const Ray& ray, const Wavelengths& 
     const bool tilted = shading.n != surface.normal;
     p.shading = shading;
     p.bsdf = data_->materials.evaluate(material, at, w);
-    if (tilted) bend(p, surface.shading_normal, data_->geometry.rise(*hit, surface, ray));
+    if (tilted && is_bendable(p.bsdf))
+      bend_to_facet(p, surface.shading_normal, data_->geometry.rise(*hit, surface, ray));
     if (is_flat(record)) settle_flat_curve(p, surface, ray);
   }
   if (record.emits) p.light = hit->light();

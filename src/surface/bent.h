@@ -12,7 +12,7 @@
 //
 // Other lobes. Mirroring them would make the facets visible. They receive light from above the horizon alone: the plane
 // of the smooth surface, if the facet stands in for one that bulges out (`SurfacePoint::rise`), otherwise the facet's.
-// A cosine lobe tilted by the angle θ has (1 + cos θ) / 2 of its light above the horizon; `bent` divides the
+// A cosine lobe tilted by the angle θ has (1 + cos θ) / 2 of its light above the horizon; `bend` divides the
 // reflectance of diffuse surfaces by that share, so that their albedo stays. An eye below the plane of n_s, at a
 // silhouette, sees what its mirror image in that plane sees.
 #pragma once
@@ -271,6 +271,10 @@ bool is_dispersive(const Bent<C>& b) {
 template <class C>
 SplitTerms split_terms(const Bent<C>& b, const Vec3& wi) {
   return split_terms(b.closure, wi);
+}
+// Split-sum shading takes light from the whole hemisphere of the shading normal.
+inline SplitTerms split_terms(const Bent<Diffuse>& b, const Vec3& /*any*/) {
+  return {.diffuse = b.closure.reflectance * share_above_horizon(b)};
 }
 
 }  // namespace lanthorn

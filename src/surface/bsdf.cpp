@@ -23,34 +23,7 @@ float pdf_reverse_by(const C& closure, const Vec3& wi, const Vec3& wo, Transport
   return pdf_reverse(closure, wi, wo);
 }
 
-// Facets whose shading normal equals the geometric one up to rounding are not bent.
-constexpr float least_bent_cosine = 1 - 1e-6f;
-
-template <class C>
-Bent<C> with_planes(const C& closure, const Normal& plane, const Normal& horizon) {
-  return {closure, plane, horizon};
-}
-Bent<Diffuse> with_planes(Diffuse closure, const Normal& plane, const Normal& horizon) {
-  Bent<Diffuse> result{closure, plane, horizon};
-  result.closure.reflectance /= share_above_horizon(result);
-  return result;
-}
-
 }  // namespace
-
-std::optional<Bsdf> bent(const Bsdf& bsdf, const Normal& plane, const Normal& horizon) {
-  if (!(plane.z < least_bent_cosine)) return {};
-  return std::visit(
-      [&](const auto& closure) -> std::optional<Bsdf> {
-        if constexpr (std::is_same_v<std::decay_t<decltype(closure)>, DiffuseTransmission>) {
-          if (closure.transmittance.is_black()) return with_planes(Diffuse{closure.reflectance}, plane, horizon);
-        } else if constexpr (requires { Bsdf(with_planes(closure, plane, horizon)); }) {
-          return with_planes(closure, plane, horizon);
-        }
-        return {};
-      },
-      bsdf);
-}
 
 Spectrum eval(const Bsdf& bsdf, const Vec3& wi, const Vec3& wo, Transport transport) {
   return std::visit([&](const auto& closure) { return eval(closure, wi, wo, transport); }, bsdf);
@@ -95,11 +68,6 @@ Spectrum albedo(const Bsdf& bsdf, const Vec3& wi) {
 
 LobeWeights lobe_weights(const Bsdf& bsdf, const Vec3& wi) {
   return std::visit([&](const auto& closure) { return lobe_weights(closure, wi); }, bsdf);
-}
-
-// Split-sum shading takes light from the whole hemisphere of the shading normal, so what `with_planes` has added goes.
-static SplitTerms split_terms(const Bent<Diffuse>& facet, const Vec3& /*any*/) {
-  return {.diffuse = facet.closure.reflectance * share_above_horizon(facet)};
 }
 
 SplitTerms split_terms(const Bsdf& bsdf, const Vec3& wi) {

@@ -35,10 +35,6 @@ using Bsdf = ClosureVariant<Diffuse, DiffuseTransmission, Conductor, Dielectric,
                             Bent<Diffuse>, Bent<Conductor>, Bent<Plastic>, Bent<ClearCoated>, Bent<CoatedDiffuse>,
                             Bent<CoatedConductor>, Bent<CoatedPlastic>, Bent<Cloth>, Bent<Measured>>;
 
-/// The closure on a facet with the normals `plane` and `horizon` (`Bent`), unit, in the shading frame. Nullopt if the
-/// closure is the same there: if `plane` is the shading normal, or if light passes through the surface.
-std::optional<Bsdf> bent(const Bsdf& bsdf, const Normal& plane, const Normal& horizon);
-
 /// f(wi, wo), 1/sr, without the cosine (`cosine`) and without delta lobes. `transport` is the quantity that the walk
 /// carries: `radiance` from the eye (refraction scales f by the squared index ratio), `importance` from a light (no
 /// scaling). Reflection is the same for both and symmetric, except for hair and bent closures: their f depends on which

@@ -33,6 +33,14 @@ class PointBsdf {
     return *this;
   }
 
+  /// Replaces the closure by one made for the point.
+  template <class Closure>
+  requires std::constructible_from<Bsdf, const Closure&>
+  void emplace(const Closure& closure) {
+    std::construct_at(&own_, closure);
+    of_material_ = nullptr;
+  }
+
   const Bsdf& get() const { return of_material_ != nullptr ? *of_material_ : own_; }
   operator const Bsdf&() const { return get(); }
 
@@ -48,5 +56,12 @@ class PointBsdf {
     Bsdf own_;  // NOLINT(readability-identifier-naming): private, which clang-tidy does not see of a union's member
   };
 };
+
+/// True if the closure is another one on facets whose shading normal is not the geometric one (`Bent`): if no light
+/// passes through the surface.
+bool is_bendable(const Bsdf& bsdf);
+/// Replaces such a closure by that of a facet with the normals `plane` and `horizon`, unit, in the shading frame.
+/// Returns false if it stays, because `plane` is the shading normal up to rounding.
+bool bend(PointBsdf& bsdf, const Normal& plane, const Normal& horizon);
 
 }  // namespace lanthorn

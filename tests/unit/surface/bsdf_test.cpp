@@ -14,6 +14,7 @@
 #include "support/jacobian.h"
 #include "surface/fresnel.h"
 #include "surface/microfacet.h"
+#include "surface/point_bsdf.h"
 
 namespace lanthorn::bsdf_test {
 namespace {
@@ -264,22 +265,38 @@ TEST(Bent, NothingPassesAnOpaqueClosure) {
   const Normal plane = at_angles(35, 0);
   HashRng rng(7);
   for (const auto& [name, bsdf] : all_closures()) {
-    EXPECT_FALSE(bent(bsdf, {0, 0, 1}, {0, 0, 1})) << name;
-    const std::optional<Bsdf> facet = bent(bsdf, plane, plane);
-    EXPECT_EQ(facet.has_value(), is_opaque(bsdf)) << name;
-    for (int n = 0; facet && n < 300; ++n) {
+    EXPECT_EQ(is_bendable(bsdf), is_opaque(bsdf)) << name;
+    if (!is_opaque(bsdf)) continue;
+    PointBsdf facet(&bsdf);
+    EXPECT_FALSE(bend(facet, {0, 0, 1}, {0, 0, 1})) << name;
+    EXPECT_TRUE(bend(facet, plane, plane)) << name;
+    for (int n = 0; n < 300; ++n) {
       const Vec3 wi = sample_uniform_sphere(rng.next2()), wo = sample_uniform_sphere(rng.next2());
       const float u = rng.next();
       for (const Transport transport : {Transport::radiance, Transport::importance}) {
-        const auto s = sample(*facet, wi, u, rng.next2(), transport);
+        const auto s = sample(facet, wi, u, rng.next2(), transport);
         EXPECT_TRUE(!s || s->weight.is_black() || dot(wi, plane) * dot(s->wo, plane) >= 0) << name;
         if (dot(wi, plane) * dot(wo, plane) > 0) continue;
-        EXPECT_TRUE(eval(*facet, wi, wo, transport).is_black()) << name;
-        EXPECT_EQ(pdf(*facet, wi, wo, transport), 0) << name;
+        EXPECT_TRUE(eval(facet, wi, wo, transport).is_black()) << name;
+        EXPECT_EQ(pdf(facet, wi, wo, transport), 0) << name;
       }
     }
   }
-  EXPECT_TRUE(bent(DiffuseTransmission{colour}, plane, plane));  // nothing is transmitted
+  PointBsdf sheet(DiffuseTransmission{colour});  // nothing is transmitted
+  EXPECT_TRUE(is_bendable(sheet) && bend(sheet, plane, plane) && is_opaque(sheet));
+}
+
+// Between two points of one hair, the path runs along it.
+TEST(Hair, IsFiniteAlongTheHair) {
+  for (const Spectrum& sigma_a : {Spectrum(0), Spectrum(0.3f, 0.6f, 1, 0)}) {
+    const Hair hair{.sigma_a = sigma_a, .h = 0.2f, .h_out = -0.7f};
+    for (const Vec3& along : {Vec3(1, 0, 0), Vec3(-1, 0, 0)})
+      for (const Transport transport : {Transport::radiance, Transport::importance})
+        for (const auto& [wi, wo] : {std::pair{along, at_angles(40, 20)}, {at_angles(40, 20), along}, {along, along}}) {
+          const BsdfValues values = eval_and_pdfs(hair, wi, wo, transport);
+          EXPECT_TRUE(std::isfinite(sum_of(values.f)) && std::isfinite(values.pdf + values.pdf_reverse));
+        }
+  }
 }
 
 TEST(Bsdf, RefractionScalesRadianceByTheSquaredIndexRatio) {
