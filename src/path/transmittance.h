@@ -20,9 +20,9 @@ struct Passage {
 };
 // `dimensions`: the group of the sampler that seeds the random numbers of flights through media.
 
-/// False if a surface lies between a facet and the smooth surface over it, from which the ray in `direction` would
-/// start
-/// (`offset_origin`), or if the ray would then arrive at the back of the surface at its end.
+/// Whether a ray in `direction` may leave the vertex. Only where it would start on the smooth surface over a facet
+/// (`offset_origin`) can it be false: if another surface lies between, or if the ray would arrive at the back of the
+/// surface at its end.
 inline bool may_leave(const PathContext& path, const SurfaceVertex& v, const Direction& direction,
                       const SegmentEnd& end = {}) {
   if (!leaves_from_smooth_surface(v.at, direction)) return true;

@@ -113,6 +113,32 @@ TEST(ShadingNormals, NothingPassesWallsOfAnyOpaqueMaterial) {
   }
 }
 
+// Cached gathering draws directions of the hemisphere of the shading normal. Outside, the sun lights a floor.
+TEST(ShadingNormals, NothingPassesWallsWhereGathersAreCached) {
+  const Scene scene = test::scene_from_text(
+      "LookAt 0 0 1.9  0.3 0.2 0  0 1 0\nCamera \"perspective\" \"float fov\" [80]\n" + film +
+      "LightSource \"distant\" \"point3 from\" [0 1 0] \"point3 to\" [0 0 0] \"rgb L\" [1 1 1]\n" +
+      rough_room("Material \"diffuse\" \"rgb reflectance\" [.8 .8 .8]\n") +
+      test::patch("-9 -2.1 -9  9 -2.1 -9  -9 -2.1 9  9 -2.1 9"));
+  EXPECT_LT(mean_by(scene, "photonmap:final-gather=cached", 1), rounding);
+}
+
+// Light of photons on tilted facets: of their irradiance, of single photons, and of cached gathers.
+TEST(ShadingNormals, PhotonMapsSeeARoughRoomAsPathsDo) {
+  const Scene scene =
+      test::scene_from_text("LookAt 0 0 1.9  0.3 0.2 0  0 1 0\nCamera \"perspective\" \"float fov\" [80]\n" + film +
+                            "LightSource \"point\" \"point3 from\" [.2 .3 0] \"rgb I\" [3 3 3]\n" +
+                            rough_room("Material \"diffuse\" \"rgb reflectance\" [.6 .6 .6]\n"));
+  const auto found = [&](const std::string& integrator, std::uint64_t passes) {
+    RenderOptions options = test::options_for(integrator, passes);
+    options.photons = 20000;
+    return test::mean_of_means(test::select_layers(test::independent_renders(scene, options, 8, 1), "indirect"));
+  };
+  const test::Mean expected = found("path", 32);
+  for (const char* method : {"photonmap", "photonmap:final-gather=cached", "reversephotonmap"})
+    EXPECT_TRUE(test::runs_agree(found(method, 1), expected, .03, .1)) << method;
+}
+
 // A wall closer to the facet than the smooth surface over it: rays that start there would start behind the wall.
 TEST(ShadingNormals, NothingPassesAWallThatTheSmoothSurfacePierces) {
   const auto box = [](float x, float y, float low, float high) {
@@ -157,8 +183,11 @@ TEST(ShadingNormals, AWhiteConvexBodyLooksLikeTheWhiteSky) {
 TEST(ShadingNormals, TerminatorsAreAsSmoothAsTheNormals) {
   const Scene scene(read_scene(LANTHORN_SOURCE_DIR "/tests/scenes/terminator-16.pbrt"));
   constexpr double expected = .12517;
-  for (const char* method : {"path", "bdpt", "vcm", "auto"})
-    EXPECT_NEAR(mean_by(scene, method, 16) / expected, 1, .005) << method;
+  for (const char* method : {"path", "bdpt", "vcm", "auto"}) {
+    const std::vector<Image> images = test::independent_renders(scene, test::options_for(method, 4), 8, 1);
+    const test::Mean mean = test::mean_of_means(test::select_layers(images, "color"));
+    EXPECT_TRUE(test::runs_agree(mean, expected, .003, .02)) << method;
+  }
 }
 
 }  // namespace

@@ -83,12 +83,15 @@ HemisphereRay gather_ray(const GatherFill& fill, std::uint32_t key, const Surfac
   const Wavelengths w = fill.maps.draw.of_path(own).w;
   own.seek(walk_dimensions(depth));
   const Vec3 local = fill.grid.direction(cell, own.next2());
+  const Direction wo = frame.to_world(local);
+  HemisphereRay ray;
+  // The hemisphere of a shading normal reaches below the facet.
+  if (eval(vertex.at.bsdf, vertex.wi_local, vertex.at.shading.to_local(wo), Transport::radiance).is_black()) return ray;
   LightLayers layers(w);
   const TwoPassContext context{fill.job, fill.settings, fill.maps, key, fill.pass, &fill.misses};
   const PathContext path{fill.job.scene, w, own, counts, {fill.job.settings.max_depth, 3}};
-  HemisphereRay ray;
   walk_towards<Transport::radiance>(
-      path, vertex, frame.to_world(local), pdf_cosine_hemisphere(local.z), unit_beta(w),
+      path, vertex, wo, pdf_cosine_hemisphere(local.z), unit_beta(w),
       RangedVisitor{TwoPassVisitor::of_gather_ray({path, layers}, context, vertex.state.non_delta + 1), ray.distance});
   for (const PathClass path_class : {PathClass::direct, PathClass::caustic, PathClass::indirect})
     ray.radiance += layers.light(path_class);

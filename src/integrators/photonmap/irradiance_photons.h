@@ -66,12 +66,12 @@ class IrradiancePhotons {
 
   /// Irradiance, W/m², of the nearest record that holds at `p` and whose normal agrees with `normal` (unit, on the side
   /// of the eye). Empty if there is none within `radius` (m), or if an eye path of that many scatterings may not use
-  /// all of its photons.
+  /// all of its photons, or may use others, too: records leave out photons for eye paths without scatterings.
   std::optional<Spectrum> find(const Point& p, const Normal& normal, float radius, int scatterings) const {
     // The nearest one nearly always fits, and a query for more takes longer.
     for (const std::size_t candidates : {std::size_t{1}, most_candidates})
       if (const Record* record = nearest(p, normal, radius, candidates)) {
-        if (scatterings > record->scatterings) return {};
+        if (scatterings < 1 || scatterings > record->scatterings) return {};
         return record->irradiance;
       }
     return {};

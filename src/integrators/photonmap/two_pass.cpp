@@ -97,17 +97,17 @@ void TwoPassVisitor::add_photons(const SurfaceVertex& vertex, const LobeSplit& s
   layers.add(PathClass::indirect, vertex.state.beta * *light, false);
 }
 
-// Radiance of a purely diffuse surface from precomputed irradiance. Records include the photons' factor of dispersion
-// only.
+// Radiance of a purely diffuse surface from precomputed irradiance of its facet. Records include the photons' factor of
+// dispersion only.
 std::optional<Spectrum> TwoPassVisitor::precomputed(const SurfaceVertex& vertex) const {
-  const Spectrum* reflectance = lambertian_reflectance(vertex.at.bsdf);
-  if (!context_.maps.irradiance || reflectance == nullptr || vertex.state.dispersed) return {};
+  const bool is_diffuse = lambertian_reflectance(vertex.at.bsdf) != nullptr;
+  if (!context_.maps.irradiance || !is_diffuse || vertex.state.dispersed) return {};
   const Normal& normal = vertex.at.normal;
   const auto irradiance =
       context_.maps.irradiance->find(vertex.at.position, dot(vertex.wi, normal) < 0 ? -normal : normal,
                                      context_.settings.global.radius, vertex.state.scatterings() - 1);
   if (!irradiance) return {};
-  return *reflectance * *irradiance * inv_pi;
+  return albedo(vertex.at.bsdf, vertex.wi_local) * *irradiance * inv_pi;
 }
 
 // Secondary gathering: in corners, where the map's blur would be visible, one more ray replaces the look-up.

@@ -80,9 +80,9 @@ inline const IrradianceCache* cache_for(const TwoPassMaps& maps, const SurfaceVe
     return nullptr;
   return &maps.gathered[static_cast<std::size_t>(vertex.state.scatterings() - 1)];
 }
-/// The shading normal on the side of the eye.
+/// The shading normal on the side of the surface that the eye sees.
 inline Normal normal_of_light(const SurfaceVertex& vertex) {
-  return vertex.wi_local.z < 0 ? -vertex.at.shading.n : vertex.at.shading.n;
+  return dot(vertex.wi, vertex.at.normal) < 0 ? -vertex.at.shading.n : vertex.at.shading.n;
 }
 
 /// Continuation of the eye path at a vertex where many gather rays estimate the light of wide lobes. The walk's part of
