@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <optional>
 
 #include "camera/camera.h"
@@ -306,7 +307,7 @@ std::optional<Ray> branch_ray(const PathContext& path, const SurfaceVertex& vert
   state = vertex.state;
   // No Russian roulette at the branching vertex: the method has already chosen the number of branches.
   PathContext here = path;
-  here.limits.roulette_depth = path.limits.max_depth + 1;
+  here.limits.roulette_depth = std::numeric_limits<int>::max();
   Ray ray;
   if (!walk_detail::scatter<transport>(here, vertex, answer, state, ray) || state.last_delta) return {};
   state.medium = medium_towards(vertex, ray.direction);

@@ -34,7 +34,7 @@ inline bool keeps_beams(const Sampler& of_path, float share) { return of_path.ge
 /// The photons that a pass stores.
 struct PhotonRule {
   int first_depth = 2;  ///< 1 stores photons straight from a light too; 2 leaves direct light to other techniques
-  int max_depth = 64;  ///< of the whole path; a path that uses a photon of depth k at its first vertex scatters k times
+  int max_depth = 64;   ///< of the whole path, which uses the photon at its first vertex or later
   int roulette_depth = 1;
   bool caustics_alone = false;  ///< stores caustic photons only, and ends paths after a non-delta scattering
   FluxClasses classes{};        ///< in which photons are kept apart

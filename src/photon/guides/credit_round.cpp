@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "index/bucket_kdtree.h"
+#include "path/depth.h"
 #include "path/light_pass.h"
 #include "photon/gather/kernels.h"
 
@@ -57,7 +58,7 @@ CreditRound trace_round(const RenderJob& job, std::uint32_t number, const LightG
       job.scene, {job.settings.seed, Stream::pilot_emission, number,
                   std::clamp<std::uint64_t>(job.settings.photons, least_of_round, most_of_round), &guide.emission});
   std::vector<CreditRound> chunks(paths.chunk_count());
-  const WalkLimits limits{job.settings.max_depth - 1, 1};
+  const WalkLimits limits{max_depth_of_photons(job.scene, job.settings.max_depth), 1};
   paths.for_each([&](const LightPath& start, Sampler& sampler, RayCounts& counts, std::size_t chunk) {
     CreditRound& round = chunks[chunk];
     round.starts.push_back({start.index, emission_numbers(start, sampler).at});

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "index/bucket_kdtree.h"
+#include "path/depth.h"
 #include "path/light_pass.h"
 #include "photon/gather/photon_gather.h"
 #include "photon/pilot_paths.h"
@@ -83,8 +84,9 @@ PilotLight trace_light(const RenderJob& job, const PassDraw& draw) {
     PilotLight& pilot = chunks[chunk];
     pilot.paths.push_back({.radiance = infinity});
     const PathDraw own = draw.of_path(sampler);
-    walk_from_light(PathContext{job.scene, own.w, sampler, counts, {job.settings.max_depth - 1, 1}}, start, own.time,
-                    LandingVisitor{pilot, !is_delta(start.light)});
+    walk_from_light(
+        PathContext{job.scene, own.w, sampler, counts, {max_depth_of_photons(job.scene, job.settings.max_depth), 1}},
+        start, own.time, LandingVisitor{pilot, !is_delta(start.light)});
   });
   PilotLight all;
   for (const PilotLight& chunk : chunks) {
