@@ -724,6 +724,25 @@ TEST(VolumeMethods, AgreeWithPathTracing) {
   }
 }
 
+// A ball of white fog, ten mean free paths in radius, lit from the side: its light falls off within a mean free path,
+// and kernels wider than that lost up to a quarter of it.
+TEST(VolumeMethods, DenseFogLitFromTheSide) {
+  const Scene scene = test::scene_from_text(
+      "LookAt 0 0 -25  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" 50\n"
+      "Film \"rgb\" \"integer xresolution\" 16 \"integer yresolution\" 16\nWorldBegin\n"
+      "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_s\" [1 1 1] \"rgb sigma_a\" [0 0 0]\n"
+      "LightSource \"point\" \"rgb I\" [1000 1000 1000] \"point3 from\" [-20 10 -20]\n"
+      "MediumInterface \"fog\" \"\" Material \"interface\" Shape \"sphere\" \"float radius\" 10\n");
+  const auto mean_by = [&](const std::string& integrator, std::uint64_t passes, std::uint64_t seed) {
+    RenderOptions o = options(integrator, passes, 20'000);
+    o.max_depth = 200;
+    return test::mean_of_means(test::select_layers(runs(scene, o, 8, seed), "color"));
+  };
+  const test::Mean expected = mean_by("path", 64, 100);
+  for (const char* integrator : {"vcm", "vcm:volume=point", "bpm:volume=point+beam", "probppm"})
+    EXPECT_TRUE(test::runs_agree(mean_by(integrator, 4, 200), expected, .025, .05)) << integrator;
+}
+
 // White fog, in which each light path leaves many photons.
 Scene milk() {
   return test::scene_from_text(

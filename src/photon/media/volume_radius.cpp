@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <span>
 #include <utility>
@@ -21,9 +22,12 @@ namespace {
 constexpr std::size_t set_count = 8;
 // Longest side of the grid of eye paths that look for the largest radius.
 constexpr int coarse_side = 16;
-// The largest radius that is tried, as a fraction of the scene's, and the largest mean number of photons that an eye
-// path may find in it, each of which costs time.
+// The largest radius that is tried, as a fraction of the scene's and of the mean free path, and the largest mean number
+// of photons that an eye path may find in it, each of which costs time. Within a mean free path of its surface, the
+// light of a dense medium falls off. A wider kernel loses what lies outside, and the mean squared error of single eye
+// paths does not show it, because each is too noisy.
 constexpr double widest_part = 0.1;
+constexpr double part_of_free_path(VolumeEstimator estimator) { return kernel_dimensions(estimator) == 3 ? 0.25 : 0.5; }
 constexpr double most_found = 600;
 constexpr int most_halvings = 10;
 // Radii that are tried; each is the one before divided by √2.
@@ -54,6 +58,7 @@ constexpr int side_for(VolumeEstimator estimator) { return records_for(estimator
 struct Estimates {
   std::array<std::array<float, rungs>, set_count> of_sets{};
   std::size_t found = 0;  // photons of all sets within the largest radius
+  double extinction = 0;  // per metre, where the path scatters in a medium; 0 if it does not
 
   double at(std::size_t set, std::size_t rung) const { return static_cast<double>(of_sets[set][rung]); }
   double sum(std::size_t rung) const {
@@ -126,6 +131,8 @@ struct EstimateVisitor {
   Continuation operator()(const MediumVertex& vertex) const {
     for (std::size_t i = 0; i < set_count; ++i)
       estimates.found += sets[i].compare_at(path, vertex, flown, ladder, estimates.of_sets[i]);
+    const Medium& medium = path.scene.medium(vertex.state.medium);
+    estimates.extinction = static_cast<double>(collision_density(medium, vertex.position, path.w));
     return Continuation::stop();
   }
   Continuation operator()(const SurfaceVertex& vertex) const {
@@ -152,6 +159,7 @@ class VolumePilot {
 
   double radius() const {
     double widest = widest_part * static_cast<double>(job_.scene.bounding_sphere().radius);
+    widest = std::min(widest, part_of_free_path(estimator_) * free_path(estimates(widest, coarse_side)));
     // If eye and light are in one place, any radius finds all beams; hence the limit on halvings.
     for (int i = 0; i < most_halvings && found_by(estimates(widest, coarse_side)) > most_found; ++i) widest /= 2;
     return radius_of(widest, least_error(estimates(widest, side_for(estimator_))));
@@ -160,6 +168,16 @@ class VolumePilot {
  private:
   static double radius_of(double widest, std::size_t rung) {
     return widest * std::pow(std::numbers::sqrt2, -static_cast<double>(rung));
+  }
+  // The mean free path where the eye paths scatter, m.
+  static double free_path(const std::vector<Estimates>& paths) {
+    double sum = 0;
+    std::size_t scattered = 0;
+    for (const Estimates& path : paths) {
+      sum += path.extinction;
+      if (path.extinction > 0) ++scattered;
+    }
+    return scattered == 0 ? std::numeric_limits<double>::infinity() : static_cast<double>(scattered) / sum;
   }
   // The mean number of photons that an eye path finds.
   static double found_by(const std::vector<Estimates>& paths) {
