@@ -23,6 +23,11 @@ struct HitPoints {
 
   // Number of the eye path among all eye paths of its pixel.
   std::uint32_t path(std::uint32_t pass, std::uint32_t hit) const { return fixed ? hit : pass; }
+  // Fixed hit points never reach the later samples of the filter's sequences: the last one has the negative lobes.
+  FilterPlace fixed_place(const Filter& filter, std::uint32_t hit) const {
+    const bool is_negative = filter.negative_share() != 0 && count > 1 && hit + 1 == count;
+    return is_negative ? FilterPlace{FilterPart::negative, 0} : FilterPlace{FilterPart::positive, hit};
+  }
 };
 
 // From the first gathering vertex on, each pass draws new random numbers, also for fixed hit points: for shadow rays
@@ -130,7 +135,9 @@ PassReport StochasticProgressivePhotonMapper<Radius>::render_pass(const RenderJo
     Sampler walk_sampler = eye_sampler(job, place, hits_.path(pass, hit));
     Sampler fresh = eye_sampler(job, place, pass * hits_.count + hit);
     const PathDraw own = draw.of_eye_path(fresh, place.x, place.y);
-    const EyeStart start = start_eye_path(job, place, hits_.path(pass, hit), own.time, walk_sampler);
+    const EyeStart start = hits_.fixed ? start_eye_path(job, place, FilmHalf::first,
+                                                        hits_.fixed_place(job.view.filter, hit), own.time, walk_sampler)
+                                       : start_eye_path(job, place, pass, own.time, walk_sampler);
     const auto gather = [&](const SurfaceVertex& vertex, const LobeSplit& split) {
       typename Radius::Tally tally(radius, schedule_);
       const GatheredLight light = photons.gather([&](const PhotonMap<HashGrid>& map, int flux_class) {

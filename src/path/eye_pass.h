@@ -74,19 +74,23 @@ inline Sampler position_sampler(const RenderJob& job, const PixelPlace& place, F
   const auto number = static_cast<std::uint32_t>(at.number);
   return sampler_in_half(job, place, {half, number}).fork(static_cast<std::uint32_t>(at.part));
 }
-/// `number`: of the eye path (`place_in_half`). Draws from dimension group 0; group 1 is for the path's time and
+/// `at`: which sample of the filter it is. Draws from dimension group 0; group 1 is for the path's time and
 /// wavelengths.
-inline EyeStart start_eye_path(const RenderJob& job, const PixelPlace& place, std::uint32_t number, float time,
-                               Sampler& sampler) {
+inline EyeStart start_eye_path(const RenderJob& job, const PixelPlace& place, FilmHalf half, const FilterPlace& at,
+                               float time, Sampler& sampler) {
   const Filter& filter = job.view.filter;
-  const PlaceInHalf in_half = place_in_half(number, job.settings.parts);
-  const FilterPlace at = filter.place_of_sample(in_half.number);
   sampler.seek(0);
   Vec2 u = sampler.next2();
-  if (filter.negative_share() != 0) u = position_sampler(job, place, in_half.half, at).next2();
+  if (filter.negative_share() != 0) u = position_sampler(job, place, half, at).next2();
   const Vec2 centre(static_cast<float>(place.x) + 0.5f, static_cast<float>(place.y) + 0.5f);
   const Vec2 raster = centre + filter.sample(u, at.part);
   return {eye_ray(job.view, raster, sampler.next2(), time), raster, at.part};
+}
+/// The same of eye path `number` (`place_in_half`).
+inline EyeStart start_eye_path(const RenderJob& job, const PixelPlace& place, std::uint32_t number, float time,
+                               Sampler& sampler) {
+  const PlaceInHalf in_half = place_in_half(number, job.settings.parts);
+  return start_eye_path(job, place, in_half.half, job.view.filter.place_of_sample(in_half.number), time, sampler);
 }
 
 /// The light of the eye paths of a pass whose photons come in blocks. Each eye path is traced once for each block, with

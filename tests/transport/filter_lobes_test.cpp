@@ -59,16 +59,37 @@ Shape "sphere" "float radius" 1)");
   }
 }
 
-// Black to the left of x = 7.7, white to the right. The picture of a step is the filter's integral from the step on,
+// Black to the left of x = -.3, white to the right.
+const char* const a_step = R"(
+LightSource "infinite" "rgb L" [1 1 1]
+Material "diffuse" "rgb reflectance" [0 0 0]
+Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-90 -90 0  -.3 -90 0  -.3 90 0  -90 90 0])";
+
+// Beside a step, the picture is darker than black where the filter has lobes.
+TEST(FilterLobes, BelongToThePictureOfEveryMethod) {
+  for (const std::string& filter : filters) {
+    const Scene scene = scene_with(filter, a_step);
+    const bool has_lobes = scene.description().view.filter.kind != description::FilterKind::gaussian;
+    for (const char* method : {"path", "bdpt", "probppm", "ppm"}) {
+      const Image image = test::render_image(scene, test::options_for(method, 32));
+      float least = 1;
+      for (int x = 0; x < columns; ++x) {
+        float sum = 0;
+        for (int y = 0; y < rows; ++y) sum += image.at(x, y, 0);
+        least = std::min(least, sum / rows);
+      }
+      EXPECT_EQ(least < -0.01f, has_lobes) << method << ' ' << filter;
+    }
+  }
+}
+
+// The picture of a step is the filter's integral from the step on,
 // which is below 0 and above 1 beside it. The limit of the passes is far beyond the first sample of the lobes, from
 // which on the estimate is unbiased.
 TEST(NightlyFilterLobes, AStepIsTheIntegralOfTheFilter) {
   constexpr double step = 7.7;
   for (std::size_t f = 0; f < filters.size(); ++f) {
-    const Scene scene = scene_with(filters[f], R"(
-LightSource "infinite" "rgb L" [1 1 1]
-Material "diffuse" "rgb reflectance" [0 0 0]
-Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-90 -90 0  -.3 -90 0  -.3 90 0  -90 90 0])");
+    const Scene scene = scene_with(filters[f], a_step);
     const Image image = test::render_image(scene, test::options_for("path", 128, f));
     const Filter filter(filter_shape(scene.description().view.filter));
     double least = 1;
