@@ -176,7 +176,7 @@ void check_replaced_state(const fs::path& path, const RenderState& state, const 
   } catch (const Error& error) {
     throw Error({path.string()}, fmt::format("exists and cannot be read ({}); {}", error.message, advice));
   }
-  if (const auto difference = identity_difference(*there, state))
+  if (const auto difference = difference_to_replaced(*there, state))
     throw Error({path.string()}, fmt::format("holds another render: it differs in {}; {}", *difference, advice));
   const StateSummary summary = summarize(*there);
   if (const std::uint64_t lost = count_missing(summary.passes, passes))

@@ -168,16 +168,24 @@ struct Film {
 
 void explain_coarse(const CoarsePicture& coarse) {
   warn(
-      "the render ended within its first pass: the picture is coarse, rendered with {} x {} pixels and enlarged; a "
+      "there was no time for a whole pass: the picture is coarse, rendered with {} x {} pixels and enlarged; a "
       "whole pass takes about {}, and the render cannot be resumed from a state of this picture",
       coarse.width, coarse.height, format_duration(coarse.pass_seconds));
 }
 
+bool measures_exposure(const RenderCommand& a, const Session& session) {
+  return a.output.measures_exposure.value_or(summarize(session.state()).measures_exposure);
+}
+
+// How all frames of a film are shown, as far as it follows from the first frame.
 std::optional<DisplaySettings> measured_display(const RenderCommand& a, const Session& session) {
-  if (!a.output.measures_exposure.value_or(summarize(session.state()).measures_exposure)) return {};
+  const bool measures = measures_exposure(a, session);
+  const ToneCurve curve = curve_of(a.output, measures);
+  if (!measures && curve != ToneCurve::highlights) return {};
   const Image picture = picture_without_error(session.state());
-  return DisplaySettings{
-      .exposure = measured_exposure(picture), .curve = curve_of(a.output, true), .brightest = brightest_level(picture)};
+  return DisplaySettings{.exposure = measures ? measured_exposure(picture) : a.output.display.exposure,
+                         .curve = curve,
+                         .brightest = brightest_level(picture)};
 }
 
 // What is checked and read once before the render.
@@ -216,10 +224,12 @@ void save_view(const RenderCommand& a, const std::vector<fs::path>& outputs, con
                const ViewDescription& view, const Session& session, const RenderStatistics& statistics,
                std::optional<DenoisedLooks::Found> found, Film& film) {
   save_render(a, a.options, outputs, scene, session.state(), statistics, std::move(found));
-  const bool is_first_frame = !film.measured;
-  if (is_first_frame) film.measured = measured_display(a, session);
-  explain_darkness(a, scene, view, outputs.front(), session,
-                   is_first_frame && film.measured ? std::optional(film.measured->exposure) : std::nullopt);
+  std::optional<float> measured_now;
+  if (!film.measured) {
+    film.measured = measured_display(a, session);
+    if (measures_exposure(a, session)) measured_now = film.measured->exposure;
+  }
+  explain_darkness(a, scene, view, outputs.front(), session, measured_now);
   if (statistics.out_of_memory)
     throw Error(
         fmt::format("not enough memory for a pass: the pictures hold the {} passes before it; fewer --photons "
@@ -258,7 +268,6 @@ void render_view(const RenderCommand& a, Team* team, const Prepared& prepared, c
   StopRule stop = session.plan();
   stop.interrupted = &stop_requested();
   stop.drop = &drop_requested();
-  stop.keeps_coarse = true;
   stop.team = team;
   DenoisedLooks looks(stop.noise.value_or(0));
   if (stop.noise && a.output.denoise) stop.error_of = std::ref(looks);

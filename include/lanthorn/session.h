@@ -33,10 +33,10 @@ enum class Undo : std::uint8_t {
 
 /// When to stop: at whichever limit is reached first. Any thread or signal handler may set the flags at any time.
 ///
-/// There is always a picture. A render without a team that begins with no passes, of 4096 pixels or more, first renders
+/// There is always a picture, unless `drop` ends the first pass. A render without a team that begins with no passes, of 4096 pixels or more, first renders
 /// pictures of few pixels if its time is limited. If the time does not allow a pass of the whole picture, such a
 /// picture, as fine as the time allows, takes its place (`RenderStatistics::coarse`). The next call begins anew. Other
-/// renders complete at least one pass in each call.
+/// renders without passes complete at least one.
 struct StopRule {
   PassRange passes{0, 1};  ///< passes to complete; end may be "never" (the largest number)
   /// Wall-clock time of this call. No pass begins that is expected to end later than 5 % or half a second after it, and
@@ -53,9 +53,6 @@ struct StopRule {
   /// Stops immediately: the running passes are abandoned without a trace if `undo` allows it, and completed otherwise.
   const std::atomic<bool>* drop = nullptr;
   Undo undo = Undo::if_cheap;
-  /// If `drop` ends the first pass, a coarse picture takes its place, too. Without a limit of time, only renders of
-  /// 2^20 pixels or more make one.
-  bool keeps_coarse = false;
   /// Processes that share the passes (lanthorn/team.h). Ranks other than 0 follow the rule of rank 0. Until the render
   /// ends, `Session::picture` has only the passes of this process.
   Team* team = nullptr;

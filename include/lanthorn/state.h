@@ -136,5 +136,8 @@ void save_state(const RenderState& state, const std::filesystem::path& path, con
 /// The first difference between the identities of two renders: the option or file that causes it and both values, e.g.
 /// "--seed (0 and 7)"; nullopt if they are equal.
 std::optional<std::string> identity_difference(const RenderState& a, const RenderState& b);
+/// The same, but a coarse picture (`RenderStatistics::coarse`) belongs to the render whose pass it stands in for: no
+/// passes are lost if a state of that render replaces it.
+std::optional<std::string> difference_to_replaced(const RenderState& there, const RenderState& state);
 
 }  // namespace lanthorn

@@ -258,6 +258,7 @@ void InteractiveRender::Worker::make_plan(const Wanted& wanted) {
   plan_.reset();  // two films may not fit into memory
   plan_revision_ = options_revision_ = 0;
   plan_.emplace(plan_render(*scene_, wanted.view, wanted.options));
+  plan_->coarse = nullptr;  // `render_coarse` has shown coarse pictures
   plan_revision_ = wanted.revision;
   options_revision_ = wanted.options_revision;
   const RenderSettings& settings = plan_->settings;

@@ -150,6 +150,7 @@ nlohmann::json identity(const Scene& scene, const ViewDescription& view, const R
     result["plateau_wavelength_sets"] = s.parts;
     if (scene.has_dispersion()) result["heroes_of_paths"] = true;  // by `wavelengths_in_order` and `PassDraw`
   }
+  if (plan.view.filter.negative_share() != 0) result["filter_lobes_apart"] = true;  // `FilterPart`
   if (window != crop)
     result["margin"] = {crop.x0 - window.x0, crop.y0 - window.y0, window.x1 - crop.x1, window.y1 - crop.y1};
   if (plan.view.sensor.path_limit) result["clamp"] = *plan.view.sensor.path_limit;

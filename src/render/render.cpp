@@ -203,7 +203,7 @@ class PassLoop {
         statistics_(statistics),
         start_(call.start),
         deadline_(deadline),
-        needs_pass_(!call.has_stand_in),
+        needs_pass_(!call.has_stand_in && call.plan.state.pass_count() == 0),
         seconds_before_(call.plan.state.seconds),
         undo_(call.stop.undo),
         looks_(call.stop, call.plan.state.film),
@@ -384,10 +384,6 @@ void PassLoop::give_up() {
     throw std::bad_alloc();
 }
 
-}  // namespace
-
-namespace {
-
 RenderStatistics render_passes(const Call& call) {
   const RenderJob job = call.job();
   const Deadline deadline(call.stop.drop, end_of(call.stop, call.start));
@@ -402,10 +398,8 @@ RenderStatistics render_passes(const Call& call) {
 }
 
 bool needs_stand_in(const RenderPlan& plan, const StopRule& stop) {
-  constexpr double large = 1 << 20;  // pixels
-  const double pixels = plan.state.film.pixel_count();
-  if (stop.team || !plan.coarse || plan.state.pass_count() > 0 || pixels < StandIn::fewest_pixels) return false;
-  return stop.seconds || (stop.keeps_coarse && pixels >= large);
+  return stop.seconds && !stop.team && plan.coarse && plan.state.pass_count() == 0 &&
+         plan.state.film.pixel_count() >= StandIn::fewest_pixels;
 }
 
 }  // namespace
@@ -418,14 +412,10 @@ RenderStatistics render(const Scene& scene, RenderPlan& plan, const StopRule& st
 
   observer.can_drop(stop.drop != nullptr);
   const Deadline deadline(stop.drop, end_of(stop, call.start));
-  const Observer nobody;
   StandIn stand_in(scene, plan, [&](RenderPlan& coarse, const StopRule& rule, bool may_be_none) {
-    return render_passes({scene, coarse, rule, nobody, Clock::now(), may_be_none});
+    return render_passes({scene, coarse, rule, Observer{}, Clock::now(), may_be_none});
   });
-  const auto seconds_left = [&]() -> std::optional<double> {
-    if (!stop.seconds) return {};
-    return *stop.seconds + tolerance(0.05, *stop.seconds) - call.seconds();
-  };
+  const auto seconds_left = [&] { return *stop.seconds + tolerance(0.05, *stop.seconds) - call.seconds(); };
   RenderStatistics statistics;
   const bool allows_pass = stand_in.allows_pass(seconds_left, stop.drop, deadline.flag());
   call.has_stand_in = stand_in.has_picture();
@@ -433,8 +423,8 @@ RenderStatistics render(const Scene& scene, RenderPlan& plan, const StopRule& st
     statistics = render_passes(call);
   else
     stand_in.refine(*stop.seconds - call.seconds(), stop);
-  const bool is_dropped = is_set(stop.drop) && !stop.keeps_coarse;
-  if (plan.state.pass_count() > 0 || !call.has_stand_in || is_dropped || statistics.out_of_memory) return statistics;
+  if (plan.state.pass_count() > 0 || !call.has_stand_in || is_set(stop.drop) || statistics.out_of_memory)
+    return statistics;
   statistics.seconds = call.seconds();
   stand_in.put_into(plan, statistics);
   observer.progress(plan.state, statistics);

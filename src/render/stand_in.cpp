@@ -49,7 +49,10 @@ void enlarge(const Film& coarse, const std::vector<std::uint32_t>& pixels, Film&
       film.add_sums(i, begin, enlarged);
     });
   }
-  film.add_report(coarse.report());
+  FilmReport report = coarse.report();
+  report.first_non_finite.reset();  // pixels of the coarse film
+  report.first_too_large.reset();
+  film.add_report(report);
 }
 
 }  // namespace
@@ -70,18 +73,19 @@ bool StandIn::render(double pixels, const StopRule& stop) {
   return true;
 }
 
-bool StandIn::allows_pass(const std::function<std::optional<double>()>& seconds_left, const std::atomic<bool>* drop,
+bool StandIn::allows_pass(const std::function<double()>& seconds_left, const std::atomic<bool>* drop,
                           const std::atomic<bool>* deadline) {
   constexpr double first = 1024, growth = 4;  // pixels
-  // Coarse pictures may take an eighth of the time. A pass may take half of it, because few pixels measure it poorly.
-  constexpr double share = 0.125, likely = 0.5;
+  // Coarse pictures may take an eighth of the time. A pass may take half of it, because few pixels measure it poorly,
+  // or more once they are a sixteenth of all.
+  constexpr double share = 0.125, likely = 0.5, measured = 0.8, enough = 1.0 / 16;
   const std::uint64_t begin = plan_.stop.passes.begin;
   for (double pixels = std::min(first, full_ / 4); growth * pixels <= full_; pixels *= growth) {
     const std::atomic<bool>* const flag = has_picture() ? deadline : drop;
     if (!render(pixels, {.passes = {begin, begin + 1}, .drop = flag, .undo = Undo::never})) return false;
-    const std::optional<double> left = seconds_left();
-    if (!left || seconds_per_pixel_ * full_ < likely * *left) return true;
-    if (growth * statistics_.seconds > share * *left) return false;
+    const double left = seconds_left(), prepared = statistics_.prepare_seconds;
+    if (prepared + seconds_per_pixel_ * full_ < (pixels < enough * full_ ? likely : measured) * left) return true;
+    if (prepared + growth * (statistics_.seconds - prepared) > share * left) return false;
   }
   return true;
 }

@@ -17,8 +17,8 @@ namespace lanthorn {
 using RenderPasses = std::function<RenderStatistics(RenderPlan& plan, const StopRule& stop, bool may_be_none)>;
 
 /// Renders pictures of fewer pixels until it is known whether a pass of the whole picture fits into the time. The last
-/// one can be enlarged into the film of the whole picture, which then has its passes. Such a state belongs together
-/// with others of its size only, because its size is a part of its identity.
+/// one can be enlarged into the film of the whole picture, which then has its passes. Such a state merges only with
+/// states of the same size, because its size is a part of its identity.
 class StandIn {
  public:
   /// A picture of so few pixels needs none: even if each takes .1 ms, a pass takes only half a second.
@@ -27,9 +27,8 @@ class StandIn {
   StandIn(const Scene& scene, const RenderPlan& plan, RenderPasses render);
 
   /// Renders the coarse pictures. Returns false if a pass of the whole picture is not expected to fit into the rest of
-  /// the time: `seconds_left()`, none if the time is unlimited. `drop` abandons the first picture, `deadline` all
-  /// others; both may be null.
-  bool allows_pass(const std::function<std::optional<double>()>& seconds_left, const std::atomic<bool>* drop,
+  /// the time, `seconds_left()`. `drop` abandons the first picture, `deadline` all others; both may be null.
+  bool allows_pass(const std::function<double()>& seconds_left, const std::atomic<bool>* drop,
                    const std::atomic<bool>* deadline);
   /// Uses the rest of the time for a picture that is as fine as possible, and for more of its passes.
   void refine(double seconds, const StopRule& stop);

@@ -113,14 +113,15 @@ std::string common_members(const std::string& a, const std::string& b) {
   return common.dump();
 }
 
-// The first difference between the identities of two renders, as the option (or file) and both values, such as
-// "--seed (0 and 7)". Empty if they are equal.
-std::optional<std::string> identity_difference(const std::string& a, const std::string& b) {
-  const json one = identity_of(json::parse(a)), other = identity_of(json::parse(b));
+// The first difference, as the option (or file) and both values, such as "--seed (0 and 7)". Empty if they are equal.
+std::optional<std::string> difference_of(const json& one, const json& other) {
   const auto difference = find_difference(one, other, causes);
   if (!difference) return std::nullopt;
   return fmt::format("{} ({} and {})", field_name(difference->path), value_text(difference->path, difference->a),
                      value_text(difference->path, difference->b));
+}
+std::optional<std::string> identity_difference(const std::string& a, const std::string& b) {
+  return difference_of(identity_of(json::parse(a)), identity_of(json::parse(b)));
 }
 
 }  // namespace
@@ -144,6 +145,12 @@ void RenderState::add_pass(std::uint64_t pass) {
 
 std::optional<std::string> identity_difference(const RenderState& a, const RenderState& b) {
   return identity_difference(a.settings, b.settings);
+}
+
+std::optional<std::string> difference_to_replaced(const RenderState& there, const RenderState& state) {
+  json one = identity_of(json::parse(there.settings)), other = identity_of(json::parse(state.settings));
+  for (json* identity : {&one, &other}) identity->erase("coarse");
+  return difference_of(one, other);
 }
 
 void require_same_identity(const RenderState& state, const std::string& settings, const std::string& file) {
