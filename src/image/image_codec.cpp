@@ -67,11 +67,12 @@ bool child_survives() {
     }
     ::_exit(0);
   }
+  if (child < 0) return false;
   int status = 0;
   pid_t ended = -1;
   do ended = ::waitpid(child, &status, 0);
   while (ended < 0 && errno == EINTR);
-  return child > 0 && ended == child && WIFEXITED(status) && WEXITSTATUS(status) == 0;
+  return ended == child && WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
 
 // The libraries behind the module start threads: when they are loaded, and for their pools. If they cannot, log4cplus

@@ -3,6 +3,7 @@
 // G. Ward, "Real Pixels", Graphics Gems II, 1991, and the reference manual of Radiance, "File Formats" (picture files).
 #include "image/radiance_picture.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -89,7 +90,8 @@ Resolution parse_resolution(std::string_view line) {
 std::array<float, 8> parse_primaries(std::string_view text) {
   std::array<float, 8> primaries{};
   for (float& number : primaries) {
-    while (text.starts_with(' ')) text.remove_prefix(1);
+    text.remove_prefix(std::min(text.find_first_not_of(" \t"), text.size()));
+    if (text.starts_with('+')) text.remove_prefix(1);
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
     if (error != std::errc()) fail_picture("has PRIMARIES that are not eight numbers");
     text.remove_prefix(static_cast<std::size_t>(end - text.data()));
