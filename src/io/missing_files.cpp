@@ -61,6 +61,11 @@ std::string names_of(const std::vector<MissingFile>& missing) {
   return names + (missing.size() > most_named ? ", ..." : "");
 }
 
+std::string advice_on_pointers(const std::vector<MissingFile>& missing) {
+  const auto pointers = std::count_if(missing.begin(), missing.end(), [](const auto& file) { return file.is_pointer; });
+  return pointers > 0 ? ", git lfs pull fetches " + std::to_string(pointers) + " of them" : "";
+}
+
 }  // namespace
 
 void warn_of_missing_files(SceneDescription& scene, const FileAccess& access) {
@@ -73,7 +78,7 @@ void warn_of_missing_files(SceneDescription& scene, const FileAccess& access) {
           : std::to_string(missing.size()) + " files are missing, the first of them here: " + names_of(missing);
   scene.warnings.push_back(
       {missing.front().location,
-       which +
+       which + advice_on_pointers(missing) +
            ": a mesh or medium is left out, a texture has the neutral value of its use (a grey colour, no emission, no "
            "relief), a measured material is grey, a spectrum 1, an included file empty, a lens one of 50 mm"});
 }
@@ -87,11 +92,9 @@ void report_missing_files(SceneDescription& scene, const FileAccess& access, con
         problem != nullptr ? problem->where : missing.front().location,
         (problem != nullptr ? problem->message : missing.front().problem) + "; --missing skip renders without it");
   sort_by_line(missing);
-  const auto pointers = std::count_if(missing.begin(), missing.end(), [](const auto& file) { return file.is_pointer; });
-  throw Error(missing.front().location,
-              std::to_string(missing.size()) + " files are missing, the first of them here: " + names_of(missing) +
-                  "; --missing skip renders without them" +
-                  (pointers > 0 ? ", git lfs pull fetches " + std::to_string(pointers) + " of them" : ""));
+  throw Error(missing.front().location, std::to_string(missing.size()) +
+                                            " files are missing, the first of them here: " + names_of(missing) +
+                                            "; --missing skip renders without them" + advice_on_pointers(missing));
 }
 
 }  // namespace lanthorn

@@ -130,6 +130,7 @@ struct Outside {
         if (is_back) ++backs;
         if (is_back || model.is_on_box(i, tolerance) || is_in_wall(model.samples[i])) ++dull;
       }
+    if (all == 0) return;
     backs /= all;
     dull /= all;
   }
