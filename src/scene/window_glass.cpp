@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -75,14 +76,14 @@ bool is_colourless(const description::SpectrumParameter& tint) {
 // The glass of a shape, if it is glass.
 struct Glass {
   description::Pane pane;
-  const char* flaw = nullptr;  // why a pane of it cannot let all rays pass straight; null if it can
+  std::string_view flaw{};  // why a pane of it cannot let all rays pass straight; empty if it can
 };
 
-const char* flaw_of(const description::Roughness& roughness, const description::SpectrumParameter& tint,
-                    bool has_film) {
+std::string_view flaw_of(const description::Roughness& roughness, const description::SpectrumParameter& tint,
+                         bool has_film) {
   if (!is_smooth(roughness)) return "is rough";
   if (!is_colourless(tint)) return "is tinted";
-  return has_film ? "has a thin film" : nullptr;
+  return has_film ? "has a thin film" : "";
 }
 
 std::optional<Glass> glass_of(const description::Shape& shape, const description::Material& material) {
@@ -165,13 +166,13 @@ std::vector<std::optional<Glass>> find_panes(const std::vector<description::Shap
 // Panes that stay as they are, by what their glass has against it.
 struct Leftovers {
   struct Kind {
-    const char* flaw;
+    std::string_view flaw;
     std::size_t shapes;
     SourceLocation first;
   };
   std::vector<Kind> kinds;
 
-  void add(const char* flaw, const SourceLocation& location) {
+  void add(std::string_view flaw, const SourceLocation& location) {
     for (Kind& kind : kinds)
       if (kind.flaw == flaw) {
         ++kind.shapes;
@@ -201,7 +202,7 @@ std::size_t replace_window_glass(SceneDescription& scene) {
     for (std::size_t i = 0; i < shapes.size(); ++i) {
       shapes[i].pane.reset();
       if (!panes[i]) continue;
-      if (panes[i]->flaw != nullptr) {
+      if (!panes[i]->flaw.empty()) {
         left.add(panes[i]->flaw, shapes[i].location);
         continue;
       }

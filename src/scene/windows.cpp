@@ -49,7 +49,7 @@ struct FlatPane {
   std::vector<PaneFace> faces;
 
   double reach2() const { return 0.01 * area; }
-  bool is_behind(const FlatPane& other) const {
+  bool belongs_with(const FlatPane& other) const {
     const DVec3 way = other.centre - centre;
     return std::fabs(area - other.area) <= 0.1 * area && glm::dot(way, way) <= reach2() &&
            std::fabs(glm::dot(faces[0].normal, other.faces[0].normal)) > 1 - 1e-6;
@@ -134,7 +134,7 @@ void join_windows(std::span<const std::unique_ptr<ShapeStore>> shapes) {
   for (std::size_t a = 0; a < panes.size(); ++a) {
     const double reach = std::sqrt(panes[a].reach2());
     for (std::size_t b = a + 1; b < panes.size() && panes[b].centre.x - panes[a].centre.x <= reach; ++b)
-      if (panes[a].is_behind(panes[b])) windows.join(a, b);
+      if (panes[a].belongs_with(panes[b])) windows.join(a, b);
   }
   std::vector<std::shared_ptr<std::vector<PaneFace>>> faces(panes.size());
   for (std::size_t i = 0; i < panes.size(); ++i) {
