@@ -124,6 +124,15 @@ TEST(ErrorEstimate, NoiseOfEdgesStaysThere) {
   EXPECT_NEAR(tried.ratio, 1, 0.15);
 }
 
+// Squares of two brightnesses, so that every pixel is near an edge. The dark ones alone have noise: their pixels belong
+// to dark corners, whatever the bright ones beside them look like.
+TEST(ErrorEstimate, PixelsNearEdgesBelongToTheirOwnSide) {
+  const auto is_dark = [](int x, int y) { return (x / 12 + y / 12) % 2 == 0; };
+  const Tried tried = try_pictures([&](int x, int y) { return is_dark(x, y) ? 0.5 : 4.0; },
+                                   [&](int x, int y) { return is_dark(x, y) ? 0.5 : 0.01; }, independent);
+  EXPECT_NEAR(tried.ratio, 1, 0.05);
+}
+
 // Noise only in a corner of the picture.
 TEST(ErrorEstimate, NoiseOfAPartIsMeasured) {
   const Tried tried = try_pictures(

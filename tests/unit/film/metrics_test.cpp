@@ -217,6 +217,26 @@ TEST(Flip, OfHighDynamicRangeDoesNotDependOnExposure) {
   EXPECT_NEAR(hdr_flip(ramps(true, 64), ramps(false, 64)).mean, hdr_flip(ramps(true), ramps(false)).mean, 1e-5);
 }
 
+// The exposures follow from the pixels that are not black: a frame of black around a picture changes nothing far
+// inside.
+TEST(Flip, ExposuresOfAMostlyBlackPictureAreThoseOfItsLight) {
+  constexpr int light = 64, frame = 80;
+  const auto ramp = [](int border, float scale) {
+    Image image(light + 2 * border, light + 2 * border, {"R", "G", "B"});
+    for (int y = 0; y < light; ++y)
+      for (int x = 0; x < light; ++x)
+        for (std::size_t c = 0; c < 3; ++c)
+          image.at(x + border, y + border, c) = scale * (0.05f + static_cast<float>(x * x * (y + 9)));
+    return image;
+  };
+  const FlipResult alone = hdr_flip(ramp(0, 1.2f), ramp(0, 1)), framed = hdr_flip(ramp(frame, 1.2f), ramp(frame, 1));
+  const auto at = [](int border, int x, int y) {
+    return static_cast<std::size_t>((y + border) * (light + 2 * border) + x + border);
+  };
+  for (int y = 28; y < 36; ++y)
+    for (int x = 28; x < 36; ++x) EXPECT_NEAR(framed.map[at(frame, x, y)], alone.map[at(0, x, y)], 1e-6f);
+}
+
 TEST(Flip, TakesAnyValues) {
   Image wild = ramps(false);
   wild.pixels[5] = NAN;

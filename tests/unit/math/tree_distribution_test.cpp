@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <utility>
 
 #include "math/hash.h"
 #include "math/vec.h"
@@ -62,6 +63,19 @@ TEST(TreeDistribution, KnowsTheDensityOfSomeNumbers) {
   EXPECT_FLOAT_EQ(tree.pdf({0.7f, any, any, any}), 15.0f / 16 / 0.5f);
   EXPECT_FLOAT_EQ(tree.pdf({any, any, any, 0.9f}), (0.5f + 8) / 16 / 0.5f);
   EXPECT_FLOAT_EQ(tree.pdf({any, 0.1f, any, 0.2f}), (0.25f + 2) / 16 / 0.25f);
+}
+
+// The axis of the root is halved again: masses 1, 2 and 5 of 8 in [0, 1/2), [1/2, 3/4) and [3/4, 1).
+TEST(TreeDistribution, HalvesAnAxisTwice) {
+  TreeDistribution tree;
+  const std::uint32_t a = tree.add_leaf(1), b = tree.add_leaf(2), c = tree.add_leaf(5);
+  tree.add_inner(0, a, tree.add_inner(0, b, c));
+  const std::optional<float> any;
+  for (const auto& [x, density] : {std::pair{0.2f, 0.25f}, {0.6f, 1.0f}, {0.9f, 2.5f}}) {
+    EXPECT_FLOAT_EQ(tree.pdf({x, 0.5f, 0.5f, 0.5f}), density) << x;
+    EXPECT_FLOAT_EQ(tree.pdf({x, any, any, any}), density) << x;
+  }
+  EXPECT_FLOAT_EQ(tree.pdf({any, 0.5f, any, any}), 1);
 }
 
 // Samples in narrow cells keep the full resolution of the number they are drawn from.

@@ -132,6 +132,8 @@ TEST(State, RoundTrips) {
     state.passes.push_back({9, 20});
     state.integrator_state = {std::byte{1}, std::byte{0}, std::byte{255}};
     state.shardable = false;
+    state.eye = {.paths = 7, .cut = 3};
+    state.light = {.paths = 11, .cut = 5};
     const Bytes bytes = encode_state(state);
     const RenderState read = decode_state(bytes, "x.state");
     EXPECT_EQ(encode_state(read), bytes);
@@ -141,6 +143,10 @@ TEST(State, RoundTrips) {
     EXPECT_EQ(read.settings, state.settings);
     EXPECT_EQ(read.shardable, state.shardable);
     EXPECT_EQ(read.seconds, state.seconds);
+    for (const auto& [ends, expected] : {std::pair{read.eye, state.eye}, {read.light, state.light}}) {
+      EXPECT_EQ(ends.paths, expected.paths);
+      EXPECT_EQ(ends.cut, expected.cut);
+    }
     ASSERT_TRUE(read.film.compatible(state.film));
     for (std::size_t i = 0; i < state.film.plane_count(); ++i) EXPECT_EQ(read.film.plane(i), state.film.plane(i));
     EXPECT_EQ(read.film.report().non_finite, state.film.report().non_finite);

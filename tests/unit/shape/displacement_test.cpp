@@ -65,6 +65,18 @@ TEST(Displacement, MovesAlongNormalsAndRenewsThem) {
   }
 }
 
+// The normals of the file say which side is outside, not the order of the corners.
+TEST(Displacement, KeepsTheOutside) {
+  const auto ramp = [](const TexturePoint& at) { return 0.5f * at.uv.x; };
+  TriangleMesh square = triangulated(unit_square());
+  square.normals.assign(square.positions.size(), {0, 0, -1});
+  const TriangleMesh mesh = displaced(square, 0.2f, {}, ramp, {});
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+    EXPECT_NEAR(mesh.positions[i].z, -0.5f * mesh.positions[i].x, 1e-5f);
+    EXPECT_LT(mesh.normals[i].z, 0);
+  }
+}
+
 TEST(Displacement, TooFineIsAnError) {
   const auto flat = [](const TexturePoint&) { return 0.0f; };
   EXPECT_THROW(displaced(triangulated(unit_square()), 1e-9f, {}, flat, {"s.pbrt", 1, 1}), Error);
