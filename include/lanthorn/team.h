@@ -9,6 +9,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <optional>
 #include <string>
@@ -41,6 +42,8 @@ struct Team {
   std::optional<double> preview_seconds{};
   /// The number of gatherings over all renders of this team. `Session::render` counts them.
   std::uint64_t rounds = 0;
+  /// Messages of the next render, from processes that have begun it already.
+  std::deque<TeamMessage> early{};
 };
 
 /// Tells rank 0 why this process, of another rank, cannot render. Rank 0 throws the message as an Error from

@@ -24,8 +24,10 @@ RenderState identity_of(const RenderState& state) {
 
 TeamMember::TeamMember(Team& team, const StopRule& stop, const RenderState& state, Clock::time_point start)
     : team_(team),
+      first_round_(team.rounds),
       stop_(stop),
       start_(start),
+      early_(std::exchange(team.early, {})),
       gathering_(team.link.rank, team.link.size),
       tree_check_(team.link.size, gathering_.awaited_children()),
       round_(team.rounds),
@@ -146,7 +148,7 @@ bool TeamMember::step() {
     questions.swap(questions_);
   }
   for (const Message& question : questions) send(0, question);
-  const auto received = team_.link.receive();
+  const auto received = receive();
   if (received) handle(*received);
   add_arrived();
   pass_on();
@@ -154,8 +156,19 @@ bool TeamMember::step() {
   return received.has_value();
 }
 
+std::optional<TeamMessage> TeamMember::receive() {
+  if (early_.empty()) return team_.link.receive();
+  TeamMessage message = std::move(early_.front());
+  early_.pop_front();
+  return message;
+}
+
 void TeamMember::handle(const TeamMessage& received) {
   Message message = decode_message(received.bytes);
+  if (message.first_round > first_round_) {
+    team_.early.push_back(received);
+    return;
+  }
   if (message.kind == MessageKind::sums) {
     PackedSums sums{std::move(message.rest), fmt::format("the sums of process {}", received.from)};
     return gathering_.add_child(message.a, std::move(sums));

@@ -73,6 +73,7 @@ class TeamMember {
   void run();
   /// Returns false if there was nothing to do.
   bool step();
+  std::optional<TeamMessage> receive();
   void handle(const TeamMessage& received);
   void handle_at_first(int from, const Message& message);
   void add_arrived();
@@ -81,18 +82,23 @@ class TeamMember {
   void tell_to_wait(std::uint64_t round);
   void tell_to_give_up();
   bool is_over();
-  void send(int to, const Message& message) { team_.link.send(to, encode(message)); }
+  void send(int to, Message message) {
+    message.first_round = first_round_;
+    team_.link.send(to, encode(message));
+  }
   void hand_over(RenderState& own, std::uint64_t end);
   std::optional<Task> try_first(RenderState& own);
   std::optional<Task> try_other(RenderState& own);
   double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
 
   Team& team_;
+  const std::uint64_t first_round_;
   StopRule stop_;
   Clock::time_point start_;
   std::atomic<bool> give_up_{false}, discard_{false};
-  Gathering gathering_;   // only the thread uses it
-  TreeCheck tree_check_;  // the same, at rank 0
+  std::deque<TeamMessage> early_;  // messages that came during the render before; only the thread uses them
+  Gathering gathering_;            // the same
+  TreeCheck tree_check_;           // the same, at rank 0
 
   mutable std::mutex mutex_;  // protects all members below
   std::condition_variable changed_;

@@ -12,7 +12,7 @@ namespace lanthorn {
 
 namespace {
 
-constexpr std::size_t head_bytes = 1 + 2 * sizeof(std::uint64_t);
+constexpr std::size_t head_bytes = 1 + 3 * sizeof(std::uint64_t);
 
 auto counts_of(auto& s) {
   return std::array{&s.passes,         &s.light_paths,  &s.photons_stored,   &s.cache_records,
@@ -28,6 +28,7 @@ std::vector<std::byte> encode(const Message& message) {
   append_number(bytes, message.kind);
   append_number(bytes, message.a);
   append_number(bytes, message.b);
+  append_number(bytes, message.first_round);
   bytes.insert(bytes.end(), message.rest.begin(), message.rest.end());
   return bytes;
 }
@@ -37,8 +38,11 @@ Message decode_message(std::span<const std::byte> bytes) {
     throw Error("a process of the team sent an invalid message; do all processes run the same program?");
   Message message;
   message.kind = static_cast<MessageKind>(bytes[0]);
-  std::memcpy(&message.a, &bytes[1], sizeof message.a);
-  std::memcpy(&message.b, &bytes[1 + sizeof message.a], sizeof message.b);
+  const std::byte* at = &bytes[1];
+  for (std::uint64_t* number : {&message.a, &message.b, &message.first_round}) {
+    std::memcpy(number, at, sizeof *number);
+    at += sizeof *number;
+  }
   message.rest.assign(bytes.begin() + head_bytes, bytes.end());
   return message;
 }

@@ -34,6 +34,9 @@ struct Message {
   MessageKind kind = MessageKind::end;
   std::uint64_t a = 0, b = 0;
   std::vector<std::byte> rest{};
+  /// The first round of the sender's render, which tells renders apart: a process may begin the next one while others
+  /// still end this one. 0 also if the sender does not render.
+  std::uint64_t first_round = 0;
 };
 
 std::vector<std::byte> encode(const Message& message);

@@ -47,25 +47,30 @@ RenderOptions small(const std::string& integrator, std::uint64_t passes) {
 // Messages between threads.
 class Network {
  public:
-  explicit Network(int size) : boxes_(static_cast<std::size_t>(size)) {}
+  /// `delay`: of the messages from the last process.
+  explicit Network(int size, std::chrono::milliseconds delay = {})
+      : delay_(delay), boxes_(static_cast<std::size_t>(size)) {}
 
   TeamLink link(int rank) {
     return {.rank = rank,
-            .size = static_cast<int>(boxes_.size()),
+            .size = size(),
             .send =
                 [this, rank](int to, Bytes bytes) {
                   const std::lock_guard lock(mutex_);
                   bytes_sent_ += bytes.size();
-                  boxes_[static_cast<std::size_t>(to)].push_back({rank, std::move(bytes)});
+                  boxes_[static_cast<std::size_t>(to)].push_back(
+                      {{rank, std::move(bytes)}, Clock::now() + (rank + 1 == size() ? delay_ : Clock::duration{})});
                 },
             .receive = [this, rank]() -> std::optional<TeamMessage> {
               const std::lock_guard lock(mutex_);
               if (is_down_) throw std::runtime_error("the network is down");
               if (Clock::now() > end_) throw std::runtime_error("the team hangs");
               auto& box = boxes_[static_cast<std::size_t>(rank)];
-              if (box.empty()) return std::nullopt;
-              TeamMessage message = std::move(box.front());
-              box.pop_front();
+              const auto first =
+                  std::find_if(box.begin(), box.end(), [](const Sent& sent) { return sent.arrival <= Clock::now(); });
+              if (first == box.end()) return std::nullopt;
+              TeamMessage message = std::move(first->message);
+              box.erase(first);
               return message;
             },
             .all_sent = [] { return true; }};
@@ -81,11 +86,18 @@ class Network {
 
  private:
   using Clock = std::chrono::steady_clock;
+  struct Sent {
+    TeamMessage message;
+    Clock::time_point arrival;
+  };
+  int size() const { return static_cast<int>(boxes_.size()); }
+
+  std::chrono::milliseconds delay_;
   std::mutex mutex_;
   Clock::time_point end_ = Clock::now() + std::chrono::minutes(2);
   bool is_down_ = false;
   std::size_t bytes_sent_ = 0;
-  std::vector<std::deque<TeamMessage>> boxes_;
+  std::vector<std::deque<Sent>> boxes_;
 };
 
 struct TeamRender {
@@ -95,6 +107,7 @@ struct TeamRender {
   Observer observer{};                                     // of rank 0
   std::optional<double> gather_seconds{};
   int rounds = 1;  // renders one after the other
+  std::chrono::milliseconds delay{};
 };
 
 struct Result {
@@ -121,7 +134,7 @@ Result render_as(int rank, Network& network, const TeamRender& render) {
 
 // The state of rank 0 at the end.
 Result run(int size, const TeamRender& render) {
-  Network network(size);
+  Network network(size, render.delay);
   std::vector<std::thread> others;
   for (int rank = 1; rank < size; ++rank)
     others.emplace_back([&, rank] {
@@ -254,6 +267,14 @@ TEST(Team, RendersOneAfterTheOther) {
   TeamRender render = of(small("path", 9));
   render.rounds = 3;
   render.gather_seconds = 0;
+  EXPECT_TRUE(run(3, render).bytes == run(1, render).bytes);
+}
+
+// Process 1 begins the next render while rank 0 still waits for the last words of process 2.
+TEST(Team, AProcessMayBeginTheNextRenderEarly) {
+  TeamRender render = of(small("path", 9));
+  render.rounds = 3;
+  render.delay = std::chrono::milliseconds(50);
   EXPECT_TRUE(run(3, render).bytes == run(1, render).bytes);
 }
 
