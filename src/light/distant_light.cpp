@@ -2,8 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "light/distant_light.h"
 
-#include "math/frame.h"
-#include "math/sampling.h"
+#include "light/covering_disk.h"
 
 namespace lanthorn {
 
@@ -43,17 +42,5 @@ float DistantLight::power() const { return luminance(irradiance.rgb) * covering_
 float DistantLight::largest_radiance(float /*as bright at any distance*/) const {
   return largest_value(irradiance) / pi;
 }
-
-Point sample_covering_disk(const BoundingSphere& scene, const Direction& towards, const Vec2& u) {
-  const Vec2 d = sample_concentric_disk(u);
-  return scene.centre + scene.radius * Frame(towards).to_world({d.x, d.y, 1});
-}
-
-Vec2 invert_covering_disk(const BoundingSphere& scene, const Direction& towards, const Point& p) {
-  const Vec3 local = Frame(towards).to_local(p - scene.centre) / scene.radius;
-  return invert_concentric_disk({local.x, local.y});
-}
-
-float covering_disk_area(const BoundingSphere& scene) { return pi * scene.radius * scene.radius; }
 
 }  // namespace lanthorn

@@ -28,12 +28,4 @@ struct DistantLight {
   float largest_radiance(float far2) const;
 };
 
-/// A point of the disk that has the bounding sphere's radius, faces `towards` and lies in front of the scene on that
-/// side. Photons of infinitely distant lights start there. Uniform; density 1 / disk_area.
-Point sample_covering_disk(const BoundingSphere& scene, const Direction& towards, const Vec2& u);
-/// Inverse of `sample_covering_disk`, for any point of the line through the disk towards `towards`.
-Vec2 invert_covering_disk(const BoundingSphere& scene, const Direction& towards, const Point& p);
-/// Area of the disk of `sample_covering_disk`, m².
-float covering_disk_area(const BoundingSphere& scene);
-
 }  // namespace lanthorn

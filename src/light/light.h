@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Light sources: a closed set of plain structs, each in its own file, joined into the variant `Light`. To add a light,
-// write its file and add its type to the variant; all other code uses the functions and traits below. An emitting mesh
+// Light sources: a closed set of plain structs, joined into the variant `Light`: areas, media, portals, and places with
+// a profile (profile.h). To add a light, write its file and add its type to the variant; all other code uses the
+// functions and traits below. An emitting mesh
 // is one AreaLight per triangle or patch. All functions are pure; lights are immutable once the scene is built.
 #pragma once
 
@@ -13,15 +14,16 @@
 
 #include "light/area_light.h"
 #include "light/brightness.h"
+#include "light/cone_profile.h"
 #include "light/distant_light.h"
-#include "light/goniometric_light.h"
-#include "light/infinite_light.h"
+#include "light/even_profile.h"
+#include "light/far_light.h"
+#include "light/image_profile.h"
 #include "light/point_light.h"
 #include "light/portal_light.h"
-#include "light/projection_light.h"
+#include "light/projection_profile.h"
 #include "light/sample.h"
-#include "light/spot_light.h"
-#include "light/sun_light.h"
+#include "light/spot_profile.h"
 #include "light/volume_light.h"
 #include "spectrum/wavelengths.h"
 
@@ -64,8 +66,14 @@ concept LightSource = requires(const L l, const Point p, const Direction d, cons
 template <LightSource... Lights>
 using LightVariant = std::variant<Lights...>;
 
-using Light = LightVariant<AreaLight, PointLight, SpotLight, GoniometricLight, ProjectionLight, DistantLight, SunLight,
-                           UniformInfiniteLight, ImageInfiniteLight, PortalLight, VolumeLight>;
+using EvenPointLight = PointLight<EvenProfile>;
+using SpotLight = PointLight<SpotProfile>;
+using GoniometricLight = PointLight<GoniometricProfile>;
+using ProjectionLight = PointLight<ProjectionProfile>;
+using SunLight = FarLight<ConeProfile>;
+
+using Light = LightVariant<AreaLight, EvenPointLight, SpotLight, GoniometricLight, ProjectionLight, DistantLight,
+                           SunLight, EvenSky, ImageSky, PortalLight, VolumeLight>;
 
 /// Samples a direction from `from` towards the light for next-event estimation. Returns nullopt if no light can arrive
 /// (behind a one-sided emitter, outside a spot's cone, pdf 0). The caller tests visibility.
@@ -125,8 +133,12 @@ inline bool has_surface(const Light& light) { return light_detail::all_traits[li
 inline bool is_infinite(const Light& light) { return light_detail::all_traits[light.index()].is_infinite; }
 /// True if camera rays that leave the scene do not see an infinite light.
 inline bool is_hidden_from_camera(const Light& light) {
-  const auto* const sun = std::get_if<SunLight>(&light);
-  return sun != nullptr && !sun->visible_to_camera;
+  return std::visit(
+      [](const auto& l) {
+        if constexpr (requires { l.visible_to_camera; }) return !l.visible_to_camera;
+        return false;
+      },
+      light);
 }
 /// True if all its light comes from one point of the scene.
 inline bool is_point(const Light& light) {

@@ -27,9 +27,9 @@ float solid_angle_per_area(const Direction& local) {
 }
 
 float luminance_of_sky(const Sky& sky, const Direction& towards) {
-  if (const auto* uniform = std::get_if<UniformInfiniteLight>(&sky)) return luminance(uniform->radiance.rgb);
-  const auto& image = std::get<ImageInfiniteLight>(sky);
-  return image.scale * luminance(image.image->colour(image.map.light_from_world(towards).direction));
+  if (const auto* even = std::get_if<EvenSky>(&sky)) return luminance(even->profile.curve.rgb);
+  const ImageProfile& image = std::get<ImageSky>(sky).profile;
+  return image.scale * luminance(image.colour(towards));
 }
 Spectrum radiance_of_sky(const Sky& sky, const Point& from, const Direction& towards, const Wavelengths& w) {
   return std::visit([&](const auto& light) { return light.emitted(from, towards, w); }, sky);
@@ -43,10 +43,10 @@ struct SkyTable {
   double irradiance = 0;
 
   SkyTable(const Sky& sky, const Frame& frame) {
-    const auto* image = std::get_if<ImageInfiniteLight>(&sky);
-    if (image != nullptr) side = static_cast<std::size_t>(std::clamp(image->image->height, 64, 1024));
+    const auto* image = std::get_if<ImageSky>(&sky);
+    if (image != nullptr) side = static_cast<std::size_t>(std::clamp(image->profile.image->height, 64, 1024));
     gather(sky, frame);
-    if (image != nullptr) splat(*image, frame);
+    if (image != nullptr) splat(image->profile, frame);
     add_floor();
   }
 
@@ -85,7 +85,7 @@ struct SkyTable {
 
   // Adds texels smaller than a cell where they lie, so that small bright texels between the cells' samples are not
   // missed.
-  void splat(const ImageInfiniteLight& sky, const Frame& frame) {
+  void splat(const ImageProfile& sky, const Frame& frame) {
     const SphericalImage& image = *sky.image;
     std::vector<float> found(luminance.size());
     double sum = 0;

@@ -9,7 +9,9 @@
 #include <variant>
 
 #include "light/brightness.h"
-#include "light/infinite_light.h"
+#include "light/even_profile.h"
+#include "light/far_light.h"
+#include "light/image_profile.h"
 #include "light/sample.h"
 #include "math/distribution.h"
 #include "math/frame.h"
@@ -18,8 +20,10 @@
 
 namespace lanthorn {
 
+using EvenSky = FarLight<EvenProfile>;
+using ImageSky = FarLight<ImageProfile>;
 /// The light source on the far side of a portal.
-using Sky = std::variant<UniformInfiniteLight, ImageInfiniteLight>;
+using Sky = std::variant<EvenSky, ImageSky>;
 
 /// A rectangle through which a sky shines. The sky's light is tabulated over two angles of directions in the portal's
 /// frame; in these angles every point sees the portal as an axis-aligned rectangle. Owned by the scene.

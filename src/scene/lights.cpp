@@ -45,8 +45,7 @@ SphericalImage spherical_image(Pixels&& pixels, const std::string& filename, con
     layout = SphereLayout::equirectangular;
     const std::string message =
         "images of lights that are about twice as wide as high are read as equirectangular, z up; pbrt-v4 takes only "
-        "square "
-        "ones, in the equal-area octahedral layout (its imgtool makeequiarea)";
+        "square ones, in the equal-area octahedral layout (its imgtool makeequiarea)";
     if (std::none_of(warnings.begin(), warnings.end(), [&](const auto& w) { return w.message == message; }))
       warnings.push_back({location, message});
   } else if (pixels.width != pixels.height) {
@@ -98,19 +97,18 @@ struct LightMaker {
   }
 
   Light operator()(const description::PointLight& l) {
-    PointLight light;
-    light.position = to_world.point(l.from);
-    light.intensity = emission(l.intensity);
-    if (l.power) light.intensity = light.intensity.scaled(*l.power / (4 * pi));
-    return light;
+    EvenProfile profile{emission(l.intensity)};
+    if (l.power) profile.curve = profile.curve.scaled(*l.power / (4 * pi));
+    return EvenPointLight{to_world.point(l.from), profile};
   }
   Light operator()(const description::SpotLight& l) {
     const Vec3 axis = to_world.vector(l.to - l.from);
     if (!(length_squared(axis) > 0)) throw Error(location, "a spot light needs \"from\" and \"to\" to differ");
-    SpotLight light(to_world.point(l.from), normalize(axis), emission(l.intensity),
-                    to_radians(std::max(0.0f, l.cone_angle - l.cone_delta_angle)), to_radians(l.cone_angle), l.falloff);
-    if (l.power) light.intensity = light.intensity.scaled(*l.power / light.solid_angle());
-    return light;
+    SpotProfile profile(normalize(axis), emission(l.intensity),
+                        to_radians(std::max(0.0f, l.cone_angle - l.cone_delta_angle)), to_radians(l.cone_angle),
+                        l.falloff);
+    if (l.power) profile.intensity = profile.intensity.scaled(*l.power / profile.solid_angle());
+    return SpotLight{to_world.point(l.from), profile};
   }
   Light operator()(const description::DistantLight& l) {
     const Vec3 towards = to_world.vector(l.from - l.to);
@@ -120,9 +118,8 @@ struct LightMaker {
     SpectrumCurve irradiance = emission(l.radiance);
     if (l.illuminance) irradiance = irradiance.scaled(*l.illuminance);
     if (l.angle == 0) return DistantLight{normalize(towards), irradiance, scene};
-    SunLight light(normalize(towards), 0.5 * static_cast<double>(to_radians(l.angle)), irradiance, scene);
-    light.visible_to_camera = l.visible_to_camera;
-    return light;
+    const ConeProfile cone(normalize(towards), 0.5 * static_cast<double>(to_radians(l.angle)), irradiance);
+    return SunLight{cone, scene, l.visible_to_camera};
   }
   Light operator()(const description::InfiniteLight& l) {
     const Sky all = sky(l);
@@ -146,7 +143,7 @@ struct LightMaker {
     if (!l.image && !l.texels) {
       SpectrumCurve radiance = emission(l.radiance);
       if (l.illuminance) radiance = radiance.scaled(*l.illuminance / pi);
-      return UniformInfiniteLight{radiance, scene};
+      return EvenSky{{radiance}, scene};
     }
     const SphericalImage& image = l.texels ? keep_texels(*l.texels) : keep_spherical(*l.image, l.image_space);
     float scale = l.radiance.scale;
@@ -154,7 +151,7 @@ struct LightMaker {
       const double now = upward_illuminance(image);
       scale *= now > 0 ? static_cast<float>(*l.illuminance / now) : 0.0f;
     }
-    return ImageInfiniteLight{&image, scale, direction_map(), scene};
+    return ImageSky{{{&image, direction_map()}, scale}, scene};
   }
   Light operator()(const description::GoniometricLight& l) {
     const Pixels pixels = load_pixels(l.image, access, ColorSpace::srgb, location);
@@ -166,18 +163,19 @@ struct LightMaker {
     }
     const SphericalImage& image = store.spherical_images.emplace_back(
         spherical_image({pixels.width, pixels.height, std::move(grey)}, l.image, location, warnings));
-    GoniometricLight light{to_world.point(Point(0)), emission(l.intensity), &image, direction_map()};
+    GoniometricProfile profile{{&image, direction_map()}, emission(l.intensity)};
     const float at_unit_intensity = 4 * pi * image.mean_luminance;
-    if (l.power) light.intensity = light.intensity.scaled(at_unit_intensity > 0 ? *l.power / at_unit_intensity : 0.0f);
-    return light;
+    if (l.power)
+      profile.intensity = profile.intensity.scaled(at_unit_intensity > 0 ? *l.power / at_unit_intensity : 0.0f);
+    return GoniometricLight{to_world.point(Point(0)), profile};
   }
   Light operator()(const description::ProjectionLight& l) {
     Pixels pixels = load_pixels(l.image, access, l.image_space, location);
     const ProjectionImage& image =
         store.projection_images.emplace_back(pixels.width, pixels.height, std::move(pixels.rows), to_radians(l.fov));
-    ProjectionLight light{to_world.point(Point(0)), l.scale, &image, direction_map()};
-    if (l.power) light.scale *= image.integral > 0 ? *l.power / image.integral : 0.0f;
-    return light;
+    ProjectionProfile profile{l.scale, &image, direction_map()};
+    if (l.power) profile.scale *= image.integral > 0 ? *l.power / image.integral : 0.0f;
+    return ProjectionLight{to_world.point(Point(0)), profile};
   }
 };
 
@@ -193,13 +191,14 @@ Light make_light(const description::Light& light, const FileAccess& access, cons
 std::optional<Light> make_from(const MadeLight& before, const description::Light& light, const BoundingSphere& scene) {
   const auto* const now = std::get_if<description::InfiniteLight>(&light.node);
   const auto* const then = std::get_if<description::InfiniteLight>(&before.source.node);
-  const auto* const made = std::get_if<ImageInfiniteLight>(&before.light);
+  const auto* const made = std::get_if<ImageSky>(&before.light);
   if (now == nullptr || then == nullptr || made == nullptr) return {};
   const bool has_image = now->texels || now->image;
   const bool has_same_image =
       now->texels == then->texels && now->image == then->image && now->image_space == then->image_space;
   if (!has_image || !has_same_image || now->portal || now->illuminance || light.light_to_world.is_singular()) return {};
-  return ImageInfiniteLight{made->image, now->radiance.scale, DirectionMap(light.light_to_world), scene};
+  const PlacedImage image{made->profile.image, DirectionMap(light.light_to_world)};
+  return ImageSky{{image, now->radiance.scale}, scene};
 }
 
 }  // namespace lanthorn

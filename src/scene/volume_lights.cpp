@@ -141,7 +141,7 @@ bool lies_in(const SceneData& scene, MediumId medium, const Ray& ray) {
 
 void make_volume_lights(SceneData& scene, float time) {
   std::vector<Light>& lights = scene.lights;
-  lights.resize(lights.size() - scene.volume_lights.size(), Light(PointLight{}));
+  lights.resize(lights.size() - scene.volume_lights.size(), Light(EvenPointLight{}));
   scene.light_media.resize(lights.size());
   scene.volume_lights.clear();
   scene.has_unlit_emission = false;

@@ -156,7 +156,7 @@ EmitterHit on_light(const Light& light) {
 TEST(LightStatistics, DirectionsOfInfiniteAndPointLightsFollowTheirDensity) {
   std::vector<NamedLight> lights;
   for (NamedLight& l : test_lights())
-    if (is_infinite(l.light) || std::holds_alternative<PointLight>(l.light) ||
+    if (is_infinite(l.light) || std::holds_alternative<EvenPointLight>(l.light) ||
         std::holds_alternative<GoniometricLight>(l.light) || std::holds_alternative<ProjectionLight>(l.light))
       lights.push_back(std::move(l));
   Chi2Options options;
@@ -187,7 +187,7 @@ TEST(LightStatistics, DirectionsOfSpotsFollowTheirDensity) {
   options.tests = static_cast<int>(lights.size());
   constexpr int rings = 20, sectors = 8;
   for (const NamedLight& l : lights) {
-    const auto& spot = std::get<SpotLight>(l.light);
+    const SpotProfile& spot = std::get<SpotLight>(l.light).profile;
     const Frame frame(spot.axis);
     std::vector<detail::Cell> cells(rings * sectors);
     constexpr int steps = 500;
@@ -312,17 +312,17 @@ TEST(LightStatistics, IrradianceInClosedForm) {
   const Light triangle = AreaLight{TriangleEmitter(corner[0], corner[1], corner[2]), test_colour(), true, false};
   EXPECT_TRUE(agrees(irradiance(triangle, {0, 0, 0}, up, 20000, 1), radiance * std::fabs(lambert) / 2, z, slack));
 
-  const Light point = PointLight{{1, 0, 2}, test_colour()};
+  const Light point = EvenPointLight{{1, 0, 2}, {test_colour()}};
   EXPECT_NEAR(irradiance(point, {0, 0, 0}, up, 2, 1).mean(), radiance * 2 / std::pow(5, 1.5), 1e-6);
-  const Light spot = SpotLight({1, 0, 2}, normalize(Vec3(-1, 0, -2)), test_colour(), 0.1f, 0.2f);
+  const Light spot = SpotLight{{1, 0, 2}, SpotProfile(normalize(Vec3(-1, 0, -2)), test_colour(), 0.1f, 0.2f)};
   EXPECT_NEAR(irradiance(spot, {0, 0, 0}, up, 2, 1).mean(), radiance * 2 / std::pow(5, 1.5), 1e-6);
   const Light distant = DistantLight{normalize(Vec3(1, 0, 2)), test_colour(), {}};
   EXPECT_NEAR(irradiance(distant, {0, 0, 0}, up, 2, 1).mean(), radiance * 2 / std::sqrt(5), 1e-6);
   for (const double half_angle : {1e-3, 0.5, 1.2}) {
-    const Light sun = SunLight(up, half_angle, test_colour(), {});
+    const Light sun = SunLight{ConeProfile(up, half_angle, test_colour()), {}};
     EXPECT_TRUE(agrees(irradiance(sun, {0, 0, 0}, up, 20000, 1), radiance, z, slack)) << half_angle;
   }
-  EXPECT_TRUE(agrees(irradiance(UniformInfiniteLight{test_colour(), {}}, {}, up, 50000, 1), radiance * pi_d, z, slack));
+  EXPECT_TRUE(agrees(irradiance(EvenSky{{test_colour()}, {}}, {}, up, 50000, 1), radiance * pi_d, z, slack));
 }
 
 TEST(LightStatistics, IrradianceOfSurfacesByQuadrature) {

@@ -218,20 +218,21 @@ inline std::vector<NamedLight> test_lights() {
   }
   const BoundingSphere scene{{0.5f, 1, -0.2f}, 2.5f};
   const Direction axis = normalize(Vec3(1, -2, 0.5f));
-  all.push_back({"point", PointLight{{0.3f, 0.2f, -0.1f}, test_colour()}});
-  all.push_back({"spot", SpotLight({0.3f, 0.2f, -0.1f}, axis, test_colour(), 0.4f, 0.7f)});
+  all.push_back({"point", EvenPointLight{{0.3f, 0.2f, -0.1f}, {test_colour()}}});
+  all.push_back({"spot", SpotLight{{0.3f, 0.2f, -0.1f}, SpotProfile(axis, test_colour(), 0.4f, 0.7f)}});
   all.push_back(
-      {"spot of glTF", SpotLight({0.3f, 0.2f, -0.1f}, axis, test_colour(), 0.4f, 0.7f, SpotLight::Falloff::square)});
-  all.push_back({"narrow spot", SpotLight({0.3f, 0.2f, -0.1f}, axis, test_colour(), 0.01f, 0.02f)});
-  all.push_back({"sharp spot", SpotLight({0.3f, 0.2f, -0.1f}, axis, test_colour(), 0.5f, 0.5f)});
-  all.push_back({"wide spot", SpotLight({0.3f, 0.2f, -0.1f}, axis, test_colour(), 0, 2.5f)});
+      {"spot of glTF",
+       SpotLight{{0.3f, 0.2f, -0.1f}, SpotProfile(axis, test_colour(), 0.4f, 0.7f, SpotProfile::Falloff::square)}});
+  all.push_back({"narrow spot", SpotLight{{0.3f, 0.2f, -0.1f}, SpotProfile(axis, test_colour(), 0.01f, 0.02f)}});
+  all.push_back({"sharp spot", SpotLight{{0.3f, 0.2f, -0.1f}, SpotProfile(axis, test_colour(), 0.5f, 0.5f)}});
+  all.push_back({"wide spot", SpotLight{{0.3f, 0.2f, -0.1f}, SpotProfile(axis, test_colour(), 0, 2.5f)}});
   all.push_back({"distant", DistantLight{axis, test_colour(), scene}});
-  all.push_back({"sun", SunLight(axis, 0.3, test_colour(), scene)});
-  all.push_back({"small sun", SunLight(axis, 0.0046, test_colour(), scene)});
-  all.push_back({"uniform infinite", UniformInfiniteLight{test_colour(), scene}});
+  all.push_back({"sun", SunLight{ConeProfile(axis, 0.3, test_colour()), scene}});
+  all.push_back({"small sun", SunLight{ConeProfile(axis, 0.0046, test_colour()), scene}});
+  all.push_back({"uniform infinite", EvenSky{{test_colour()}, scene}});
   const Transform turned = rotate(70, {1, 1, 0});
   const auto infinite = [&](const SphericalImage& image, const Transform& t) {
-    return ImageInfiniteLight{&image, 2, DirectionMap(t), scene};
+    return ImageSky{{{&image, DirectionMap(t)}, 2}, scene};
   };
   all.push_back({"image infinite", infinite(test_environment(), turned)});
   all.push_back({"mirrored image infinite", infinite(test_environment(), turned * scale({-3, 3, 3}))});
@@ -240,17 +241,18 @@ inline std::vector<NamedLight> test_lights() {
   // Seen from the tests' receivers, which are around the origin, in direction z.
   static const std::array<Point, 4> corners{Point(-1, -0.5f, 1.5f), Point(-1, 1.5f, 1.5f), Point(2, 1.5f, 1.5f),
                                             Point(2, -0.5f, 1.5f)};
-  static const Sky panorama = infinite(test_panorama(), turned), grey = UniformInfiniteLight{test_colour(), scene};
+  static const Sky panorama = infinite(test_panorama(), turned), grey = EvenSky{{test_colour()}, scene};
   static const Portal window(corners, panorama), grey_window(corners, grey);
   all.push_back({"portal", PortalLight{panorama, &window}});
   all.push_back({"uniform portal", PortalLight{grey, &grey_window}});
   const Point at(0.3f, 0.2f, -0.1f);
-  all.push_back({"goniometric", GoniometricLight{at, test_colour(), &test_profile(), DirectionMap(turned)}});
-  all.push_back({"stretched goniometric",
-                 GoniometricLight{at, test_colour(), &test_profile(), DirectionMap(turned * scale({-1, 2, 0.5f}))}});
-  all.push_back({"projection", ProjectionLight{at, 2, &test_slide(), DirectionMap(turned)}});
+  all.push_back({"goniometric", GoniometricLight{at, {{&test_profile(), DirectionMap(turned)}, test_colour()}}});
   all.push_back(
-      {"stretched projection", ProjectionLight{at, 2, &test_slide(), DirectionMap(turned * scale({-1, 2, 0.7f}))}});
+      {"stretched goniometric",
+       GoniometricLight{at, {{&test_profile(), DirectionMap(turned * scale({-1, 2, 0.5f}))}, test_colour()}}});
+  all.push_back({"projection", ProjectionLight{at, {2, &test_slide(), DirectionMap(turned)}}});
+  all.push_back(
+      {"stretched projection", ProjectionLight{at, {2, &test_slide(), DirectionMap(turned * scale({-1, 2, 0.7f}))}}});
   return all;
 }
 

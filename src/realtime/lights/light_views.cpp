@@ -37,9 +37,9 @@ bool has_view(const Light& light) {
   return std::visit(
       [](const auto& l) {
         using L = std::decay_t<decltype(l)>;
-        return std::is_same_v<L, AreaLight> || std::is_same_v<L, PointLight> || std::is_same_v<L, SpotLight> ||
-               std::is_same_v<L, DistantLight> || std::is_same_v<L, SunLight> ||
-               std::is_same_v<L, UniformInfiniteLight> || std::is_same_v<L, ImageInfiniteLight>;
+        return std::is_same_v<L, AreaLight> || std::is_same_v<L, EvenPointLight> || std::is_same_v<L, SpotLight> ||
+               std::is_same_v<L, DistantLight> || std::is_same_v<L, SunLight> || std::is_same_v<L, EvenSky> ||
+               std::is_same_v<L, ImageSky>;
       },
       light);
 }
@@ -115,17 +115,18 @@ struct Jitter {
   Vec2 direction{0.5f};
 };
 
-void set_windows(LightView& view, const PointLight&, const BoundingSphere&, const Jitter& jitter, int,
+void set_windows(LightView& view, const EvenPointLight&, const BoundingSphere&, const Jitter& jitter, int,
                  const std::optional<LightFocus>&) {
   view.windows = cube(view.origin, turned(sample_uniform_sphere(jitter.direction), jitter.turn), 6);
 }
 
-void set_windows(LightView& view, const SpotLight& spot, const BoundingSphere&, const Jitter& jitter, int size,
+void set_windows(LightView& view, const SpotLight& light, const BoundingSphere&, const Jitter& jitter, int size,
                  const std::optional<LightFocus>&) {
+  const SpotProfile& spot = light.profile;
   view.axis = spot.axis;
   view.cone_start = spot.one_minus_cos_start;
   view.cone_end = spot.one_minus_cos_total;
-  view.square_falloff = spot.shape == SpotLight::Falloff::square;
+  view.square_falloff = spot.shape == SpotProfile::Falloff::square;
   const float cos = 1 - spot.one_minus_cos_total;
   constexpr float widest_cos = 0.3f;  // beyond 72 degrees from the axis one window is coarse at its middle
   const Frame frame = turned(spot.axis, jitter.turn);
@@ -163,8 +164,8 @@ std::optional<WindowRays> window_around(const std::optional<LightFocus>& focus, 
   return part;
 }
 
-template <class FarLight>
-void set_windows(LightView& view, const FarLight&, const BoundingSphere& sphere, const Jitter& jitter, int size,
+template <class AnyFarLight>
+void set_windows(LightView& view, const AnyFarLight&, const BoundingSphere& sphere, const Jitter& jitter, int size,
                  const std::optional<LightFocus>& focus) {
   view.kind = LightView::Kind::parallel;
   const Frame frame = turned(-view.axis, jitter.turn);
@@ -193,7 +194,7 @@ void set_emission(LightView& view, const Light& light, const EmissionSample& s) 
     view.colour = flux * (s.pdf_direction / (s.cos_origin * area->spread.factor(s.cos_origin)));
   } else {
     const auto* spot = std::get_if<SpotLight>(&light);
-    view.colour = spot != nullptr ? vec(spot->intensity.evaluate(rgb())) : flux * s.pdf_direction;
+    view.colour = spot != nullptr ? vec(spot->profile.intensity.evaluate(rgb())) : flux * s.pdf_direction;
   }
 }
 

@@ -15,7 +15,7 @@
 #include "lanthorn/scene.h"
 #include "lanthorn/session.h"
 #include "lanthorn/state.h"
-#include "light/infinite_light.h"
+#include "light/light.h"
 #include "math/octahedral.h"
 #include "scene/scene.h"
 #include "support/gltf_writer.h"
@@ -84,7 +84,7 @@ class Environment : public testing::Test {
     Rgb sum;
     int environments = 0;
     for (const Light& light : scene->lights())
-      if (const auto* sky = std::get_if<ImageInfiniteLight>(&light)) {
+      if (const auto* sky = std::get_if<ImageSky>(&light)) {
         const Spectrum s = sky->emitted(Point(0), normalize(towards), Wavelengths::rgb(0.5f));
         sum = {s[0], s[1], s[2]};
         ++environments;

@@ -113,19 +113,19 @@ TEST(LightSource, TraitsOfLights) {
   AreaLight invisible;
   invisible.invisible = true;
   expect(invisible, true, false, false, true);
-  expect(PointLight{}, false, false, false, true);
+  expect(EvenPointLight{}, false, false, false, true);
   expect(SpotLight{}, false, false, false, true);
   expect(GoniometricLight{}, false, false, false, true);
   expect(ProjectionLight{}, false, false, false, true);
   expect(DistantLight{}, false, false, true, true);
   expect(SunLight{}, false, true, true, false);
-  expect(UniformInfiniteLight{}, false, true, true, false);
-  expect(ImageInfiniteLight{}, false, true, true, false);
+  expect(EvenSky{}, false, true, true, false);
+  expect(ImageSky{}, false, true, true, false);
   expect(PortalLight{}, false, true, true, false);
   expect(VolumeLight{}, false, false, false, false);
   EXPECT_TRUE(is_volume(VolumeLight{}));
-  EXPECT_FALSE(is_volume(PointLight{}));
-  EXPECT_TRUE(emission_bounds(PointLight{}));
+  EXPECT_FALSE(is_volume(EvenPointLight{}));
+  EXPECT_TRUE(emission_bounds(EvenPointLight{}));
   EXPECT_FALSE(emission_bounds(DistantLight{}));
 }
 

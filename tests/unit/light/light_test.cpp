@@ -394,7 +394,7 @@ TEST(Light, PhotonsCarryEqualFluxWhoseMeanIsThePower) {
 
 // At 10^-20 m from a light without green its irradiance overflows, and its green would be infinity times 0.
 TEST(Light, PointsAreNotSeenFromWhereTheirLightIsInfinite) {
-  const PointLight light{{}, SpectrumCurve::illuminant({1, 0, 1})};
+  const EvenPointLight light{{}, {SpectrumCurve::illuminant({1, 0, 1})}};
   const auto near = light.sample_direct({1e-15f, 0, 0}, {}, Wavelengths::rgb(0.5f));
   ASSERT_TRUE(near);
   EXPECT_NEAR(near->radiance[0], 1e30f, 1e25f);
@@ -406,23 +406,23 @@ TEST(Light, PointsAreNotSeenFromWhereTheirLightIsInfinite) {
 TEST(Light, PowersInClosedForm) {
   const SpectrumCurve one = SpectrumCurve::illuminant({1, 1, 1});
   const BoundingSphere scene{{0, 0, 0}, 2};
-  EXPECT_NEAR(power(PointLight{{}, one}), 4 * pi, 1e-4f);
+  EXPECT_NEAR(power(EvenPointLight{{}, {one}}), 4 * pi, 1e-4f);
   EXPECT_NEAR(power(AreaLight{SphereEmitter(Transform(), 2), one}), pi * 16 * pi, 1e-3f);
   EXPECT_NEAR(power(AreaLight{DiskEmitter(Transform(), 0, 2), one, true}), 2 * pi * 4 * pi, 1e-3f);
   EXPECT_NEAR(power(DistantLight{{0, 0, 1}, one, scene}), 4 * pi, 1e-4f);
-  EXPECT_NEAR(power(UniformInfiniteLight{one, scene}), 4 * pi * 4 * pi, 1e-3f);
-  EXPECT_NEAR(power(SpotLight({}, {0, 0, 1}, one, pi, pi)), 4 * pi, 1e-4f);
+  EXPECT_NEAR(power(EvenSky{{one}, scene}), 4 * pi * 4 * pi, 1e-3f);
+  EXPECT_NEAR(power(SpotLight{{}, SpotProfile({0, 0, 1}, one, pi, pi)}), 4 * pi, 1e-4f);
   const std::vector<Rgb> ones(32, Rgb{1, 1, 1});
   for (const SphericalImage& white :
        {SphericalImage(SphereLayout::octahedral, 4, 4, std::vector<Rgb>(ones.begin(), ones.begin() + 16)),
         SphericalImage(SphereLayout::equirectangular, 8, 4, ones)}) {
-    EXPECT_NEAR(power(ImageInfiniteLight{&white, 3, {}, scene}), 3 * 4 * pi * 4 * pi, 1e-2f);
-    EXPECT_NEAR(power(GoniometricLight{{}, one, &white, {}}), 4 * pi, 1e-4f);
+    EXPECT_NEAR(power(ImageSky{{{&white, {}}, 3}, scene}), 3 * 4 * pi * 4 * pi, 1e-2f);
+    EXPECT_NEAR(power(GoniometricLight{{}, {{&white, {}}, one}}), 4 * pi, 1e-4f);
   }
   // A face of a cube, seen from its centre, is a sixth of the sphere.
   const ProjectionImage slide(64, 64, std::vector<Rgb>(64 * 64, Rgb{1, 1, 1}), pi / 2);
   EXPECT_NEAR(slide.solid_angle(), 4 * pi / 6, 1e-5f);
-  EXPECT_NEAR(power(ProjectionLight{{}, 3, &slide, {}}), 3 * 4 * pi / 6, 1e-3f);
+  EXPECT_NEAR(power(ProjectionLight{{}, {3, &slide, {}}}), 3 * 4 * pi / 6, 1e-3f);
 }
 
 // An image of bytes is the same light as one of colours.
@@ -453,24 +453,24 @@ TEST(LightTexels, BytesAreTheirColours) {
   }
 }
 
-TEST(SpotLight, FallsOffAsPbrtAndGltfDo) {
+TEST(SpotProfile, FallsOffAsPbrtAndGltfDo) {
   const float total = 24 * pi / 180, start = 18 * pi / 180;  // coneangle 24, conedeltaangle 6
-  const SpotLight spot({}, {0, 0, 1}, SpectrumCurve::illuminant({1, 1, 1}), start, total);
+  const SpotProfile spot({0, 0, 1}, SpectrumCurve::illuminant({1, 1, 1}), start, total);
   for (float angle = 0; angle < 0.5f; angle += 0.01f) {
     const float x = std::clamp((std::cos(angle) - std::cos(total)) / (std::cos(start) - std::cos(total)), 0.0f, 1.0f);
     EXPECT_NEAR(spot.falloff({std::sin(angle), 0, std::cos(angle)}), x * x * (3 - 2 * x), 1e-4f) << angle;
   }
   // glTF's spot light, as KHR_lights_punctual recommends it.
-  const SpotLight square({}, {0, 0, 1}, SpectrumCurve::illuminant({1, 1, 1}), start, total, SpotLight::Falloff::square);
+  const SpotProfile square({0, 0, 1}, SpectrumCurve::illuminant({1, 1, 1}), start, total, SpotProfile::Falloff::square);
   const float scale = 1 / (std::cos(start) - std::cos(total)), offset = -std::cos(total) * scale;
   for (float angle = 0; angle < 0.5f; angle += 0.01f) {
     const float attenuation = std::clamp(std::cos(angle) * scale + offset, 0.0f, 1.0f);
     EXPECT_NEAR(square.falloff({std::sin(angle), 0, std::cos(angle)}), attenuation * attenuation, 1e-4f) << angle;
   }
-  const auto s = sample_direct(spot, {0, 0, 4}, {}, rgb);
+  const auto s = sample_direct(SpotLight{{}, spot}, {0, 0, 4}, {}, rgb);
   ASSERT_TRUE(s);
   EXPECT_NEAR(s->radiance[1], 1.0f / 16, 1e-6f);
-  EXPECT_FALSE(sample_direct(spot, {0, 3, 4}, {}, rgb));
+  EXPECT_FALSE(sample_direct(SpotLight{{}, spot}, {0, 3, 4}, {}, rgb));
 }
 
 TEST(InfiniteLight, ReadsTheNearestTexelInLightSpace) {
@@ -479,17 +479,17 @@ TEST(InfiniteLight, ReadsTheNearestTexelInLightSpace) {
   texels[7] = {0, 1, 0};          // around -z, towards +x and -y
   const SphericalImage image(SphereLayout::octahedral, 8, 8, texels);
   const BoundingSphere scene;
-  const Light plain = ImageInfiniteLight{&image, 2, {}, scene};
+  const Light plain = ImageSky{{{&image, {}}, 2}, scene};
   EXPECT_EQ(emitted_infinite(plain, {}, normalize(Vec3(0.01f, -0.01f, 1)), rgb)[0], 2);
   EXPECT_EQ(emitted_infinite(plain, {}, normalize(Vec3(-0.01f, -0.01f, 1)), rgb)[0], 0);
   EXPECT_EQ(emitted_infinite(plain, {}, normalize(Vec3(0.01f, -0.01f, -1)), rgb)[1], 2);
   // The pbrt idiom "Rotate -90 1 0 0" turns light-space z into world-space y.
-  const Light turned = ImageInfiniteLight{&image, 1, DirectionMap(rotate(-90, {1, 0, 0})), scene};
+  const Light turned = ImageSky{{{&image, DirectionMap(rotate(-90, {1, 0, 0}))}, 1}, scene};
   EXPECT_EQ(emitted_infinite(turned, {}, normalize(Vec3(0.01f, 1, 0.01f)), rgb)[0], 1);
   EXPECT_FLOAT_EQ(pdf_direct_towards(turned, {}, normalize(Vec3(0.01f, 1, 0.01f))),
                   luminance({1, 0, 0}) / luminance({1, 1, 0}) * 64 / (4 * pi));
   const SphericalImage black(SphereLayout::octahedral, 2, 2, std::vector<Rgb>(4));
-  EXPECT_FALSE(sample_direct(ImageInfiniteLight{&black, 1, {}, scene}, {}, {0.5f, 0.5f}, rgb));
+  EXPECT_FALSE(sample_direct(ImageSky{{{&black, {}}, 1}, scene}, {}, {0.5f, 0.5f}, rgb));
 }
 
 TEST(InfiniteLight, ReadsPanoramasBilinearlyInLightSpace) {
@@ -497,7 +497,7 @@ TEST(InfiniteLight, ReadsPanoramasBilinearlyInLightSpace) {
   texels[8 * 1 + 0] = {1, 0, 0};  // phi 0 to 45 degrees from +x towards +y, theta 45 to 90 from +z
   texels[8 * 2 + 7] = {0, 1, 0};  // phi 315 to 360, theta 90 to 135
   const SphericalImage image(SphereLayout::equirectangular, 8, 4, texels);
-  const Light light = ImageInfiniteLight{&image, 2, {}, {}};
+  const Light light = ImageSky{{{&image, {}}, 2}, {}};
   const auto at = [&](float theta, float phi) {
     const float t = theta * pi / 180, f = phi * pi / 180;
     return emitted_infinite(light, {}, {std::sin(t) * std::cos(f), std::sin(t) * std::sin(f), std::cos(t)}, rgb);
@@ -512,7 +512,7 @@ TEST(InfiniteLight, ReadsPanoramasBilinearlyInLightSpace) {
 
 TEST(PortalLight, ShinesThroughItsRectangleAlone) {
   const std::array<Point, 4> corners{Point(0, 0, 0), Point(1, 0, 0), Point(1, 2, 0), Point(0, 2, 0)};
-  const Sky sky = UniformInfiniteLight{test_colour(), {}};
+  const Sky sky = EvenSky{{test_colour()}, {}};
   const Portal portal(corners, sky);
   EXPECT_NEAR(portal.frame.n.z, -1, 1e-6f);  // the sky is where (p3 - p0) x (p1 - p0) points
   EXPECT_NEAR(portal.area(), 2, 1e-6f);
@@ -551,7 +551,7 @@ TEST(GoniometricLight, MultipliesIntensityByItsImage) {
   std::vector<Rgb> texels(64);
   texels[8 * 3 + 4] = {3, 3, 3};  // around +z, towards +x and -y
   const SphericalImage image(SphereLayout::octahedral, 8, 8, texels);
-  const Light light = GoniometricLight{{1, 2, 3}, test_colour(), &image, DirectionMap(rotate(-90, {1, 0, 0}))};
+  const Light light = GoniometricLight{{1, 2, 3}, {{&image, DirectionMap(rotate(-90, {1, 0, 0}))}, test_colour()}};
   // Light-space z is world-space y; light-space -y is world-space z.
   const auto above = sample_direct(light, Point(1, 2, 3) + Vec3(0.02f, 4, 0.02f), {}, rgb);
   ASSERT_TRUE(above);
@@ -565,7 +565,7 @@ TEST(GoniometricLight, MultipliesIntensityByItsImage) {
 TEST(ProjectionLight, ShowsItsImageUpright) {
   // Top left red, bottom right green, over 90 degrees of height.
   const ProjectionImage image(4, 2, std::vector<Rgb>{{1, 0, 0}, {}, {}, {}, {}, {}, {}, {0, 1, 0}}, pi / 2);
-  const Light light = ProjectionLight{{1, 2, 3}, 2, &image, {}};
+  const Light light = ProjectionLight{{1, 2, 3}, {2, &image, {}}};
   const auto at = [&](float x, float y) {
     const auto s = sample_direct(light, Point(1, 2, 3) + 2.0f * Vec3(x, y, 1), {}, rgb);
     return s ? s->radiance * (4 * (x * x + y * y + 1)) : Spectrum();
@@ -576,7 +576,7 @@ TEST(ProjectionLight, ShowsItsImageUpright) {
   EXPECT_TRUE(at(1.5f, 0.5f).is_black());
   EXPECT_TRUE(at(-2.1f, 0.5f).is_black());
   EXPECT_FALSE(sample_direct(light, Point(1, 2, 2), {}, rgb));  // behind it
-  const NormalCone cone = std::get<ProjectionLight>(light).cone();
+  const NormalCone cone = std::get<ProjectionLight>(light).profile.cone();
   EXPECT_NEAR(cone.axis.z, 1, 1e-6f);
   EXPECT_NEAR(cone.cos, 1 / std::sqrt(6.0f), 1e-5f);
 }
@@ -623,10 +623,10 @@ std::vector<Light> many_lights(int count, std::uint64_t seed) {
     const Direction axis = normalize(e1);
     switch (i % 6) {
       case 0:
-        lights.emplace_back(PointLight{p, colour});
+        lights.emplace_back(EvenPointLight{p, {colour}});
         break;
       case 1:
-        lights.emplace_back(SpotLight(p, axis, colour, 0.3f * rng.next(), 0.3f + 2 * rng.next()));
+        lights.emplace_back(SpotLight{p, SpotProfile(axis, colour, 0.3f * rng.next(), 0.3f + 2 * rng.next())});
         break;
       case 2:
         lights.emplace_back(AreaLight{SphereEmitter(translate(p), 0.3f), colour});
@@ -669,9 +669,9 @@ TEST(PhotonAllocation, SharesByPowerWithoutLoss) {
 
 TEST(PhotonAllocation, IsSafeAtItsEnds) {
   EXPECT_EQ(PhotonAllocation({}, 10, 0.5f).total(), 0u);
-  const std::vector<Light> black{PointLight{{}, SpectrumCurve::constant(0)}};
+  const std::vector<Light> black{EvenPointLight{{}, {SpectrumCurve::constant(0)}}};
   EXPECT_EQ(PhotonAllocation(black, 10, 0.5f).total(), 0u);
-  const std::vector<Light> one{black[0], PointLight{{}, test_colour()}, black[0]};
+  const std::vector<Light> one{black[0], EvenPointLight{{}, {test_colour()}}, black[0]};
   for (const float offset : {0.0f, 0.5f, one_minus_epsilon}) {
     const PhotonAllocation a(one, 10, offset);
     ASSERT_EQ(a.shares().size(), 1u);
@@ -688,7 +688,7 @@ TEST(PhotonAllocation, IsSafeAtItsEnds) {
 // the exact value.
 TEST(GuidedDensity, NeedNotBeExactAboveWhatIsEnough) {
   const BoundingSphere scene{{0, 0, 0}, 10};
-  const Light light = UniformInfiniteLight{test_colour(), scene};
+  const Light light = EvenSky{{test_colour()}, scene};
   EmissionGuide guide(1, AimedDisks(scene, {1, 2, 0}, 1));
   TreeDistribution& numbers = guide.lights[0].numbers;  // few photons start from the wide disks
   numbers.add_inner(0, numbers.add_leaf(0.9f), numbers.add_leaf(0.1f));
@@ -718,7 +718,7 @@ TEST(LightBvh, ProbabilitiesSumToOneAndMatchSamples) {
   for (const int count : {1, 2, 3, 5, 40, 300, 3000}) {
     std::vector<Light> lights = many_lights(count, 9);
     if (count % 5 == 0) lights.emplace_back(DistantLight{{0, 0, 1}, test_colour(), {}});
-    if (count % 5 == 0) lights.emplace_back(UniformInfiniteLight{test_colour(), {}});
+    if (count % 5 == 0) lights.emplace_back(EvenSky{{test_colour()}, {}});
     const LightBvh bvh(lights);
     HashRng rng(10);
     for (int i = 0; i < 30; ++i) {
@@ -766,8 +766,8 @@ TEST(LightBvh, NeverMissesALightThatContributes) {
 TEST(LightBvh, DescendsDeepTreesAndCoincidentLights) {
   // Doubling distances make the split by cost separate one light after another.
   std::vector<Light> lights;
-  for (int i = 0; i < 100; ++i) lights.emplace_back(PointLight{{std::ldexp(1.0f, i - 60), 0, 0}, test_colour()});
-  for (int i = 0; i < 100; ++i) lights.emplace_back(PointLight{{5, 5, 5}, test_colour()});
+  for (int i = 0; i < 100; ++i) lights.emplace_back(EvenPointLight{{std::ldexp(1.0f, i - 60), 0, 0}, {test_colour()}});
+  for (int i = 0; i < 100; ++i) lights.emplace_back(EvenPointLight{{5, 5, 5}, {test_colour()}});
   const LightBvh bvh(lights);
   double sum = 0;
   for (std::uint32_t l = 0; l < lights.size(); ++l) sum += to_double(bvh.pmf({5, 5, 4}, Normal(0), l));
@@ -781,7 +781,7 @@ TEST(LightBvh, DescendsDeepTreesAndCoincidentLights) {
 TEST(LightBvh, PrefersNearLights) {
   for (const auto& [count, nearest] : {std::pair(64, 0.4f), std::pair(20'000, 0.15f)}) {
     std::vector<Light> lights;
-    for (int i = 0; i < count; ++i) lights.emplace_back(PointLight{{static_cast<float>(i), 0, 0}, test_colour()});
+    for (int i = 0; i < count; ++i) lights.emplace_back(EvenPointLight{{static_cast<float>(i), 0, 0}, {test_colour()}});
     const LightBvh bvh(lights);
     EXPECT_GT(bvh.pmf({3, 0.1f, 0}, Normal(0), 3), nearest) << count;
     EXPECT_LT(bvh.pmf({3, 0.1f, 0}, Normal(0), 40), 0.01f) << count;
@@ -798,7 +798,7 @@ TEST(LightBvh, SplitsByLightsOfAllParts) {
   HashRng rng(13);
   const auto add = [&](const Vec3& around, float power) {
     const Vec3 offset(0.01f * rng.next(), 0, 0);
-    lights.emplace_back(PointLight{around + offset, SpectrumCurve::illuminant({power, power, power})});
+    lights.emplace_back(EvenPointLight{around + offset, {SpectrumCurve::illuminant({power, power, power})}});
   };
   constexpr int count = 4096;
   for (int i = 0; i < count; ++i) {

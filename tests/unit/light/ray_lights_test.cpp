@@ -16,7 +16,7 @@ const SpectrumCurve one = SpectrumCurve::constant(1);
 
 SpotLight spot(const Point& position, const Vec3& axis, float degrees) {
   const float angle = degrees * pi / 180;
-  return {position, normalize(axis), one, 0.9f * angle, angle};
+  return {position, SpotProfile(normalize(axis), one, 0.9f * angle, angle)};
 }
 
 Vec3 random_vector(HashRng& rng) { return 2.0f * Vec3(rng.next(), rng.next(), rng.next()) - 1.0f; }
@@ -33,7 +33,7 @@ std::vector<Segment> random_segments(int count) {
 // has no interval.
 std::vector<Light> some_lights() {
   return {spot({-1, 0, 0}, {1, 0.1f, 0}, 8), AreaLight{}, spot({0, 1, 0}, {0.2f, -1, 0.3f}, 60),
-          spot({0.5f, 0, 1}, {0, 0, -1}, 120), PointLight{{0.3f, -0.4f, 0.2f}, one}};
+          spot({0.5f, 0, 1}, {0, 0, -1}, 120), EvenPointLight{{0.3f, -0.4f, 0.2f}, {one}}};
 }
 
 TEST(RayLights, DensitiesIntegrateToOne) {
@@ -100,8 +100,8 @@ TEST(RayLights, SamplesHaveTheirDensity) {
 }
 
 TEST(RayLights, ManyLightsAreNotLookedAt) {
-  EXPECT_TRUE(RayLights{std::vector<Light>(65, PointLight{{0, 0, 0}, one})}.empty());
-  EXPECT_FALSE(RayLights{std::vector<Light>(64, PointLight{{0, 0, 0}, one})}.empty());
+  EXPECT_TRUE(RayLights{std::vector<Light>(65, EvenPointLight{{0, 0, 0}, {one}})}.empty());
+  EXPECT_FALSE(RayLights{std::vector<Light>(64, EvenPointLight{{0, 0, 0}, {one}})}.empty());
 }
 
 }  // namespace

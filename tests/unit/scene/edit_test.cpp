@@ -260,7 +260,7 @@ TEST(SceneEdit, AnEnvironmentIsReadOnce) {
   const SharedScene scene = build_scene(describe());
   const auto image_of = [](const SharedScene& s) {
     for (const Light& light : s->lights())
-      if (const auto* environment = std::get_if<ImageInfiniteLight>(&light)) return environment->image;
+      if (const auto* environment = std::get_if<ImageSky>(&light)) return environment->profile.image;
     return static_cast<const SphericalImage*>(nullptr);
   };
   const SharedScene first = edit_scene(*scene, {.environment = EnvironmentChoice{.source = sky}});

@@ -392,20 +392,20 @@ Kind only_light(const std::string& directives) {
 }
 
 TEST(SceneLights, ScalesFollowPbrt) {
-  expect_rgb(
-      colour(only_light<PointLight>("LightSource \"point\" \"rgb I\" [0.6 0.5 0.4] \"float scale\" 2\n").intensity),
-      {1.2f, 1, 0.8f});
+  expect_rgb(colour(only_light<EvenPointLight>("LightSource \"point\" \"rgb I\" [0.6 0.5 0.4] \"float scale\" 2\n")
+                        .profile.curve),
+             {1.2f, 1, 0.8f});
   // `power` scales the light from luminance 1, which has 4 pi W at 1 W/sr.
-  expect_rgb(
-      colour(only_light<PointLight>("LightSource \"point\" \"rgb I\" [1 2 3] \"float power\" 12.5663706\n").intensity),
-      {1, 2, 3});
+  expect_rgb(colour(only_light<EvenPointLight>("LightSource \"point\" \"rgb I\" [1 2 3] \"float power\" 12.5663706\n")
+                        .profile.curve),
+             {1, 2, 3});
   EXPECT_NEAR(
-      luminance(colour(
-          only_light<PointLight>("LightSource \"point\" \"blackbody I\" [2800] \"float scale\" 0.5\n").intensity)),
+      luminance(colour(only_light<EvenPointLight>("LightSource \"point\" \"blackbody I\" [2800] \"float scale\" 0.5\n")
+                           .profile.curve)),
       0.5f, 2e-3f);
-  EXPECT_NEAR(
-      luminance(colour(only_light<PointLight>("LightSource \"point\" \"spectrum I\" [400 7 700 3]\n").intensity)), 1,
-      2e-3f);
+  EXPECT_NEAR(luminance(colour(
+                  only_light<EvenPointLight>("LightSource \"point\" \"spectrum I\" [400 7 700 3]\n").profile.curve)),
+              1, 2e-3f);
   const auto spot = only_light<SpotLight>("LightSource \"spot\" \"rgb I\" [1 1 1] \"float power\" 10\n");
   EXPECT_NEAR(spot.power(), 10, 1e-3f);
   const auto distant = only_light<DistantLight>(
@@ -413,8 +413,8 @@ TEST(SceneLights, ScalesFollowPbrt) {
       "0]\n");
   expect_rgb(colour(distant.irradiance), {5, 5, 5});
   EXPECT_NEAR(distant.towards.y, 1, 1e-6f);
-  const auto sky = only_light<UniformInfiniteLight>("LightSource \"infinite\" \"float illuminance\" 3.14159265\n");
-  expect_rgb(colour(sky.radiance), {1, 1, 1});
+  const auto sky = only_light<EvenSky>("LightSource \"infinite\" \"float illuminance\" 3.14159265\n");
+  expect_rgb(colour(sky.profile.curve), {1, 1, 1});
   EXPECT_NEAR(sky.scene.radius, 2 * std::sqrt(3.0f), 1e-3f);
   const Scene lamp = world(
       "AreaLightSource \"diffuse\" \"rgb L\" [1 1 1] \"float power\" 7 \"bool twosided\" true\nShape \"sphere\" "
@@ -469,7 +469,7 @@ TEST(SceneLights, TransformsMoveLights) {
       "Translate 1 2 3 Rotate 90 1 0 0 LightSource \"spot\" \"point3 from\" [0 0 1] \"point3 to\" [0 0 5]\nIdentity\n");
   const Transform t = translate({1, 2, 3}) * rotate(90, {1, 0, 0});
   EXPECT_LT(length_squared(spot.position - t.point({0, 0, 1})), 1e-10f);
-  EXPECT_GT(dot(spot.axis, t.vector({0, 0, 1})), 0.99999f);
+  EXPECT_GT(dot(spot.profile.axis, t.vector({0, 0, 1})), 0.99999f);
 }
 
 TEST(SceneLights, ImagesAreSquareOrPanoramasAndUpright) {
@@ -485,17 +485,17 @@ TEST(SceneLights, ImagesAreSquareOrPanoramasAndUpright) {
   write_pfm("broken.pfm", 1, 1, {1, infinity, 0});
   const Scene scene =
       world("LightSource \"infinite\" \"string filename\" \"sky.pfm\" \"float scale\" 2\n", "", folder.path().string());
-  const auto& light = std::get<ImageInfiniteLight>(scene.lights().at(0));
-  EXPECT_EQ(light.image->width, 2);
-  EXPECT_EQ(light.image->texels[0], (Rgb{0, 0, 4}));  // the last row of the file is the top
-  EXPECT_EQ(light.image->texels[3], (Rgb{0, 1, 0}));
-  EXPECT_FLOAT_EQ(light.scale, 2);
+  const auto& light = std::get<ImageSky>(scene.lights().at(0));
+  EXPECT_EQ(light.profile.image->width, 2);
+  EXPECT_EQ(light.profile.image->texels[0], (Rgb{0, 0, 4}));  // the last row of the file is the top
+  EXPECT_EQ(light.profile.image->texels[3], (Rgb{0, 1, 0}));
+  EXPECT_FLOAT_EQ(light.profile.scale, 2);
   EXPECT_EQ(scene.infinite_lights(), std::vector<std::uint32_t>{0});
   const auto load = [&](const std::string& directives) { return world(directives, "", folder.path().string()); };
   const Scene panorama = load(
       "LightSource \"infinite\" \"string filename\" \"wide.pfm\"\nLightSource \"infinite\" \"string filename\" "
       "\"wide.pfm\"\n");
-  EXPECT_EQ(std::get<ImageInfiniteLight>(panorama.lights().at(0)).image->layout, SphereLayout::equirectangular);
+  EXPECT_EQ(std::get<ImageSky>(panorama.lights().at(0)).profile.image->layout, SphereLayout::equirectangular);
   ASSERT_EQ(panorama.warnings().size(), 1u);
   EXPECT_NE(panorama.warnings()[0].message.find("equirectangular"), std::string::npos);
   EXPECT_EQ(panorama.warnings()[0].location.line, 4);
@@ -511,12 +511,12 @@ TEST(SceneLights, ImagesAreSquareOrPanoramasAndUpright) {
       "LightSource \"projection\" \"string filename\" \"sky.pfm\" \"float fov\" 60 \"float power\" 7\n");
   const auto& lamp = std::get<GoniometricLight>(lamps.lights().at(0));
   EXPECT_EQ(lamp.position, Point(1, 2, 3));
-  EXPECT_GT(dot(lamp.map.world_from_light({0, 0, 1}).direction, Vec3(0, 1, 0)), 0.9999f);
+  EXPECT_GT(dot(lamp.profile.map.world_from_light({0, 0, 1}).direction, Vec3(0, 1, 0)), 0.9999f);
   EXPECT_NEAR(lamp.power() / luminance(Rgb{2, 2, 2}), 5, 1e-3f);
-  EXPECT_FLOAT_EQ(lamp.image->texels[0].r, 4.0f / 3);
+  EXPECT_FLOAT_EQ(lamp.profile.image->texels[0].r, 4.0f / 3);
   const auto& projector = std::get<ProjectionLight>(lamps.lights().at(1));
   EXPECT_NEAR(projector.power(), 7, 1e-3f);
-  EXPECT_NEAR(projector.image->half_size.x, std::tan(30 * pi / 180), 1e-5f);
+  EXPECT_NEAR(projector.profile.image->half_size.x, std::tan(30 * pi / 180), 1e-5f);
 }
 
 // Environments, projectors and goniometric lights take colours in Rec.709 from a file in ACEScg.
@@ -533,10 +533,10 @@ TEST(SceneLights, ColoursOfImagesHaveTheChromaticitiesOfTheirFiles) {
     EXPECT_NEAR(c.g, right.g, 2e-5f);
     EXPECT_NEAR(c.b, right.b, 2e-5f);
   };
-  expect(std::get<ImageInfiniteLight>(scene.lights().at(0)).image->texels[0], expected);
-  expect(std::get<ProjectionLight>(scene.lights().at(1)).image->texels[0], expected);
+  expect(std::get<ImageSky>(scene.lights().at(0)).profile.image->texels[0], expected);
+  expect(std::get<ProjectionLight>(scene.lights().at(1)).profile.image->texels[0], expected);
   const float mean = (expected.r + expected.g + expected.b) / 3;
-  expect(std::get<GoniometricLight>(scene.lights().at(2)).image->texels[0], {mean, mean, mean});
+  expect(std::get<GoniometricLight>(scene.lights().at(2)).profile.image->texels[0], {mean, mean, mean});
   EXPECT_NE(test::error_text([&] {
               folder.write("nan.exr", test::exr_of(test::colour_of_one_pixel(0, NAN, 0), test::acescg));
               load("LightSource \"goniometric\" \"string filename\" \"nan.exr\"\n");

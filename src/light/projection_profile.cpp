@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include "light/projection_light.h"
+#include "light/projection_profile.h"
 
 #include <array>
 #include <cassert>
 #include <utility>
 
-#include "light/point_source.h"
+#include "light/brightness.h"
 #include "spectrum/curve.h"
 
 namespace lanthorn {
@@ -74,49 +74,29 @@ float ProjectionImage::solid_angle() const {
   return 4 * std::atan(x * y / std::sqrt(1 + x * x + y * y));
 }
 
-std::optional<LightSample> ProjectionLight::sample_direct(const Point& from, const Vec2& /*one point*/,
-                                                          const Wavelengths& w) const {
-  std::optional<LightSample> sample = see_point_source(position, from);
-  if (!sample) return sample;
-  sample->radiance *= evaluate_illuminant(scale * image->colour(map.light_from_world(-sample->wi).direction), w);
-  if (sample->radiance.is_black()) sample.reset();
-  return sample;
+Spectrum ProjectionProfile::value(const Direction& d, const Wavelengths& w) const {
+  return evaluate_illuminant(scale * image->colour(map.light_from_world(d).direction), w);
 }
 
-std::optional<EmissionSample> ProjectionLight::sample_emission(const Vec2& /*one point*/, const Vec2& u_direction,
-                                                               const Wavelengths& w) const {
-  std::optional<EmissionSample> result;
-  const std::optional<ProjectionImage::Sample> s = image->sample(u_direction);
-  if (!s) return result;
+std::optional<ProfileSample> ProjectionProfile::sample(const Vec2& u, const Wavelengths& w) const {
+  const std::optional<ProjectionImage::Sample> s = image->sample(u);
+  if (!s) return {};
   const DirectionMap::Mapped away = map.world_from_light(s->direction);
-  EmissionSample& sample = result.emplace();
-  sample.origin = position;
-  sample.direction = away.direction;
-  sample.pdf_direction = s->pdf * away.compression;
-  sample.flux = evaluate_illuminant((scale / sample.pdf_direction) * s->colour, w);
-  return result;
+  return ProfileSample{away.direction, evaluate_illuminant(scale * s->colour, w), s->pdf * away.compression};
 }
 
-EmissionPdf ProjectionLight::pdf_emission(const EmitterHit& /*one point*/, const Direction& direction) const {
-  const DirectionMap::Mapped local = map.light_from_world(direction);
-  return {1, image->pdf(local.direction) * local.compression};
+float ProjectionProfile::pdf(const Direction& d) const {
+  const DirectionMap::Mapped local = map.light_from_world(d);
+  return image->pdf(local.direction) * local.compression;
 }
 
-EmissionNumbers ProjectionLight::invert_emission(const EmitterHit& /*one point*/, const Direction& direction) const {
-  return {.direction = image->invert(map.light_from_world(direction).direction)};
+std::optional<Vec2> ProjectionProfile::invert(const Direction& d) const {
+  return image->invert(map.light_from_world(d).direction);
 }
 
-// Exact for transforms that preserve angles; for other transforms the distribution of photons among lights is slightly
-// off.
-float ProjectionLight::power() const { return scale * image->integral; }
+float ProjectionProfile::largest() const { return scale * largest_value(image->texels); }
 
-float ProjectionLight::largest_radiance(float far2) const { return scale * largest_value(image->texels) / (pi * far2); }
-
-EmissionBounds ProjectionLight::bounds() const {
-  return {{position, position}, cone(), 1, power() / image->solid_angle(), false};
-}
-
-NormalCone ProjectionLight::cone() const {
+NormalCone ProjectionProfile::cone() const {
   std::array<Direction, 4> corners;
   Vec3 sum(0);
   for (unsigned i = 0; i < 4; ++i) {

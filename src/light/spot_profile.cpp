@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include "light/spot_light.h"
+#include "light/spot_profile.h"
 
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 
-#include "light/point_source.h"
+#include "light/brightness.h"
 #include "math/frame.h"
 #include "math/sampling.h"
 
@@ -29,7 +29,7 @@ float sample_smoothstep(float u) {
   return x;
 }
 
-using Falloff = SpotLight::Falloff;
+using Falloff = SpotProfile::Falloff;
 
 /// The falloff at the fraction x of the way from the outer cone to the inner one.
 float intensity_at(Falloff shape, float x) { return shape == Falloff::square ? x * x : smoothstep(x); }
@@ -47,10 +47,9 @@ float one_minus_cos(float angle) { return 2 * sqr(std::sin(0.5f * angle)); }
 
 }  // namespace
 
-SpotLight::SpotLight(const Point& position_, const Direction& axis_, const SpectrumCurve& intensity_, float start_angle,
-                     float total_angle, Falloff shape_)
-    : position(position_),
-      axis(axis_),
+SpotProfile::SpotProfile(const Direction& axis_, const SpectrumCurve& intensity_, float start_angle, float total_angle,
+                         Falloff shape_)
+    : axis(axis_),
       intensity(intensity_),
       one_minus_cos_start(one_minus_cos(start_angle)),
       one_minus_cos_total(one_minus_cos(total_angle)),
@@ -58,7 +57,7 @@ SpotLight::SpotLight(const Point& position_, const Direction& axis_, const Spect
   assert(start_angle >= 0 && start_angle <= total_angle);
 }
 
-float SpotLight::falloff(const Direction& direction) const {
+float SpotProfile::falloff(const Direction& direction) const {
   const float h = 0.5f * distance_squared(direction, axis);
   if (h >= one_minus_cos_total) return 0;
   if (h <= one_minus_cos_start) return 1;
@@ -66,44 +65,26 @@ float SpotLight::falloff(const Direction& direction) const {
 }
 
 // The falloff's integral over 1 - cos is `start` in the inner cone and its mean times `total - start` around it.
-float SpotLight::solid_angle() const {
+float SpotProfile::solid_angle() const {
   return 2 * pi * (one_minus_cos_start + mean_intensity(shape) * (one_minus_cos_total - one_minus_cos_start));
 }
 
-std::optional<LightSample> SpotLight::sample_direct(const Point& from, const Vec2& /*one point*/,
-                                                    const Wavelengths& w) const {
-  std::optional<LightSample> sample = see_point_source(position, from);
-  if (!sample) return sample;
-  sample->radiance *= intensity.evaluate(w) * falloff(-sample->wi);
-  if (sample->radiance.is_black()) sample.reset();
-  return sample;
-}
-
-std::optional<EmissionSample> SpotLight::sample_emission(const Vec2& /*one point*/, const Vec2& u_direction,
-                                                         const Wavelengths& w) const {
-  std::optional<EmissionSample> result;
-  if (!(one_minus_cos_total > 0)) return result;
+std::optional<ProfileSample> SpotProfile::sample(const Vec2& u, const Wavelengths& w) const {
+  if (!(one_minus_cos_total > 0)) return {};
   const float border = one_minus_cos_total - one_minus_cos_start;
   // In units of 1 - cos: the inner cone has weight `start`, the falloff region its width times the mean.
   const float outside = mean_intensity(shape) * border;
-  const float x = u_direction.x * (one_minus_cos_start + outside);
+  const float x = u.x * (one_minus_cos_start + outside);
   const bool inner = x < one_minus_cos_start;
   const float step = inner ? 1.0f : sample_falloff(shape, std::fmin(1.0f, (x - one_minus_cos_start) / outside));
   const float h = inner ? x : one_minus_cos_total - step * border;
-  const float r = safe_sqrt(h * (2 - h)), phi = 2 * pi * u_direction.y;
-  EmissionSample& sample = result.emplace();
-  sample.origin = position;
-  sample.direction = Frame(axis).to_world({r * std::cos(phi), r * std::sin(phi), 1 - h});
-  sample.flux = intensity.evaluate(w) * solid_angle();
-  sample.pdf_direction = intensity_at(shape, step) / solid_angle();
-  return result;
+  const float r = safe_sqrt(h * (2 - h)), phi = 2 * pi * u.y;
+  const float value = intensity_at(shape, step);
+  return ProfileSample{Frame(axis).to_world({r * std::cos(phi), r * std::sin(phi), 1 - h}),
+                       intensity.evaluate(w) * value, value / solid_angle()};
 }
 
-EmissionPdf SpotLight::pdf_emission(const EmitterHit& /*one point*/, const Direction& direction) const {
-  return {1, falloff(direction) / solid_angle()};
-}
-
-EmissionNumbers SpotLight::invert_emission(const EmitterHit& /*one point*/, const Direction& direction) const {
+std::optional<Vec2> SpotProfile::invert(const Direction& direction) const {
   const float border = one_minus_cos_total - one_minus_cos_start, outside = mean_intensity(shape) * border;
   const float h = std::min(0.5f * distance_squared(direction, axis), one_minus_cos_total);
   const float x = h < one_minus_cos_start
@@ -111,20 +92,20 @@ EmissionNumbers SpotLight::invert_emission(const EmitterHit& /*one point*/, cons
                       : one_minus_cos_start + outside * part_below(shape, (one_minus_cos_total - h) / border);
   const Vec3 local = Frame(axis).to_local(direction);
   const float inner = std::min(x / (one_minus_cos_start + outside), one_minus_epsilon);
-  return {.direction = Vec2(inner, turn_around_z(local.x, local.y))};
+  return Vec2(inner, turn_around_z(local.x, local.y));
 }
 
-float SpotLight::power() const { return luminance(intensity.rgb) * solid_angle(); }
+float SpotProfile::integral() const { return luminance(intensity.rgb) * solid_angle(); }
 
-float SpotLight::largest_radiance(float far2) const { return largest_value(intensity) / (pi * far2); }
+float SpotProfile::largest() const { return largest_value(intensity); }
 
-EmissionBounds SpotLight::bounds() const {
+ProfileBounds SpotProfile::bounds() const {
   // At most the last 60 degrees of the cone count as emission around the normals, because the importance falls with the
   // cosine to them.
   const float total = std::acos(std::clamp(1 - one_minus_cos_total, -1.0f, 1.0f));
   const float start = std::acos(std::clamp(1 - one_minus_cos_start, -1.0f, 1.0f));
   const float normals = std::fmax(start, total - pi / 3);
-  return {{position, position}, {axis, std::cos(normals)}, std::cos(total - normals), luminance(intensity.rgb), false};
+  return {{axis, std::cos(normals)}, std::cos(total - normals), luminance(intensity.rgb)};
 }
 
 }  // namespace lanthorn

@@ -4,13 +4,10 @@
 
 #include <optional>
 
-#include "light/brightness.h"
 #include "light/direction_map.h"
-#include "light/emitter_sample.h"
 #include "light/light_texels.h"
-#include "light/sample.h"
+#include "light/profile.h"
 #include "math/distribution.h"
-#include "spectrum/wavelengths.h"
 
 namespace lanthorn {
 
@@ -49,24 +46,23 @@ struct ProjectionImage {
   PiecewiseConstant2d distribution_;  // over (u, v) in [0,1)²
 };
 
-/// A point that projects an image: its intensity in W/sr is RGB times the illuminant, as pbrt-v4 defines it.
-struct ProjectionLight {
-  static constexpr LightTraits traits{
-      .name = "projection", .has_surface = false, .is_infinite = false, .is_far = false};
+/// The intensities of a projector: RGB times the illuminant in W/sr, as pbrt-v4 defines it.
+struct ProjectionProfile {
+  static constexpr const char* of_point = "projection";
 
-  Point position{0};
   float scale = 1;
   const ProjectionImage* image = nullptr;
   DirectionMap map;
 
-  std::optional<LightSample> sample_direct(const Point& from, const Vec2& u, const Wavelengths& w) const;
-  std::optional<EmissionSample> sample_emission(const Vec2& u_position, const Vec2& u_direction,
-                                                const Wavelengths& w) const;
-  EmissionPdf pdf_emission(const EmitterHit& origin, const Direction& direction) const;
-  EmissionNumbers invert_emission(const EmitterHit& origin, const Direction& direction) const;
-  float power() const;
-  float largest_radiance(float far2) const;
-  EmissionBounds bounds() const;
+  Spectrum value(const Direction& d, const Wavelengths& w) const;
+  std::optional<ProfileSample> sample(const Vec2& u, const Wavelengths& w) const;
+  float pdf(const Direction& d) const;
+  std::optional<Vec2> invert(const Direction& d) const;
+  /// Exact for transforms that preserve angles; for other transforms the distribution of photons among lights is
+  /// slightly off.
+  float integral() const { return scale * image->integral; }
+  float largest() const;
+  ProfileBounds bounds() const { return {cone(), 1, integral() / image->solid_angle()}; }
   /// A cone around all directions of emission.
   NormalCone cone() const;
 };
