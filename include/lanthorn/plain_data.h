@@ -35,12 +35,9 @@ class Reader {
  public:
   /// For each table ("materials", ...): the index of each named entry in that vector.
   std::map<std::string, std::map<std::string, Index>> names;
-  std::uint64_t hash = 0xcbf29ce484222325u;  ///< FNV-1a
+  std::uint64_t hash = 0;  ///< of all that has been read
 
-  void mix(const void* bytes, std::size_t count) {
-    for (std::size_t i = 0; i < count; ++i)
-      hash = (hash ^ static_cast<const unsigned char*>(bytes)[i]) * 0x100000001b3u;
-  }
+  void mix(const void* bytes, std::size_t count);
   void mix(std::string_view text) { mix(text.data(), text.size()); }
   /// Calls `read` for a part of the value; `step` extends the path: ".radius", "[2]".
   template <class Read>

@@ -3,9 +3,11 @@
 #include "lanthorn/plain_data.h"
 
 #include <algorithm>
+#include <cstddef>
 
 #include "lanthorn/error.h"
 #include "lanthorn/text.h"
+#include "math/hash.h"
 
 namespace lanthorn::plain {
 
@@ -39,6 +41,10 @@ Shape shape_of(Reader& reader, const Value& data, bool is_integral, const std::s
   }
   if (!number_of(data) || (is_integral && data.as<double>() != nullptr)) reader.fail(expected, data);
   return {};
+}
+
+void Reader::mix(const void* bytes, std::size_t count) {
+  hash = hash_words({hash, hash_bytes({static_cast<const std::byte*>(bytes), count})});
 }
 
 void Reader::fail(const std::string& expected, const Value& got) const {
