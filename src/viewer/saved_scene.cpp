@@ -11,6 +11,7 @@
 #include <utility>
 #include <variant>
 
+#include "io/pbrt/tokenizer.h"
 #include "lanthorn/error.h"
 
 namespace lanthorn {
@@ -30,46 +31,21 @@ std::size_t offset_of(std::string_view text, const SourceLocation& at) {
   return offset;
 }
 
-// The end of the text in quotes that begins here.
-std::size_t end_of_string(std::string_view text, std::size_t at) {
-  for (++at; at < text.size() && text[at] != '"'; ++at)
-    if (text[at] == '\\') ++at;
-  return std::min(at + 1, text.size());
+bool is_name(const pbrt::Token& token) {
+  return token.kind == pbrt::TokenKind::word && std::isalpha(static_cast<unsigned char>(token.text.front())) != 0 &&
+         token.text != "true" && token.text != "false";
 }
 
-// The end of the number that begins here, or of a single character that belongs to no number (a bracket, a space). A
-// number's exponent is not taken for a name.
-std::size_t end_of_number(std::string_view text, std::size_t at) {
-  constexpr std::string_view starts = "0123456789+-.";
-  const bool is_number = starts.find(text[at]) != starts.npos;
-  ++at;
-  while (is_number && at < text.size() && (std::isalnum(static_cast<unsigned char>(text[at])) != 0 || text[at] == '.'))
-    ++at;
-  return at;
-}
-
-// The end of what follows a directive's name: strings, numbers, lists, comments, true and false; not the next name.
+// The end of the directive that begins here: of its last string, number or list before the next name.
 std::size_t end_of_directive(std::string_view text, std::size_t at) {
-  const auto is_letter = [&](std::size_t i) { return std::isalpha(static_cast<unsigned char>(text[i])) != 0; };
-  while (at < text.size() && is_letter(at)) ++at;
-  std::size_t end = at;
-  while (at < text.size()) {
-    if (text[at] == '#') {
-      at = std::min(text.find('\n', at), text.size());
-      continue;
-    }
-    if (text[at] == '"') {
-      at = end_of_string(text, at);
-    } else if (is_letter(at)) {
-      std::size_t word = at;
-      while (word < text.size() && is_letter(word)) ++word;
-      if (text.substr(at, word - at) != "true" && text.substr(at, word - at) != "false") break;
-      at = word;
-    } else {
-      at = end_of_number(text, at);
-    }
-    if (std::isspace(static_cast<unsigned char>(text[at - 1])) == 0) end = at;
-  }
+  const auto end_of = [&](const pbrt::Token& token) {
+    const std::size_t quote = token.kind == pbrt::TokenKind::string ? 1 : 0;
+    return static_cast<std::size_t>(token.text.data() - text.data()) + token.text.size() + quote;
+  };
+  pbrt::Tokenizer tokens(text.substr(at), nullptr);
+  std::size_t end = end_of(tokens.next());
+  for (pbrt::Token token = tokens.next(); token.kind != pbrt::TokenKind::end && !is_name(token); token = tokens.next())
+    end = end_of(token);
   return end;
 }
 
