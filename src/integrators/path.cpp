@@ -1,6 +1,21 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 // Path tracing (Kajiya 1986) with next-event estimation and multiple importance sampling (Veach 1997, chapter 9).
+//
+// A pixel is the mean of L(x0, w) / p over rays from the camera, and
+//   L(x, w) = L_e(y, -w) + integral of f(-w, w') L(y, w') |cos w'| dw',    y: the point that the ray (x, w) hits.
+//
+// The files in the order in which a path flows through them:
+// 1. path/eye_pass.h       the loop over pixels; the ray's place in the filter, its time and wavelengths (path_draw.h)
+// 2. camera/camera.h       the ray through the lens, its weight and density
+// 3. path/walk.h           the walk: flight to the next surface or scattering, Russian roulette, throughput beta
+//    scene/scene.h         the nearest point of a ray, with its material's closure (surface/bsdf.h: f, pdf, sample)
+//    medium/medium.h       free flight in fog, with density sigma_t exp(-sigma_t t)
+// 4. path/path_visitor.h   what path tracing does at each event of the walk: the two techniques of direct light
+// 5. path/direct_light.h   next-event estimation, L_e f |cos| V / p_light, and emitters that the walk hits, L_e
+//    light/light_sampler.h chooses a light, light/light.h a point on it, path/transmittance.h tests what lies between
+// 6. path/mis.h            the weights of both: the power heuristic, p_a^2 / (p_a^2 + p_b^2)
+// 7. path/light_layers.h   sums by class of path (direct, caustic, indirect, ...), film/film.h adds them to the pixel
 #include <fmt/format.h>
 
 #include <optional>
@@ -29,8 +44,7 @@ class PathTracer final : public Integrator {
     if (rare >= noticeable)
       remark_ = fmt::format(
           "about {:.0f} % of the light on visible surfaces comes by glass or mirrors from small lights, which path "
-          "finds "
-          "rarely or never; auto, the default, finds it",
+          "finds rarely or never; auto, the default, finds it",
           100 * rare);
   }
   std::string remark() const override { return remark_; }

@@ -5,15 +5,23 @@
 // mapping merges them. One algorithm; the techniques are switched. "TR" is Georgiev's technical report of 2012,
 // "Implementing Vertex Connection and Merging".
 //
-// A pass has three steps:
-// 1. Trace N light paths. Keep each vertex, and connect it to the lens.
-// 2. Sort the vertices into maps for merging.
-// 3. Trace an eye path for each pixel. At each of its vertices, count the light that it hits, and gather light by
-//    next-event estimation, by connections to the vertices of one light path, and by merging with the vertices of
-//    all light paths.
+// The files in the order in which a pass goes through them:
+// 0. vcm_pass.cpp           what passes share: radii (merge_radii.h), and for `auto` the effort of each region of the
+//                           picture (effort_pilot.h); path/emission_densities.h: the choice of lights for light paths
+// 1. path/light_pass.h      N light paths, each a walk (path/walk.h) with the visitor
+//    vcm_visitors.h         `LightVisitor`: keeps each vertex, and connects it to the lens,
+//    path/lens_connection.h f |cos| W_e V / p                                                      (weight: TR eq. 46)
+// 2. merge_map.h            sorts the vertices into maps for merging; in media photon/media/volume_map.h
+// 3. path/eye_pass.h        an eye path for each pixel, with the visitor
+//    vcm_visitors.h         `EyeVisitor`: at each vertex the techniques
+//    path/connections.h     hits of lights (TR eq. 43), next-event estimation (TR eqs. 44, 45), and connections to the
+//                           vertices of a light path, f_eye G V f_light (TR eqs. 40, 41)
+//    merge_map.h            merges with all photons nearby, f / (N pi r^2) (TR eqs. 38, 39); in media volume_merge.h
+// 4. path/light_layers.h    sums by class of path; film/film.h adds them, and path/splat.h what light paths found
 //
-// Each has the weight of the balance heuristic, w = 1 / (w_light + 1 + w_eye) (TR eq. 37). path/mis.h derives both
-// terms from sums that both kinds of walk carry from vertex to vertex, d_VCM, d_VC and d_VM (TR eqs. 31-36): `Subpath`.
+// Each technique has the weight of the balance heuristic, w = 1 / (w_light + 1 + w_eye) (TR eq. 37). path/mis.h derives
+// both terms from sums that both kinds of walk carry from vertex to vertex, d_VCM, d_VC and d_VM (TR eqs. 31-36):
+// path/subpath.h.
 #include <concepts>
 #include <cstddef>
 #include <memory>
