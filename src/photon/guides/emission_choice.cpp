@@ -112,31 +112,34 @@ std::string remark_on(double in_view, bool hides_lights, PhotonUse use) {
       share, fewer);
 }
 
+// A learned guide, where photons by power would miss the view, or would come from lights that outshine others there.
+// Learning takes a second or more, and can gain no more than the photons that it aims at the view.
+Emission automatic_emission(PhotonUse use, const RenderJob& job, bool in_media) {
+  constexpr double few = 0.02, unimportant = 0.025;
+  const double in_view = photons_in_view(job);
+  const bool hides_lights = in_view >= few && strong_lights_hide_others(job);
+  if (in_view >= few && !hides_lights) return {};
+  LearnedEmission learned = learn_emission(job, use, in_media);
+  if (learned.share < unimportant) return {};
+  return {std::move(learned.guide), remark_on(in_view, hides_lights, use)};
+}
+
 }  // namespace
 
 Emission choose_emission(EmissionChoice choice, PhotonUse use, const RenderJob& job, MediumRecords media) {
   const bool in_media = media != MediumRecords::none && job.scene.has_scattering_media();
   switch (choice) {
-    case EmissionChoice::automatic: {
-      // Learning takes a second or more and can gain no more than the photons that it aims at the view.
-      constexpr double few = 0.02;
-      const double in_view = photons_in_view(job);
-      const bool hides_lights = in_view >= few && strong_lights_hide_others(job);
-      if (in_view >= few && !hides_lights) break;
-      constexpr double unimportant = 0.025;
-      LearnedEmission learned = learn_emission(job, use, in_media);
-      if (learned.share < unimportant) break;
-      return {std::move(learned.guide), remark_on(in_view, hides_lights, use)};
-    }
     case EmissionChoice::power:
-      break;
+      return {};
+    case EmissionChoice::automatic:
+      return automatic_emission(use, job, in_media);
+    case EmissionChoice::learned:
+      return {learn_emission(job, use, in_media).guide, {}};
     case EmissionChoice::projected: {
       const PhotonTarget landings = in_media ? PhotonTarget::surfaces_and_media : PhotonTarget::surfaces;
       const PhotonTarget target = use == PhotonUse::caustics ? PhotonTarget::specular : landings;
       return {LightGuide{make_projection_map(job.scene, target)}, {}};
     }
-    case EmissionChoice::learned:
-      return {learn_emission(job, use, in_media).guide, {}};
   }
   return {};
 }
