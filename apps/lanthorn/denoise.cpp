@@ -99,8 +99,7 @@ void add_denoise(CLI::App& app) {
   const auto a = std::make_shared<DenoiseCommand>();
   constexpr const char* footer =
       "Applies render's --denoise to a finished picture. Each light layer is denoised separately; the layer denoised "
-      "is "
-      "their\n"
+      "is their\n"
       "sum. It needs at least two passes, whose difference is the noise.\n\n"
       "Examples:\n"
       "  lanthorn denoise picture.exr -o clean.exr\n"

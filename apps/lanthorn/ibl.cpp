@@ -320,14 +320,13 @@ OptionTable map_options(IblCommand& a) {
       {.names = "--mapping",
        .value = into(a.settings.mapping, mapping_type()),
        .brief = "Roughness of the specular map's levels",
-       .details = "At x, a fraction of the last level: square (alpha = x²), linear (alpha = x), or filament "
-                  "(x = r (2 - r), alpha = r²).",
+       .details = "At x, a fraction of the last level: square (alpha = x²), linear (alpha = x), or filament (x = r (2 "
+                  "- r), alpha = r²).",
        .otherwise = "square"},
       {.names = "--weight",
        .value = into(a.settings.weight, weight_type()),
        .brief = "Weight of light in the lobe",
-       .details = "cosine is n.l, as engines expect; masking is Smith's, which makes the split sum exact at "
-                  "n = v = r.",
+       .details = "cosine is n.l, as engines expect; masking is Smith's, which makes the split sum exact at n = v = r.",
        .otherwise = "cosine"}};
 }
 

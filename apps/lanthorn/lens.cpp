@@ -244,8 +244,7 @@ OptionTable lens_options(LensChanges& lens) {
        .value = into(lens.fov, fov_type()),
        .brief = "Angle of view over the shorter side, in degrees",
        .details = "The camera stays in its place. For a model without a camera, the distance changes so that the model "
-                  "fills the "
-                  "picture as before.",
+                  "fills the picture as before.",
        .otherwise = "the scene file's"},
       {.names = "--aperture",
        .value = into(lens.aperture, aperture_type()),

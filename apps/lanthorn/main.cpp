@@ -62,8 +62,7 @@ int run(int argc, char** argv) {
   app.require_subcommand(1);
   app.footer(
       "Exit codes: 0 done, also after a signal if the passes so far are saved; 1 a comparison that failed; 2 bad "
-      "input, "
-      "or a\nfile that cannot be written; 3 an internal error.\n\n"
+      "input, or a\nfile that cannot be written; 3 an internal error.\n\n"
       "Examples:\n"
       "  lanthorn scene.pbrt                   # the same as lanthorn render scene.pbrt\n"
       "  lanthorn render scene.pbrt -o picture.png --time 30s\n"
@@ -97,8 +96,8 @@ int run(int argc, char** argv) {
     say("lanthorn: {}\n", e.what());
     return 2;
   } catch (const std::bad_alloc&) {
-    say("lanthorn: not enough memory: a smaller picture (--resolution), fewer light paths (--photons) or a "
-        "smaller scene needs less\n");
+    say("lanthorn: not enough memory: a smaller picture (--resolution), fewer light paths (--photons) or a smaller "
+        "scene needs less\n");
     return 2;
   } catch (const std::system_error& e) {
     if (e.code() != std::errc::resource_unavailable_try_again) return say_internal_error(e);

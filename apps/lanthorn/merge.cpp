@@ -78,8 +78,7 @@ std::shared_ptr<RenderState> merge_expected(const MergeCommand& o) {
     say("lanthorn: missing: render again with --pass-range {}:{}\n", missing.begin, missing.end);
   if (!check.missing.empty() || refused > 0)
     throw Error(
-        fmt::format("--expect {}:{}: {} of {} states cannot be merged, {} ranges of passes missing: "
-                    "nothing is written",
+        fmt::format("--expect {}:{}: {} of {} states cannot be merged, {} ranges of passes missing: nothing is written",
                     o.expected->begin, o.expected->end, refused, o.inputs.size(), check.missing.size()));
   const std::vector<PassRange> passes = summarize(*merger.sum()).passes;
   if (passes.front().begin < o.expected->begin || passes.back().end > o.expected->end)
@@ -111,8 +110,7 @@ OptionTable merge_options(MergeCommand& a) {
                          .value = into(a.expected, pass_range_type()),
                          .brief = "Require passes FIRST to END - 1 to be complete",
                          .details = "Otherwise nothing is written, and messages name missing, damaged and duplicate "
-                                    "states, and the passes to render "
-                                    "again.",
+                                    "states, and the passes to render again.",
                          .otherwise = "any passes"},
                         {.names = "-o,--output",
                          .value = into(a.output, text_type("FILE")),

@@ -129,8 +129,7 @@ OptionTable display_options(OutputSettings& settings, const std::string& default
            .value = into(settings.display.ocio, ocio_type()),
            .brief = "Use a view of an OpenColorIO configuration instead",
            .details = "It replaces --view-transform. CONFIG is a file; without DISPLAY/VIEW, the configuration's "
-                      "defaults apply. The "
-                      "exposure is applied before."}};
+                      "defaults apply. The exposure is applied before."}};
 }
 
 ValueType<ToneCurve> view_transform_type() {
@@ -158,13 +157,12 @@ Option force_option(bool& force, const std::string& files) {
 }
 
 Option denoise_option(bool& denoise, const std::string& brief) {
-  return {
-      .names = "--denoise",
-      .value = flag(denoise),
-      .brief = brief,
-      .details =
-          ".exr files get the layers denoised, denoised.direct and so on beside the noisy ones; .png, .jpg and .tif "
-          "show the denoised picture."};
+  return {.names = "--denoise",
+          .value = flag(denoise),
+          .brief = brief,
+          .details =
+              ".exr files get the layers denoised, denoised.direct and so on beside the noisy ones; .png, .jpg and "
+              ".tif show the denoised picture."};
 }
 
 OptionTable output_options(OutputSettings& settings) {

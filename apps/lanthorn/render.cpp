@@ -168,8 +168,8 @@ struct Film {
 
 void explain_coarse(const CoarsePicture& coarse) {
   warn(
-      "there was no time for a whole pass: the picture is coarse, rendered with {} x {} pixels and enlarged; a "
-      "whole pass takes about {}, and the render cannot be resumed from a state of this picture",
+      "there was no time for a whole pass: the picture is coarse, rendered with {} x {} pixels and enlarged; a whole "
+      "pass takes about {}, and the render cannot be resumed from a state of this picture",
       coarse.width, coarse.height, format_duration(coarse.pass_seconds));
 }
 
@@ -231,10 +231,9 @@ void save_view(const RenderCommand& a, const std::vector<fs::path>& outputs, con
   }
   explain_darkness(a, scene, view, outputs.front(), session, measured_now);
   if (statistics.out_of_memory)
-    throw Error(
-        fmt::format("not enough memory for a pass: the pictures hold the {} passes before it; fewer --photons "
-                    "need less",
-                    session.pass_count()));
+    throw Error(fmt::format(
+        "not enough memory for a pass: the pictures hold the {} passes before it; fewer --photons need less",
+        session.pass_count()));
 }
 
 // A resumed render keeps the margin of its state, because passes with different margins cannot be added.

@@ -28,43 +28,39 @@ Option threads_option(unsigned& threads, const std::string& independence) {
           .value = into(threads, count_type({0, most_threads})),
           .brief = "Number of threads; 0 uses all cores",
           .details = independence +
-                     " All cores are those that CPU affinity and the quota of a control group (container) "
-                     "leave to the program; 'lanthorn info --machine' shows them.",
+                     " All cores are those that CPU affinity and the quota of a control group (container) leave to the "
+                     "program; 'lanthorn info --machine' shows them.",
           .otherwise = "0"};
 }
 
 OptionTable read_options(ReadOptions& o) {
-  return {
-      {.names = "--window-glass",
-       .value = flag(o.window_glass),
-       .brief = "Let light pass straight through panes of glass",
-       .details =
-           "Panes are thindielectric surfaces and flat slabs of clear dielectric. Every method then finds the light "
-           "that comes through windows. For slabs this is an approximation."},
-      {.names = "--sandbox",
-       .value = flag(o.sandbox),
-       .brief = "For untrusted scenes: read files only from the scene's folder and below",
-       .details = "Paths and symbolic links that lead elsewhere are refused. Messages show no content of files."},
-      max_pixels_option(o.max_pixels),
-      {.names = "--texture-memory",
-       .value = into(o.texture_memory, bytes_type()),
-       .brief = "Limit for the textures in memory, such as 4G",
-       .details =
-           "Larger textures go to a temporary file, of which a render reads the parts that it needs. The picture "
-           "does not depend on the limit.",
-       .otherwise = "half of the free memory"},
-      {.names = "--missing",
-       .value = into(o.skip_missing, choice_type<bool>({{"error", false}, {"skip", true}})),
-       .brief = "Refuse a scene whose files are missing, or skip them",
-       .details =
-           "skip leaves out meshes and media, and replaces images by grey, spectra by 1 and lenses by one of 50 mm. A "
-           "warning names each file.",
-       .otherwise = "error"},
-      {.names = "--at",
-       .value = into(o.at, animation_time_type()),
-       .brief = "Time in the first animation of a glTF file: 1.5 (seconds) or frame=36@24",
-       .details = "frame=36@24 is frame 36 at 24 frames a second; frame 0 is at 0 seconds.",
-       .otherwise = "everything is at rest"}};
+  return {{.names = "--window-glass",
+           .value = flag(o.window_glass),
+           .brief = "Let light pass straight through panes of glass",
+           .details = "Panes are thindielectric surfaces and flat slabs of clear dielectric. Every method then finds "
+                      "the light that comes through windows. For slabs this is an approximation."},
+          {.names = "--sandbox",
+           .value = flag(o.sandbox),
+           .brief = "For untrusted scenes: read files only from the scene's folder and below",
+           .details = "Paths and symbolic links that lead elsewhere are refused. Messages show no content of files."},
+          max_pixels_option(o.max_pixels),
+          {.names = "--texture-memory",
+           .value = into(o.texture_memory, bytes_type()),
+           .brief = "Limit for the textures in memory, such as 4G",
+           .details = "Larger textures go to a temporary file, of which a render reads the parts that it needs. The "
+                      "picture does not depend on the limit.",
+           .otherwise = "half of the free memory"},
+          {.names = "--missing",
+           .value = into(o.skip_missing, choice_type<bool>({{"error", false}, {"skip", true}})),
+           .brief = "Refuse a scene whose files are missing, or skip them",
+           .details = "skip leaves out meshes and media, and replaces images by grey, spectra by 1 and lenses by one "
+                      "of 50 mm. A warning names each file.",
+           .otherwise = "error"},
+          {.names = "--at",
+           .value = into(o.at, animation_time_type()),
+           .brief = "Time in the first animation of a glTF file: 1.5 (seconds) or frame=36@24",
+           .details = "frame=36@24 is frame 36 at 24 frames a second; frame 0 is at 0 seconds.",
+           .otherwise = "everything is at rest"}};
 }
 
 ValueType<float> environment_rotation_type() {
@@ -79,26 +75,24 @@ ValueType<float> environment_scale_type() {
 namespace {
 
 OptionTable environment_options(EnvironmentChoice& e) {
-  return {
-      {.names = "--environment",
-       .value = into(e.source, existing_file_or_word_type(environment_names())),
-       .brief = "Light by an image, or by studio, overcast or sunny",
-       .details =
-           "It replaces the scene's environment and the stand-in studio; lamps stay. The image can have the shape 2:1 "
-           "(equirectangular) or 1:1 (octahedral), or be a cube map. y is up."},
-      {.names = "--environment-rotate",
-       .value = into(e.rotation, environment_rotation_type()),
-       .brief = "Turn the environment by degrees, counter-clockwise from above",
-       .details = "At 0 the centre of an equirectangular image lies in the direction +x, at 90 in -z.",
-       .otherwise = "0"},
-      {.names = "--environment-scale",
-       .value = into(e.scale, environment_scale_type()),
-       .brief = "Multiply the environment's radiance",
-       .otherwise = "1"},
-      {.names = "--environment-up",
-       .value = into(e.up, choice_type<UpAxis>({{"y", UpAxis::y}, {"z", UpAxis::z}})),
-       .brief = "The scene's up axis",
-       .otherwise = "y; for pbrt files the axis nearer to the camera's up vector, named in a warning"}};
+  return {{.names = "--environment",
+           .value = into(e.source, existing_file_or_word_type(environment_names())),
+           .brief = "Light by an image, or by studio, overcast or sunny",
+           .details = "It replaces the scene's environment and the stand-in studio; lamps stay. The image can have the "
+                      "shape 2:1 (equirectangular) or 1:1 (octahedral), or be a cube map. y is up."},
+          {.names = "--environment-rotate",
+           .value = into(e.rotation, environment_rotation_type()),
+           .brief = "Turn the environment by degrees, counter-clockwise from above",
+           .details = "At 0 the centre of an equirectangular image lies in the direction +x, at 90 in -z.",
+           .otherwise = "0"},
+          {.names = "--environment-scale",
+           .value = into(e.scale, environment_scale_type()),
+           .brief = "Multiply the environment's radiance",
+           .otherwise = "1"},
+          {.names = "--environment-up",
+           .value = into(e.up, choice_type<UpAxis>({{"y", UpAxis::y}, {"z", UpAxis::z}})),
+           .brief = "The scene's up axis",
+           .otherwise = "y; for pbrt files the axis nearer to the camera's up vector, named in a warning"}};
 }
 
 OptionTable scene_options(ReadOptions& o) {
@@ -156,9 +150,8 @@ OptionTable render_options(RenderArguments& a) {
        .value = into(o.crop, pixel_window_type()),
        .brief = "Render only these pixels (x1, y1 excluded)",
        .details =
-           "With the same --photons they equal those of the whole picture, exactly or up to rounding "
-           "(docs/using.md); not with auto and mlt. --denoise also renders 24 pixels around them, which are kept "
-           "in states only."},
+           "With the same --photons they equal those of the whole picture, exactly or up to rounding (docs/using.md); "
+           "not with auto and mlt. --denoise also renders 24 pixels around them, which are kept in states only."},
       {.names = "-n,--photons",
        .value = into(o.photons, count_type({.low = 1})),
        .brief = "Light paths per pass, such as 500000, 200k or 1M",
@@ -168,18 +161,16 @@ OptionTable render_options(RenderArguments& a) {
       {.names = "-d,--max-depth",
        .value = into(o.max_depth, count_type({1, largest_int})),
        .brief = "Largest number of scattering events per path",
-       .details =
-           "In media of high albedo the default is higher: the depth at which a thousandth of the light is left. A "
-           "passage under the surface of skin or wax counts once. The program reports how much light the limit may "
-           "have cut off.",
+       .details = "In media of high albedo the default is higher: the depth at which a thousandth of the light is "
+                  "left. A passage under the surface of skin or wax counts once. The program reports how much light "
+                  "the limit may have cut off.",
        .otherwise = "the scene file's, else 64; in media up to 4096"},
       {.names = "--memory",
        .value = into(o.memory, bytes_type()),
        .brief = "Memory limit for the film and a pass's photons or light vertices: 512M, 2G",
-       .details =
-           "The scene is not counted. A render that needs more is refused before it starts; reversephotonmap works in "
-           "blocks of pixels that fit. Most methods keep at most 8.4M light paths at a time (auto, bdpt, bpm, "
-           "vcm: 2.1M; sppm, ppm, photonmap: all). The picture does not depend on the limit.",
+       .details = "The scene is not counted. A render that needs more is refused before it starts; reversephotonmap "
+                  "works in blocks of pixels that fit. Most methods keep at most 8.4M light paths at a time (auto, "
+                  "bdpt, bpm, vcm: 2.1M; sppm, ppm, photonmap: all). The picture does not depend on the limit.",
        .otherwise = "free memory"}};
   return joined(joined(joined(picture, read_options(a.reading)), scene_options(a.reading)), {parameter_option(o)});
 }

@@ -45,11 +45,10 @@ OptionTable render_command_options(RenderCommand& a) {
       {.names = "--noise",
        .value = into(a.options.noise, share_type()),
        .brief = "Stop when the estimated error is below this: 5%",
-       .details =
-           "The program estimates noise and bias while rendering. When it stops, the error is below the bound with a "
-           "probability of 90 %. The error is the root mean square of the relative errors of all values; the "
-           "denominator is at least a tenth of the picture's mean. With --denoise, the bound is for the denoised "
-           "picture. -p and -t still apply."},
+       .details = "The program estimates noise and bias while rendering. When it stops, the error is below the bound "
+                  "with a probability of 90 %. The error is the root mean square of the relative errors of all values; "
+                  "the denominator is at least a tenth of the picture's mean. With --denoise, the bound is for the "
+                  "denoised picture. -p and -t still apply."},
       {.names = "--pass-range",
        .value = into(a.options.pass_range, pass_range_type()),
        .brief = "Render passes FIRST to END - 1 alone: a shard to merge with others",

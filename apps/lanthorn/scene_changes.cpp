@@ -77,8 +77,7 @@ void check(const LookAt& look) {
                         glm::length(look.eye) < farthest && length < farthest && up < farthest;
   if (!is_known || !(length > 0) || !(up > 0) || !(glm::length(glm::cross(view / length, look.up / up)) > least_sine))
     throw Error(
-        "--look-at: the camera's place, the point that it looks at and the up direction must not lie on "
-        "one line");
+        "--look-at: the camera's place, the point that it looks at and the up direction must not lie on one line");
 }
 
 LookAt look_of(const ViewDescription& view, const ViewOptions& options, float distance, const DVec3& origin) {

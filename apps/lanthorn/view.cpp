@@ -197,14 +197,13 @@ OptionTable view_options(ViewCommand& a) {
 
 void add_view(CLI::App& app) {
   const auto a = std::make_shared<ViewCommand>();
-  const std::string footer =
-      parameter_help() +
-      "Drag: orbit; right drag: look around; middle or Shift drag: pan; wheel: zoom; W A S D E Q: fly; click: select "
-      "a\n"
-      "light or an object, and drag it. docs/viewer.md has the rest.\n\nExamples:\n"
-      "  lanthorn view scene.pbrt\n"
-      "  lanthorn view scene.pbrt -i vcm -r 640x360\n"
-      "  lanthorn view scene.pbrt --headless -p 16 -o picture.png";
+  const std::string footer = parameter_help() +
+                             "Drag: orbit; right drag: look around; middle or Shift drag: pan; wheel: zoom; W A S D E "
+                             "Q: fly; click: select a\n"
+                             "light or an object, and drag it. docs/viewer.md has the rest.\n\nExamples:\n"
+                             "  lanthorn view scene.pbrt\n"
+                             "  lanthorn view scene.pbrt -i vcm -r 640x360\n"
+                             "  lanthorn view scene.pbrt --headless -p 16 -o picture.png";
   add_command(app, {"view", "Show a scene in a window; global illumination follows edits in real time",
                     view_options(*a), footer, [a] { run_view(*a); }});
 }

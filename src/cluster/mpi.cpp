@@ -25,8 +25,7 @@ const MpiFunctions& load() {
 #else
 const MpiFunctions& load() {
   throw Error(
-      "an MPI launcher has started several processes, but this program is built without MPI "
-      "(-DLANTHORN_BUILD_MPI=ON)");
+      "an MPI launcher has started several processes, but this program is built without MPI (-DLANTHORN_BUILD_MPI=ON)");
 }
 #endif
 
@@ -47,8 +46,8 @@ std::optional<TeamLink> join_mpi() {
     throw Error(std::string("MPI does not start: ") + problem.what());
   }
   throw Error(
-      fmt::format("{} indicates {} processes, but Open MPI finds only this one: each would render "
-                  "the whole picture; start them with mpirun, or srun --mpi=pmix",
+      fmt::format("{} indicates {} processes, but Open MPI finds only this one: each would render the whole picture; "
+                  "start them with mpirun, or srun --mpi=pmix",
                   launcher->variable, launcher->size));
 }
 

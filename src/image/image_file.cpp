@@ -132,9 +132,7 @@ ImageFile::ImageFile(const std::shared_ptr<std::FILE>& file, std::string what, S
 void ImageFile::open(std::string_view first_bytes, std::uint64_t max_pixels, const std::function<OpenImage()>& open) {
   const char* const format = format_of(first_bytes);
   if (format == nullptr)
-    fail(
-        "is not a supported image (EXR, PNG, JPEG, HDR, PFM, PNM, TIFF, TGA, WebP, BMP, GIF, DDS, DPX, IFF, "
-        "PSD)");
+    fail("is not a supported image (EXR, PNG, JPEG, HDR, PFM, PNM, TIFF, TGA, WebP, BMP, GIF, DDS, DPX, IFF, PSD)");
   format_ = format;
   if (const auto pixels = announced_pixels(first_bytes, format)) check_pixels(*pixels, 4, max_pixels);
   guarded([&] { image_ = open(); });

@@ -180,10 +180,9 @@ std::unique_ptr<Integrator> make(const Parameters& parameters, HitPoints hits) {
 }
 
 ParameterInfo schedule_info(const char* default_schedule) {
-  return {
-      "schedule", default_schedule,
-      "rule that shrinks radii: hachisuka (keeps the share alpha of new photons), least-error (of bias and variance; "
-      "Kaplanyan & Dachsbacher 2013), chi-squared (test for a uniform density; Lin et al. 2020)"};
+  return {"schedule", default_schedule,
+          "rule that shrinks radii: hachisuka (keeps the share alpha of new photons), least-error (of bias and "
+          "variance; Kaplanyan & Dachsbacher 2013), chi-squared (test for a uniform density; Lin et al. 2020)"};
 }
 ParameterInfo alpha_info() {
   return {"alpha", "0.6667", "share of new photons that hachisuka keeps, in (0,1]; small: sharper, noisier"};

@@ -156,10 +156,9 @@ std::optional<std::string> difference_to_replaced(const RenderState& there, cons
 void require_same_identity(const RenderState& state, const std::string& settings, const std::string& file) {
   const auto difference = identity_difference(state.settings, settings);
   if (difference)
-    throw Error({file},
-                fmt::format("belongs to another render: it differs in {}; give the scene and settings it was made "
-                            "with, or another file",
-                            *difference));
+    throw Error({file}, fmt::format("belongs to another render: it differs in {}; give the scene and settings it was "
+                                    "made with, or another file",
+                                    *difference));
 }
 
 namespace {

@@ -183,11 +183,10 @@ struct Leftovers {
   void warn(SceneDescription& scene) const {
     for (const Kind& kind : kinds)
       scene.warnings.push_back(
-          {kind.first,
-           fmt::format("--window-glass: {} as before, because {} glass {}; only panes of clear, smooth glass let all "
-                       "rays pass. Methods with photons find the light behind the others",
-                       kind.shapes == 1 ? "this pane stays" : fmt::format("{} panes stay", kind.shapes),
-                       kind.shapes == 1 ? "its" : "their", kind.flaw)});
+          {kind.first, fmt::format("--window-glass: {} as before, because {} glass {}; only panes of clear, smooth "
+                                   "glass let all rays pass. Methods with photons find the light behind the others",
+                                   kind.shapes == 1 ? "this pane stays" : fmt::format("{} panes stay", kind.shapes),
+                                   kind.shapes == 1 ? "its" : "their", kind.flaw)});
   }
 };
 

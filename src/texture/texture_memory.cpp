@@ -23,11 +23,10 @@ void require_disk(std::uint64_t bytes, std::uint64_t memory, std::uint64_t bound
   const std::uint64_t left = free_space(folder);
   if (bytes <= left) return;
   const auto text = [](std::uint64_t count) { return memory_text(static_cast<double>(count)); };
-  throw Error(
-      fmt::format("the textures take {} of memory, but --texture-memory allows {}; the tiles of those that do "
-                  "not fit take {} on disk, but {} has only {} left: allow more memory, or set TMPDIR to a "
-                  "folder with more room",
-                  text(memory), text(bound), text(bytes), folder.string(), text(left)));
+  throw Error(fmt::format(
+      "the textures take {} of memory, but --texture-memory allows {}; the tiles of those that do not fit take {} on "
+      "disk, but {} has only {} left: allow more memory, or set TMPDIR to a folder with more room",
+      text(memory), text(bound), text(bytes), folder.string(), text(left)));
 }
 
 }  // namespace

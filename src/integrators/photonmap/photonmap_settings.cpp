@@ -110,12 +110,11 @@ IntegratorInfo photonmap_info() {
            {"cache-min-spacing", "3", "least distance of records, pixels"},
            {"cache-max-spacing", "40", "largest distance of records, pixels"},
            {"cache-rays", "auto",
-            "approximate number of rays to gather a record, and at points that no record covers; auto: 128, or "
-            "512 with maps=kept"},
+            "approximate number of rays to gather a record, and at points that no record covers; auto: 128, or 512 "
+            "with maps=kept"},
            {"show", "image",
             "image, or what a map holds: global, caustic, shadow (share of lit photons), radius (m) or density "
-            "(photons/m^2); records: where "
-            "the cache has records"}}),
+            "(photons/m^2); records: where the cache has records"}}),
       [](const Parameters& p) -> std::unique_ptr<Integrator> {
         return make_photon_mapper(PhotonMapSettings(p, Search::photons));
       }};
@@ -126,8 +125,8 @@ IntegratorInfo reversephotonmap_info() {
           "photon mapping whose photons look for the ends of gather rays: faster with many of these",
           "Havran, Herzog & Seidel 2005",
           parameters_with({{"radii", "nearest",
-                            "of photons: nearest (the distance to as many neighbours as --set nearest says), or "
-                            "leaf (from their leaf of the tree)"}}),
+                            "of photons: nearest (the distance to as many neighbours as --set nearest says), or leaf "
+                            "(from their leaf of the tree)"}}),
           [](const Parameters& p) -> std::unique_ptr<Integrator> {
             return make_photon_mapper(PhotonMapSettings(p, Search::reverse_photons));
           }};

@@ -26,10 +26,9 @@ std::optional<Strategy> parse_strategy(const std::string& text) {
   int read = 0;
   if (std::sscanf(text.c_str(), "%3d,%3d%n", &strategy.s, &strategy.t, &read) != 2 ||
       read != static_cast<int>(text.size()) || strategy.s < 0 || strategy.t < 1 || strategy.s + strategy.t < 2)
-    throw Error(
-        fmt::format("--set strategy={}: expected all, or S,T: at least 0 vertices of the light walk, 1 of the eye's "
-                    "and 2 of both",
-                    text));
+    throw Error(fmt::format(
+        "--set strategy={}: expected all, or S,T: at least 0 vertices of the light walk, 1 of the eye's and 2 of both",
+        text));
   return strategy;
 }
 
@@ -40,11 +39,10 @@ ParameterInfo strategy_info() {
   return {"strategy", "all", "all, or S,T: only light of paths with S vertices made from the light and T from the eye"};
 }
 ParameterInfo merge_volume_info() {
-  return {
-      "volume", "beam",
-      "merging in media: by photons around the eye's rays (beam) or around points on them (point), by photons' flights "
-      "around rays (beams) or points (photon-beam), by several under one weight, such as point+beam, or not at all "
-      "(path)"};
+  return {"volume", "beam",
+          "merging in media: by photons around the eye's rays (beam) or around points on them (point), by photons' "
+          "flights around rays (beams) or points (photon-beam), by several under one weight, such as point+beam, or "
+          "not at all (path)"};
 }
 
 std::array<bool, volume_estimator_count> merged_in_media(const Parameters& parameters) {

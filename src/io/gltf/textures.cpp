@@ -68,9 +68,8 @@ std::optional<Value> find_image(Document& document, const Value& texture) {
   document.warn("KHR_texture_basisu", texture,
                 "KHR_texture_basisu: KTX2 images such as " +
                     (is_file ? file_in_quotes(uri->text()) : basis->location().file) +
-                    " are not supported: neutral values replace textures without another image. Convert the file "
-                    "with \"gltf-transform ktxdecompress IN OUT\" (of npm's @gltf-transform/cli and Khronos' "
-                    "KTX-Software)");
+                    " are not supported: neutral values replace textures without another image. Convert the file with "
+                    "\"gltf-transform ktxdecompress IN OUT\" (of npm's @gltf-transform/cli and Khronos' KTX-Software)");
   return {};
 }
 

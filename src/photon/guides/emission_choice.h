@@ -25,9 +25,8 @@ enum class EmissionChoice : std::uint8_t {
 inline ParameterInfo emission_info(const char* default_choice) {
   return {"emission", default_choice,
           "where photons start: power (by emitted power), projected (where they can hit a surface or a medium that "
-          "matters), learned "
-          "(where photons start that contribute to the picture), or auto (learned if few photons land in view, else "
-          "power)"};
+          "matters), learned (where photons start that contribute to the picture), or auto (learned if few photons "
+          "land in view, else power)"};
 }
 EmissionChoice emission_choice(const Parameters& parameters);
 

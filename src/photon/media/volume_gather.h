@@ -35,8 +35,7 @@ inline ParameterInfo volume_info() {
   return {"volume", "beam",
           "light that media scatter more than once, and caustics in media: by photons around the eye's rays (beam) or "
           "around points on them (point), by photons' flights around rays (beams) or points (photon-beam), or by eye "
-          "paths alone "
-          "(path); short-beams and short-photon-beam: flights end where they scatter, for dense media"};
+          "paths alone (path); short-beams and short-photon-beam: flights end where they scatter, for dense media"};
 }
 VolumeEstimator volume_estimator(const Parameters& parameters);
 /// The parameter "volume" of methods that join estimators: one of `known` or several, joined by "+"; none for "path".

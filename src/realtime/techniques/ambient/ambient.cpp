@@ -49,13 +49,12 @@ TechniqueInfo ambient_technique() {
                       .title = "Direct + ambient",
                       .summary = "and the same light everywhere",
                       .parameters = {{.info = {"ambient", "auto",
-                                               "irradiance of all surfaces, W/m2: a third of the lights' power over "
-                                               "a sphere around what is seen (auto), or a number"},
+                                               "irradiance of all surfaces, W/m2: a third of the lights' power over a "
+                                               "sphere around what is seen (auto), or a number"},
                                       .words = {"auto"},
                                       .numbers = NumberRange{0, 1e6},
                                       .control = PanelControl{.label = "Ambient",
-                                                              .tip = "The same light on all surfaces, from all "
-                                                                     "sides.",
+                                                              .tip = "The same light on all surfaces, from all sides.",
                                                               .low = 0,
                                                               .high = 20,
                                                               .format = "%.3g W/m²",

@@ -51,10 +51,9 @@ class VoxelCones final : public Technique {
 void check(const TechniqueChoice& choice) {
   const int limit = voxel_grid_limit(choice.whole("voxels"));
   if (!choice.is_auto("grids") && choice.whole("grids") > limit)
-    throw Error(
-        fmt::format("--set grids={}: expected auto or a number from 1 to {}, since there are {} voxels along an "
-                    "edge of each",
-                    choice.text("grids"), limit, choice.text("voxels")));
+    throw Error(fmt::format(
+        "--set grids={}: expected auto or a number from 1 to {}, since there are {} voxels along an edge of each",
+        choice.text("grids"), limit, choice.text("voxels")));
 }
 
 std::vector<std::string> limitations(const Scene& scene, const GpuScene* /*gpu_scene*/) {
@@ -86,8 +85,8 @@ std::vector<TechniqueParameter> parameters() {
 TechniqueInfo voxelcones_technique() {
   return {.description = {.name = "voxelcones",
                           .title = "Voxel cones",
-                          .summary = "voxel cone tracing by OpenGL, as the viewer draws it: coarse and quick, without "
-                                     "noise",
+                          .summary =
+                              "voxel cone tracing by OpenGL, as the viewer draws it: coarse and quick, without noise",
                           .paper = "Crassin et al. 2011",
                           .parameters = parameters()},
           .make = [](const TechniqueShaders& shaders) -> std::unique_ptr<Technique> {
