@@ -140,10 +140,14 @@ float density(const Lobes& lobes, const Vec3& wo) {
 float seen_along(const Hair& hair, const Vec3& w, float h) { return hair.is_on_surface && w.z < 0 ? -h : h; }
 
 // The offset for which the lobes around wi are sampled. On the way from a light to the eye, each lobe turns the other
-// way; wo is not known yet then, so that on a surface half of the lobes may be sampled by their mirror images, which
-// costs light walks some noise.
+// way.
 float turning_offset(const Hair& hair, const Vec3& wi, Transport transport) {
   return transport == Transport::radiance ? seen_along(hair, wi, hair.h) : -hair.h_out;
+}
+// On a surface, the sign of a light walk's offset depends on the side to which it leaves, which is not known yet: it is
+// drawn.
+bool draws_sign(const Hair& hair, Transport transport) {
+  return hair.is_on_surface && transport == Transport::importance;
 }
 
 }  // namespace
@@ -169,7 +173,8 @@ Spectrum eval(const Hair& hair, const Vec3& wi, const Vec3& wo, Transport transp
 }
 
 float pdf_of(const Hair& hair, const Vec3& wi, const Vec3& wo, Transport transport) {
-  return density(Lobes(hair, turning_offset(hair, wi, transport), wi), wo);
+  const float offset = turning_offset(hair, wi, transport), own = density(Lobes(hair, offset, wi), wo);
+  return draws_sign(hair, transport) ? 0.5f * (own + density(Lobes(hair, -offset, wi), wo)) : own;
 }
 
 float pdf_reverse(const Hair& hair, const Vec3& wi, const Vec3& wo) {
@@ -177,7 +182,13 @@ float pdf_reverse(const Hair& hair, const Vec3& wi, const Vec3& wo) {
 }
 
 std::optional<BsdfSample> sample(const Hair& hair, const Vec3& wi, float u_lobe, const Vec2& u, Transport transport) {
-  const Lobes lobes(hair, turning_offset(hair, wi, transport), wi);
+  float offset = turning_offset(hair, wi, transport);
+  if (draws_sign(hair, transport)) {
+    const bool is_turned = u_lobe >= 0.5f;
+    if (is_turned) offset = -offset;
+    u_lobe = 2 * u_lobe - (is_turned ? 1.0f : 0.0f);
+  }
+  const Lobes lobes(hair, offset, wi);
   std::size_t p = 0;
   while (p < last_lobe && u_lobe >= lobes.probability[p]) u_lobe -= lobes.probability[p++];
   const float u_azimuth = std::clamp(u_lobe / lobes.probability[p], 0.0f, one_minus_epsilon);
@@ -193,7 +204,7 @@ std::optional<BsdfSample> sample(const Hair& hair, const Vec3& wi, float u_lobe,
   const float phi = lobes.phi + turn;
   const Vec3 wo(sin_i, cos_i * std::cos(phi), cos_i * std::sin(phi));
 
-  const float pdf = density(lobes, wo);
+  const float pdf = draws_sign(hair, transport) ? pdf_of(hair, wi, wo, transport) : density(lobes, wo);
   if (!(pdf > 0) || !(cos_i > 0)) return std::nullopt;
   return BsdfSample{.wo = wo,
                     .weight = eval(hair, wi, wo, transport) * (cos_i / pdf),

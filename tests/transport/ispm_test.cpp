@@ -177,7 +177,7 @@ TEST_P(Ispm, AgreesWithPath) {
   const bool has_mirror = GetParam() == "mirror_box";
   const bool has_sky_and_gloss = GetParam() == "models" || GetParam() == "hair";
   RenderOptions options = options_for("ispm", 16);
-  if (has_sky_and_gloss) options.photons = GetParam() == "hair" ? 50'000 : 20'000;
+  if (has_sky_and_gloss) options.photons = 20'000;
   const std::vector<Image> found = test::independent_renders(scene, options, 16, 200);
   const std::vector<Image> expected =
       has_mirror ? renders(scene, "vcm", 8, 16, 100) : renders(scene, "path", 32, 24, 100);
