@@ -23,10 +23,13 @@ struct HitPoints {
 
   // Number of the eye path among all eye paths of its pixel.
   std::uint32_t path(std::uint32_t pass, std::uint32_t hit) const { return fixed ? hit : pass; }
-  // Fixed hit points never reach the later samples of the filter's sequences: the last one has the negative lobes.
+  // Fixed hit points never reach the later samples of the filter's sequences, so the last ones have its negative lobes.
   FilterPlace fixed_place(const Filter& filter, std::uint32_t hit) const {
-    const bool is_negative = filter.negative_share() != 0 && count > 1 && hit + 1 == count;
-    return is_negative ? FilterPlace{FilterPart::negative, 0} : FilterPlace{FilterPart::positive, hit};
+    const float share = filter.negative_share();
+    if (share == 0 || count == 1) return {FilterPart::positive, hit};
+    const auto wanted = static_cast<std::uint32_t>(static_cast<float>(count) * share / (1 + 2 * share) + 0.5f);
+    const std::uint32_t positive = count - std::clamp(wanted, 1u, count - 1);
+    return hit < positive ? FilterPlace{FilterPart::positive, hit} : FilterPlace{FilterPart::negative, hit - positive};
   }
 };
 
