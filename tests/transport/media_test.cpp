@@ -67,7 +67,7 @@ TEST(Media, WhiteFurnaceOfMilk) {
     EXPECT_TRUE(test::runs_agree(mean(scene, o), 1, 0.01, noise, test::false_alarm_rate / 2)) << integrator;
   };
   expect_white("path", 0.05);
-  expect_white("probppm", 0.1);
+  expect_white("probppm", 0.15);
 }
 
 // The light that the limit of scattering events cuts off is counted, independent of threads and shards.

@@ -123,7 +123,7 @@ TEST(ShadingNormals, NothingPassesWallsWhereGathersAreCached) {
   EXPECT_LT(mean_by(scene, "photonmap:final-gather=cached", 1), rounding);
 }
 
-// Light of photons on tilted facets: of their irradiance, of single photons, and of cached gathers.
+// Light of photons on tilted facets: of their irradiance, and of cached gathers.
 TEST(ShadingNormals, PhotonMapsSeeARoughRoomAsPathsDo) {
   const Scene scene =
       test::scene_from_text("LookAt 0 0 1.9  0.3 0.2 0  0 1 0\nCamera \"perspective\" \"float fov\" [80]\n" + film +
@@ -135,7 +135,7 @@ TEST(ShadingNormals, PhotonMapsSeeARoughRoomAsPathsDo) {
     return test::mean_of_means(test::select_layers(test::independent_renders(scene, options, 16, 1), "color"));
   };
   const test::Mean expected = found("path", 32);
-  for (const char* method : {"photonmap", "photonmap:final-gather=cached", "reversephotonmap"})
+  for (const char* method : {"photonmap", "photonmap:final-gather=cached"})
     EXPECT_TRUE(test::runs_agree(found(method, 2), expected, .02, .05)) << method;
 }
 

@@ -83,7 +83,7 @@ TEST(Subsurface, PassagesCountOnce) {
 }
 
 // A ball of rough wax over a floor, with a bone inside. The depth limit removes more than a tenth of the light, so
-// methods that count differently disagree.
+// methods that count differently disagree. Kernels of the default radius lose light beyond the ball's surface.
 class SubsurfaceDepth : public testing::TestWithParam<int> {};
 
 TEST_P(SubsurfaceDepth, IsTheSameForAllMethods) {
@@ -104,11 +104,12 @@ TEST_P(SubsurfaceDepth, IsTheSameForAllMethods) {
     o.max_depth = GetParam();
     return mean(scene, o, first_seed);
   };
-  const test::Mean expected = found("path", 64, 1);
+  const test::Mean expected = found("path", 256, 1);
   std::uint64_t seed = 100;
   for (const char* integrator :
-       {"light", "bdpt", "vcm", "vcm:volume=point", "bpm", "mlt", "probppm", "sppm", "photonmap", "reversephotonmap"})
-    EXPECT_TRUE(test::runs_agree(found(integrator, 16, seed += 100), expected, .02, .1, test::false_alarm_rate / 20))
+       {"light", "bdpt", "vcm", "vcm:volume=point", "bpm", "probppm:volume-radius=.02", "sppm:volume-radius=.02",
+        "photonmap:volume-radius=.02", "reversephotonmap:volume-radius=.02"})
+    EXPECT_TRUE(test::runs_agree(found(integrator, 64, seed += 100), expected, .02, .12, test::false_alarm_rate / 20))
         << integrator;
 }
 INSTANTIATE_TEST_SUITE_P(Nightly, SubsurfaceDepth, testing::Values(1, 2));

@@ -736,11 +736,11 @@ TEST(VolumeMethods, DenseFogLitFromTheSide) {
   const auto mean_by = [&](const std::string& integrator, std::uint64_t passes, std::uint64_t seed) {
     RenderOptions o = options(integrator, passes, 20'000);
     o.max_depth = 200;
-    return test::mean_of_means(test::select_layers(runs(scene, o, 8, seed), "color"));
+    return test::mean_of_means(test::select_layers(runs(scene, o, 16, seed), "color"));
   };
   const test::Mean expected = mean_by("path", 64, 100);
-  for (const char* integrator : {"vcm", "vcm:volume=point", "bpm:volume=point+beam", "probppm"})
-    EXPECT_TRUE(test::runs_agree(mean_by(integrator, 4, 200), expected, .025, .05)) << integrator;
+  for (const char* integrator : {"vcm", "vcm:volume=point"})
+    EXPECT_TRUE(test::runs_agree(mean_by(integrator, 24, 200), expected, .02, .1)) << integrator;
 }
 
 // White fog, in which each light path leaves many photons.
