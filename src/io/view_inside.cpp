@@ -71,9 +71,10 @@ class Slabs {
     const Vec3 whole = model_.extent();
     int covered = 0;
     for (int i = 0; i < cells * cells; ++i) {
+      const int column = i % cells, row = i / cells;
       Point p = model_.min;
-      p[(axis + 1) % 3] += whole[(axis + 1) % 3] * (static_cast<float>(i % cells) + 0.5f) / cells;
-      p[(axis + 2) % 3] += whole[(axis + 2) % 3] * (static_cast<float>(i / cells) + 0.5f) / cells;
+      p[(axis + 1) % 3] += whole[(axis + 1) % 3] * (static_cast<float>(column) + 0.5f) / cells;
+      p[(axis + 2) % 3] += whole[(axis + 2) % 3] * (static_cast<float>(row) + 0.5f) / cells;
       const float face = model_.min[axis] + side * whole[axis];
       const bool is_covered = std::any_of(slabs_.begin(), slabs_.end(), [&](const Slab& slab) {
         const auto spans = [&](int k) { return p[k] >= slab.box.min[k] && p[k] <= slab.box.max[k]; };
