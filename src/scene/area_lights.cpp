@@ -173,7 +173,8 @@ Rgb mean_colour(const Emission& emission, const AreaLight& light, float scale, s
   Rgb sum;
   const std::uint32_t samples = side * side;
   for (std::uint32_t i = 0; i < samples; ++i) {
-    const Vec2 cell(static_cast<float>(i % side), static_cast<float>(i / side));
+    const std::uint32_t column = i % side, row = i / side;
+    const Vec2 cell(static_cast<float>(column), static_cast<float>(row));
     const Vec2 u = (cell + Sampler::for_pass(0, i).next2()) / static_cast<float>(side);
     const EmitterPoint at = sample_area(light.shape, min(u, Vec2(one_minus_epsilon)));
     const Spectrum s = emission.drawn(light.primitive, at.point, light.flip_normal ? -at.normal : at.normal, w);

@@ -70,8 +70,8 @@ void check_extensions(Document& document) {
                      ", which is not supported");
   const std::vector<Value> ignored = unknown("extensionsUsed");
   if (ignored.empty()) return;
-  std::vector<std::string> names;
-  for (const Value& name : ignored) names.push_back(name.text());
+  std::vector<std::string> names(ignored.size());
+  std::transform(ignored.begin(), ignored.end(), names.begin(), [](const Value& name) { return name.text(); });
   document.warn("extensions", ignored.front(),
                 names.size() > 1 ? "extensions " + quoted_list(names) + " are not supported: ignored"
                                  : "extension " + quoted_list(names) + " is not supported: ignored");

@@ -211,35 +211,42 @@ class MaterialFile {
   // Reads the option's arguments and returns the word after them.
   Word read_option(const Word& option, ImageTexture& image, float* multiplier) {
     const std::string_view name = option.text.substr(1);
-    if (name == "s" || name == "o") {
-      auto& mapping = std::get<UvMapping>(image.mapping);
-      Vec2 value(words_.number("a number"), name == "s" ? 1 : 0);
-      Word next = words_.word("a file name");
-      for (int i = 1; i < 3 && looks_like_number(next.text); ++i) {
-        if (i == 1) value.y = words_.number(next);
-        next = words_.word("a file name");
-      }
-      if (name == "s")
-        mapping.linear = Mat2(value.x, 0, 0, value.y);
-      else
-        mapping.offset = value;
-      return next;
-    }
+    if (name == "s" || name == "o") return read_mapping(name == "s", std::get<UvMapping>(image.mapping));
     if (name == "bm" && multiplier != nullptr) {
       *multiplier = words_.number("a number");
     } else if (name == "clamp") {
       if (words_.word("on or off").text == "on") image.wrap = Wrap::clamp;
     } else {
-      warnings_.add_name("mtl option", words_.location(option), std::string(option.text), [](const auto& names) {
-        return fmt::format("the option{} {} of texture maps {} not supported: ignored", names.size() > 1 ? "s" : "",
-                           quoted_list(names), is_or_are(names));
-      });
-      if (name == "colorspace" || name == "imfchan" || name == "type") words_.word("its value");
-      Word next = words_.word("a file name");
-      while (looks_like_number(next.text) || next.text == "on" || next.text == "off") next = words_.word("a file name");
-      return next;
+      return ignore_option(option);
     }
     return words_.word("a file name");
+  }
+
+  // The arguments of -s or -o: up to three numbers, of which the third is for volumes.
+  Word read_mapping(bool is_scale, UvMapping& mapping) {
+    Vec2 value(words_.number("a number"), is_scale ? 1 : 0);
+    Word next = words_.word("a file name");
+    for (int i = 1; i < 3 && looks_like_number(next.text); ++i) {
+      if (i == 1) value.y = words_.number(next);
+      next = words_.word("a file name");
+    }
+    if (is_scale)
+      mapping.linear = Mat2(value.x, 0, 0, value.y);
+    else
+      mapping.offset = value;
+    return next;
+  }
+
+  Word ignore_option(const Word& option) {
+    warnings_.add_name("mtl option", words_.location(option), std::string(option.text), [](const auto& names) {
+      return fmt::format("the option{} {} of texture maps {} not supported: ignored", names.size() > 1 ? "s" : "",
+                         quoted_list(names), is_or_are(names));
+    });
+    const std::string_view name = option.text.substr(1);
+    if (name == "colorspace" || name == "imfchan" || name == "type") words_.word("its value");
+    Word next = words_.word("a file name");
+    while (looks_like_number(next.text) || next.text == "on" || next.text == "off") next = words_.word("a file name");
+    return next;
   }
 
   static bool looks_like_number(std::string_view text) {

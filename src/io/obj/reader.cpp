@@ -10,6 +10,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <span>
 #include <utility>
 
 #include "film/display.h"
@@ -188,8 +189,8 @@ class Reader {
   void warn_of_library(const Error& problem) {
     warn_of_name("mtllib", problem.where, problem.message, [](const auto& problems) {
       constexpr std::size_t most = 8;
-      return fmt::format("{}{}: {} materials are left out",
-                         fmt::join(problems.begin(), problems.begin() + std::min(problems.size(), most), ", "),
+      const std::span named(problems.data(), std::min(problems.size(), most));
+      return fmt::format("{}{}: {} materials are left out", fmt::join(named, ", "),
                          problems.size() > most ? ", ..." : "", problems.size() > 1 ? "their" : "its");
     });
   }
