@@ -154,13 +154,17 @@ std::string session_text(const PythonSession& s) {
          std::to_string(s.planned_passes()) + " passes>";
 }
 
-}  // namespace
-
-void bind_session(py::module_& module) {
+void bind_passes(py::module_& module) {
   py::class_<Passes>(module, "Passes", "The pictures of a session, pass by pass: see Session.passes.")
       .def(
           "__iter__", [](const py::object& self) { return self; }, "Itself.")
       .def("__next__", &Passes::next, "Renders a pass and returns its Picture.");
+}
+
+}  // namespace
+
+void bind_session(py::module_& module) {
+  bind_passes(module);
   py::class_<PythonSession, SharedSession>(
       module, "Session",
       "Renders a scene pass by pass, with the picture available at any time.\n\n"
