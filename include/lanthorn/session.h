@@ -33,10 +33,10 @@ enum class Undo : std::uint8_t {
 
 /// When to stop: at whichever limit is reached first. Any thread or signal handler may set the flags at any time.
 ///
-/// There is always a picture, unless `drop` ends the first pass. A render without a team that begins with no passes, of 4096 pixels or more, first renders
-/// pictures of few pixels if its time is limited. If the time does not allow a pass of the whole picture, such a
-/// picture, as fine as the time allows, takes its place (`RenderStatistics::coarse`). The next call begins anew. Other
-/// renders without passes complete at least one.
+/// There is always a picture, unless `drop` ends the first pass. If the time is limited, a render without a team that
+/// begins with no passes, of 4096 pixels or more, first renders pictures of few pixels. If the time does not allow a
+/// pass of the whole picture, such a picture, as fine as the time allows, takes its place (`RenderStatistics::coarse`).
+/// The next call begins anew. Other renders without passes complete at least one.
 struct StopRule {
   PassRange passes{0, 1};  ///< passes to complete; end may be "never" (the largest number)
   /// Wall-clock time of this call. No pass begins that is expected to end later than 5 % or half a second after it, and
