@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Light sources: a closed set of plain structs, joined into the variant `Light`: areas, media, portals, and places with
 // a profile (profile.h). To add a light, write its file and add its type to the variant; all other code uses the
-// functions and traits below. An emitting mesh
-// is one AreaLight per triangle or patch. All functions are pure; lights are immutable once the scene is built.
+// functions and traits below. An emitting mesh is one AreaLight per triangle or patch. All functions are pure; lights
+// are immutable once the scene is built.
 #pragma once
 
 #include <array>

@@ -92,7 +92,7 @@ TEST(FilterLobes, AStepIsTheIntegralOfTheFilter) {
   constexpr double step = 7.7;
   for (std::size_t f = 0; f < filters.size(); ++f) {
     const Scene scene = scene_with(filters[f], a_step);
-    const Image image = test::render_image(scene, test::options_for("path", 128, f));
+    const Image image = test::render_image(scene, test::options_for("path", 512, f));
     const Filter filter(filter_shape(scene.description().view.filter));
     double least = 1;
     for (int x = 0; x < columns; ++x) {
@@ -113,7 +113,7 @@ TEST(FilterLobes, AStepIsTheIntegralOfTheFilter) {
           test::t_limit(test::false_alarm_rate / (columns * static_cast<double>(filters.size())), mean.count() - 1) *
           mean.error();
       EXPECT_LE(allowed, 0.05) << "too noisy to tell";
-      EXPECT_TRUE(test::within(mean.mean(), expected, allowed + 2e-3)) << filters[f] << ", column " << x;
+      EXPECT_TRUE(test::within(mean.mean(), expected, allowed + 1e-3)) << filters[f] << ", column " << x;
     }
     EXPECT_EQ(least<-0.01, filter.negative_share()> 0) << filters[f];
   }

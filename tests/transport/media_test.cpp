@@ -63,11 +63,11 @@ TEST(Media, WhiteFurnaceOfMilk) {
       "Shape \"sphere\" \"float radius\" .8\n");
   const auto expect_white = [&](const std::string& integrator, double noise) {
     RenderOptions o = test::options_for(integrator, 8, 1);
-    o.photons = 4'000;
+    o.photons = 16'000;
     EXPECT_TRUE(test::runs_agree(mean(scene, o), 1, 0.01, noise, test::false_alarm_rate / 2)) << integrator;
   };
   expect_white("path", 0.05);
-  expect_white("probppm", 0.15);
+  expect_white("probppm", 0.1);
 }
 
 // The light that the limit of scattering events cuts off is counted, independent of threads and shards.
