@@ -5,15 +5,9 @@
 #include <algorithm>
 #include <utility>
 
-namespace lanthorn {
+#include "path/direct_light.h"
 
-float next_event_density(const Scene& scene, std::uint32_t index, const Point& from, const Normal& normal,
-                         const EmitterHit& hit, const Direction& direction) {
-  const Light& light = scene.lights()[index];
-  const float chosen = scene.light_bvh().pmf(from, normal, index);
-  if (has_surface(light)) return chosen * pdf_direct(light, from, hit);
-  return is_infinite(light) || is_volume(light) ? chosen * pdf_direct_towards(light, from, direction) : chosen;
-}
+namespace lanthorn {
 
 namespace {
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include "integrators/vcm/effort_pilot.h"
+#include "integrators/auto/pilot.h"
 
 #include <algorithm>
 #include <array>
@@ -64,7 +64,7 @@ struct SeenLight {
   float light;
   bool is_caustic;
   double spread;  // the sum over pixels of the squares of the filter
-  TechniqueSum weighed;
+  TechniqueSum densities;
 };
 
 double spread_of(const View& view, const Vec2& raster) {
@@ -124,7 +124,7 @@ class Pilot {
   }
   // An effort that serves only to find the block of a place on the film (`block_of`).
   static Effort places_of(const PixelWindow& window, const PilotGrid& grid) {
-    return {0, window, grid.columns(), std::vector<PlaceEffort>(grid.block_count()), {}};
+    return {0, window, grid.columns(), std::vector<PlaceEffort>(grid.block_count())};
   }
   // Calls `body(block, cell)` for each cell, row by row within a block. One thread does a whole block.
   template <class Body>
@@ -180,14 +180,13 @@ void Pilot::trace_light(const VcmPass& pass) {
   const RayCounts rays = trace_light_paths(
       pass, nullptr,
       [&](const LightArrival& light, const LensLight& seen, const PlaceEffort& effort, std::size_t chunk) {
-        TechniqueSum weighed;
-        Bidirectional there = pass.bidirectional_at(seen.raster, effort);
-        there.weighed = &weighed;
-        const float found = light.weight(there, seen) * flux_of(seen.light, seen.dispersed, light.w);
+        const Bidirectional there = pass.bidirectional_at(seen.raster, effort);
+        const TechniqueSum densities = light.densities(there, seen);
+        const float found = densities.weight(there.techniques) * flux_of(seen.light, seen.dispersed, light.w);
         if (!(found > 0)) return;
         seen_[chunk].push_back({static_cast<std::uint32_t>(blocks_.block_of(seen.raster)), found,
                                 light.layers.path_class == PathClass::caustic, spread_of(job_.view, seen.raster),
-                                weighed});
+                                densities});
       });
   measured_.light_rays += static_cast<double>(rays.walk);
   measured_.light_paths += static_cast<double>(pass.light_paths.total());
@@ -211,7 +210,7 @@ void Pilot::add(std::span<const SeenLight> seen) {
     std::array<double, at_a_time> all, own;
     const std::span<const float> samples = candidates_.samples(&TechniqueDensities::lens).subspan(begin, end - begin);
     for (const SeenLight& s : seen) {
-      candidates_.ratios(s.weighed, begin, std::span(ratios).first(samples.size()));
+      candidates_.ratios(s.densities, begin, std::span(ratios).first(samples.size()));
       EffortBlock& block = measured_.blocks[s.block];
       const double square = share_of(block) * s.spread * sqr(static_cast<double>(s.light));
       for (std::size_t i = 0; i < samples.size(); ++i) {

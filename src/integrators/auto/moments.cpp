@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The loops over candidates run for each contribution. They are plain, so that compilers make vector instructions of
 // them.
-#include "integrators/vcm/moments.h"
+#include "integrators/auto/moments.h"
 
 #include <cmath>
 
@@ -31,19 +31,19 @@ void CandidateArrays::ratios(const TechniqueSum& s, std::size_t first, std::span
   }
 }
 
-void PathMoments::add(float c, float TechniqueDensities::*technique) {
+void PathMoments::found(float c, const TechniqueSum& densities, float TechniqueDensities::*technique) {
   if (!(c > 0) || !std::isfinite(c)) return;
   const bool is_walk = technique == &TechniqueDensities::walk;
   if (is_walk && set != 0) return;  // the same eye path again
   if (set == 0) light += c;
   if (is_walk) by_walk += c;
-  candidates_.ratios(weighed, 0, ratios_);
+  candidates_.ratios(densities, 0, ratios_);
   const std::size_t first_row = is_walk                                         ? walk
                                 : technique == &TechniqueDensities::connections ? connections + 2 * set
                                 : technique == &TechniqueDensities::media       ? media + 2 * set
                                                                                 : merges + 2 * set;
   const double square = (is_walk ? 1 : 0.5) * sqr(static_cast<double>(c));
-  const bool by_all = !weighed.is_beyond;
+  const bool by_all = !densities.is_beyond;
   const std::span<const float> samples = candidates_.samples(technique), goes_on = candidates_.goes_on();
   const std::span<double> of_self = row(self), sum = row(first_row), squares = row(first_row + 1);
   for (std::size_t k = 0; k < of_self.size(); ++k) of_self[k] += square / static_cast<double>(ratios_[k]);

@@ -12,6 +12,7 @@
 #include <span>
 #include <vector>
 
+#include "integrators/vcm/eye_path_observer.h"
 #include "math/vec.h"
 #include "path/mis.h"
 
@@ -69,23 +70,6 @@ class CandidateArrays {
   std::vector<float> goes_on_;
 };
 
-/// Counts of the costly operations of eye paths.
-struct EyeWork {
-  double rays = 0, next_events = 0, connections = 0;
-  double lookups = 0, merges = 0;              ///< on surfaces
-  double media_lookups = 0, media_merges = 0;  ///< on flights and at scatterings
-
-  void add(const EyeWork& other, double factor = 1) {
-    rays += factor * other.rays;
-    next_events += factor * other.next_events;
-    connections += factor * other.connections;
-    lookups += factor * other.lookups;
-    merges += factor * other.merges;
-    media_lookups += factor * other.media_lookups;
-    media_merges += factor * other.media_merges;
-  }
-};
-
 /// Second moments of one eye path's light, one for each candidate, from two independent sets of light paths.
 ///
 /// The path's light is X = Σ c_i, each c_i by some technique. With the balance heuristic, c = f / Σ n p. If a candidate
@@ -97,23 +81,20 @@ struct EyeWork {
 /// on light paths. For light paths, E[L | eye path]² is estimated by the product of the two sets, L_A L_B, and grows
 /// with s². The products within a set, L_A² - Σ c_i², differ from that because samples share a light path and because
 /// light paths avoid each other (stratification); the difference grows with s.
-class PathMoments {
+class PathMoments final : public EyePathObserver {
  public:
   explicit PathMoments(const CandidateArrays& candidates)
       : candidates_(candidates), ratios_(candidates.size()), sums_(candidates.size() * row_count) {}
 
-  TechniqueSum weighed;          ///< of the contribution that comes next
   EyeWork work, short_work;      ///< with both sets; of the part that a short eye path does (`Techniques::goes_on`)
   std::size_t set = 0;           ///< the set of light paths that the contribution comes from: 0 or 1
   float light = 0, by_walk = 0;  ///< X with the first set, and the part of it that needs no light path
 
-  /// `is_short`: a short eye path performs this operation, too.
-  void count(double EyeWork::*what, bool is_short) {
-    ++(work.*what);
-    if (is_short) ++(short_work.*what);
+  void found(float c, const TechniqueSum& densities, float TechniqueDensities::*technique) override;
+  void did(double EyeWork::*operation, bool is_short) override {
+    ++(work.*operation);
+    if (is_short) ++(short_work.*operation);
   }
-  /// Adds a contribution c by a technique, with the densities `weighed`.
-  void add(float c, float TechniqueDensities::*technique);
   /// Estimates for candidate k, without light that the lens sees.
   struct Estimate {
     double light;          ///< E[X]
