@@ -4,7 +4,7 @@
 // picture (Grittmann, Yazici, Georgiev & Slusallek 2022, "Efficiency-aware multiple importance sampling for
 // bidirectional rendering algorithms").
 //
-// 1. pilot.h        a few passes over a grid of pixels; EyePathObserver tells it of each contribution and its densities
+// 1. pilot.h        a few passes over a grid of pixels; EyePathLog has each contribution with its densities
 // 2. moments.h      the second moments that each candidate would have had
 // 3. choice.h       the candidates with the least product of variance and work, block by block
 // 4. report.h       what it tells the user

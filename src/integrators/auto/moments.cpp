@@ -31,7 +31,8 @@ void CandidateArrays::ratios(const TechniqueSum& s, std::size_t first, std::span
   }
 }
 
-void PathMoments::found(float c, const TechniqueSum& densities, float TechniqueDensities::*technique) {
+void PathMoments::add(const EyePathLog::Contribution& contribution) {
+  const auto& [c, densities, technique] = contribution;
   if (!(c > 0) || !std::isfinite(c)) return;
   const bool is_walk = technique == &TechniqueDensities::walk;
   if (is_walk && set != 0) return;  // the same eye path again

@@ -12,7 +12,7 @@
 #include <span>
 #include <vector>
 
-#include "integrators/vcm/eye_path_observer.h"
+#include "integrators/vcm/eye_path_log.h"
 #include "math/vec.h"
 #include "path/mis.h"
 
@@ -81,20 +81,16 @@ class CandidateArrays {
 /// on light paths. For light paths, E[L | eye path]² is estimated by the product of the two sets, L_A L_B, and grows
 /// with s². The products within a set, L_A² - Σ c_i², differ from that because samples share a light path and because
 /// light paths avoid each other (stratification); the difference grows with s.
-class PathMoments final : public EyePathObserver {
+class PathMoments {
  public:
   explicit PathMoments(const CandidateArrays& candidates)
       : candidates_(candidates), ratios_(candidates.size()), sums_(candidates.size() * row_count) {}
 
-  EyeWork work, short_work;      ///< with both sets; of the part that a short eye path does (`Techniques::goes_on`)
   std::size_t set = 0;           ///< the set of light paths that the contribution comes from: 0 or 1
   float light = 0, by_walk = 0;  ///< X with the first set, and the part of it that needs no light path
 
-  void found(float c, const TechniqueSum& densities, float TechniqueDensities::*technique) override;
-  void did(double EyeWork::*operation, bool is_short) override {
-    ++(work.*operation);
-    if (is_short) ++(short_work.*operation);
-  }
+  /// Adds a contribution c.
+  void add(const EyePathLog::Contribution& c);
   /// Estimates for candidate k, without light that the lens sees.
   struct Estimate {
     double light;          ///< E[X]

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "integrators/vcm/effort.h"
-#include "integrators/vcm/eye_path_observer.h"
+#include "integrators/vcm/eye_path_log.h"
 
 namespace lanthorn {
 

@@ -9,11 +9,11 @@
 // 0. vcm_pass.cpp           what passes share: radii (merge_radii.h), the effort of each region of the picture (for
 //                           `auto` integrators/auto chooses it), the choice of lights (path/emission_densities.h)
 // 1. path/light_pass.h      N light paths, each a walk (path/walk.h) with the visitor
-//    vcm_visitors.h         `LightVisitor`: keeps each vertex, and connects it to the lens,
+//    light_visitor.h        `LightVisitor`: keeps each vertex, and connects it to the lens,
 //    path/lens_connection.h f |cos| W_e V / p                                                      (weight: TR eq. 46)
 // 2. merge_map.h            sorts the vertices into maps for merging; in media photon/media/volume_map.h
 // 3. path/eye_pass.h        an eye path for each pixel, with the visitor
-//    vcm_visitors.h         `EyeVisitor`: at each vertex the techniques
+//    eye_visitor.h          `EyeVisitor`: at each vertex the techniques
 //    path/connections.h     hits of lights (TR eq. 43), next-event estimation (TR eqs. 44, 45), and connections to the
 //                           vertices of a light path, f_eye G V f_light (TR eqs. 40, 41)
 //    merge_map.h            merges with all photons nearby, f / (N pi r^2) (TR eqs. 38, 39); in media volume_merge.h
@@ -32,8 +32,9 @@
 
 #include "base/pool.h"
 #include "integrators/integrator.h"
+#include "integrators/vcm/eye_visitor.h"
+#include "integrators/vcm/light_visitor.h"
 #include "integrators/vcm/vcm_pass.h"
-#include "integrators/vcm/vcm_visitors.h"
 #include "path/eye_pass.h"
 #include "path/radiance_along.h"
 #include "path/splat.h"

@@ -101,9 +101,10 @@ class MergeSum {
     const bool is_dispersed = m.dispersed || state_.dispersed;
     context_.layers.add(class_of_merge(state_, m.depth == 1, m.caustic), technique::vm, light, is_dispersed);
     context_.layers.add_bias(factor.bias_share * light, is_dispersed);
-    if (!context_.observer) return;
-    context_.observer->found(flux_of(light, is_dispersed, context_.path.w), densities, &TechniqueDensities::media);
-    context_.observer->did(&EyeWork::media_merges, state_.non_delta == 0);
+    if (!context_.log) return;
+    context_.log->found.push_back(
+        {flux_of(light, is_dispersed, context_.path.w), densities, &TechniqueDensities::media});
+    context_.log->count(&EyeWork::media_merges, state_.non_delta == 0);
   }
 
  private:

@@ -52,10 +52,10 @@ TEST(PathMoments, SumsContributionsOfTheWalk) {
   const CandidateArrays candidates(std::vector{EffortCandidate{}, path_tracing});
   PathMoments moments(candidates);
   const TechniqueSum densities{.within = {.walk = 1, .merging = 3}};
-  moments.found(2, densities, &TechniqueDensities::walk);
-  moments.found(3, densities, &TechniqueDensities::walk);
+  moments.add({2, densities, &TechniqueDensities::walk});
+  moments.add({3, densities, &TechniqueDensities::walk});
   moments.set = 1;
-  moments.found(9, densities, &TechniqueDensities::walk);  // the same eye path again
+  moments.add({9, densities, &TechniqueDensities::walk});  // the same eye path again
   EXPECT_EQ(moments.light, 5);
   EXPECT_EQ(moments.by_walk, 5);
   const PathMoments::Estimate pilot = moments.estimate(0), more_noise = moments.estimate(1);
@@ -72,9 +72,9 @@ TEST(PathMoments, TellsLightOfBothSetsApart) {
   const CandidateArrays candidates(std::vector{EffortCandidate{}, more, path_tracing});
   PathMoments moments(candidates);
   const TechniqueSum densities{.within = {.walk = 1, .connections = 1}};  // R of `more`: 5 / 2
-  moments.found(5, densities, &TechniqueDensities::connections);
+  moments.add({5, densities, &TechniqueDensities::connections});
   moments.set = 1;
-  moments.found(10, densities, &TechniqueDensities::connections);
+  moments.add({10, densities, &TechniqueDensities::connections});
   EXPECT_EQ(moments.light, 5);
   const PathMoments::Estimate pilot = moments.estimate(0), other = moments.estimate(1), none = moments.estimate(2);
   EXPECT_DOUBLE_EQ(pilot.light, 7.5);
@@ -94,7 +94,7 @@ TEST(PathMoments, LeavesOutWhatShortEyePathsDoNotFind) {
   const CandidateArrays candidates(std::vector{EffortCandidate{}, short_paths});
   PathMoments moments(candidates);
   const TechniqueSum densities{.within = {.merging = 1}, .beyond = {.merging = 1}, .is_beyond = true};
-  moments.found(3, densities, &TechniqueDensities::merging);
+  moments.add({3, densities, &TechniqueDensities::merging});
   EXPECT_DOUBLE_EQ(moments.estimate(0).light, 1.5);
   EXPECT_DOUBLE_EQ(moments.estimate(1).light, 0);
   EXPECT_DOUBLE_EQ(moments.estimate(1).all_squares, 0.5 * 9 / 0.5);
@@ -104,9 +104,9 @@ TEST(PathMoments, TakesMergesOfBothSets) {
   const CandidateArrays candidates(std::vector{EffortCandidate{}});
   PathMoments moments(candidates);
   const TechniqueSum densities{.within = {.merging = 1}};
-  moments.found(3, densities, &TechniqueDensities::merging);
+  moments.add({3, densities, &TechniqueDensities::merging});
   moments.set = 1;
-  moments.found(5, densities, &TechniqueDensities::merging);
+  moments.add({5, densities, &TechniqueDensities::merging});
   EXPECT_DOUBLE_EQ(moments.estimate(0).of_eye_path, 15);
 }
 
@@ -115,7 +115,7 @@ TEST(PathMoments, IgnoresBrightLightOfTechniquesThatACandidateDoesNotUse) {
   const CandidateArrays candidates(std::vector{EffortCandidate{}, path_tracing});
   PathMoments moments(candidates);
   const TechniqueSum densities{.within = {.merging = 1}};
-  moments.found(1e37f, densities, &TechniqueDensities::merging);
+  moments.add({1e37f, densities, &TechniqueDensities::merging});
   EXPECT_EQ(moments.estimate(1).light, 0);
 }
 

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <vector>
+
 #include "path/mis.h"
 
 namespace lanthorn {
@@ -23,14 +25,20 @@ struct EyeWork {
   }
 };
 
-/// Is told what an eye path finds and does. The pilot of `auto` is one; other renders have none.
-class EyePathObserver {
- public:
-  virtual ~EyePathObserver() = default;
-  /// A contribution by a technique. `flux`: with its weight (`flux_of`); `densities`: those behind the weight.
-  virtual void found(float flux, const TechniqueSum& densities, float TechniqueDensities::*technique) = 0;
-  /// An operation. `is_short`: a short eye path performs it, too (`Techniques::goes_on`).
-  virtual void did(double EyeWork::*operation, bool is_short) = 0;
+/// What an eye path finds and does, for the pilot of `auto`; other renders keep none.
+struct EyePathLog {
+  struct Contribution {
+    float flux;              ///< with its weight (`flux_of`)
+    TechniqueSum densities;  ///< behind the weight
+    float TechniqueDensities::*technique;
+  };
+  std::vector<Contribution> found;
+  EyeWork work, short_work;  ///< `short_work`: of these, what a short eye path does, too (`Techniques::goes_on`)
+
+  void count(double EyeWork::*operation, bool is_short) {
+    ++(work.*operation);
+    if (is_short) ++(short_work.*operation);
+  }
 };
 
 }  // namespace lanthorn

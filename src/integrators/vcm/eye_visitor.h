@@ -1,105 +1,20 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The visitors of vertex connection and merging: for vertices of light paths and of eye paths.
+// Step 3 of vertex connection and merging: eye paths.
 #pragma once
 
 #include <cstdint>
-#include <optional>
-#include <variant>
 
 #include "base/prefetch.h"
-#include "integrators/vcm/eye_path_observer.h"
+#include "integrators/vcm/eye_path_log.h"
 #include "integrators/vcm/vcm_pass.h"
 #include "path/connections.h"
 #include "path/depth.h"
 #include "path/light_layers.h"
-#include "path/splat.h"
 #include "photon/flux_classes.h"
 #include "photon/gather/flat_disc.h"
-#include "photon/photon_pass.h"
 
 namespace lanthorn {
-
-/// A vertex of a light path that is connected to the lens.
-struct LightArrival {
-  const std::variant<const SurfaceVertex*, const MediumVertex*> vertex;
-  const Subpath& subpath;
-  const Wavelengths& w;
-  PathLayers layers;
-
-  /// `bidirectional`: of the place on the film that receives the light.
-  TechniqueSum densities(const Bidirectional& bidirectional, const LensLight& seen) const {
-    return std::visit([&](const auto* v) { return densities_of_seen(bidirectional, *v, subpath, seen); }, vertex);
-  }
-};
-
-/// Step 1: keeps the vertices of a light path, and connects them to the lens: `see(LightArrival, LensLight,
-/// PlaceEffort)`.
-template <class See>
-class LightVisitor {
- public:
-  LightVisitor(const PathContext& path, const VcmPass& pass, std::uint32_t light, float time, const FilmPass* film,
-               LightVertices::Chunk& chunk, const See& see)
-      : path_(path),
-        pass_(pass),
-        light_(light),
-        time_(time),
-        film_(film),
-        chunk_(chunk),
-        see_(see),
-        subpath_(pass.bidirectional.techniques) {}
-
-  // The path starts (TR eqs. 31-33).
-  void operator()(const EmissionSample& emission) {
-    keeps_beams_ = pass_.beam_share > 0 && keeps_beams(path_.sampler, pass_.beam_share);
-    subpath_.begin_at_light(light_, emission, pass_.bidirectional.emission);
-  }
-  // It has come to a vertex (TR eqs. 34-36; through delta lobes eqs. 53-55).
-  Continuation operator()(const SurfaceVertex& v) {
-    subpath_.arrive(path_, v);
-    if (v.may_scatter && has_non_delta(v.at.bsdf)) keep(v);
-    return Continuation::go_on();
-  }
-  Continuation operator()(const MediumVertex& v) {
-    subpath_.arrive(path_, v);
-    if (v.may_scatter) keep(v);
-    return Continuation::go_on();
-  }
-  void operator()(const FlownSegment& flight) {
-    if (flight.state.medium == MediumId::vacuum) return;
-    if (keeps_beams_ && scatterings_on_flight(path_.scene, flight.state) <= pass_.max_depth())
-      if (auto beam = keep_beam(path_, flight, time_, pass_.beam_share, subpath_)) chunk_.beams.push_back(*beam);
-    subpath_.fly(flight);
-  }
-  void operator()(const EscapeVertex&) {}
-
- private:
-  // Keeps the vertex, and connects it to the lens (TR eqs. 46, 47).
-  template <class Vertex>
-  void keep(const Vertex& v) {
-    LightVertex& kept = chunk_.vertices.emplace_back(keep_vertex(v, subpath_));
-    kept.flux_class = pass_.class_of_flux(flux_of(v.state.beta, v.state.dispersed, path_.w));
-    kept.meet_others(path_.w);
-    if (!pass_.sees || !pass_.shows(v.state.depth + 1, 1)) return;
-    const auto lens = find_lens(path_, pass_.job.view, v);
-    if (!lens) return;
-    const PlaceEffort there = pass_.effort.at(lens->raster);
-    if (!there.sees) return;
-    if (film_) film_->prefetch_splats(pass_.job.view.window.pixel_at(lens->raster));
-    if (const auto seen = connect_to_lens(path_, pass_.job.view, v, *lens))
-      see_(LightArrival{&v, subpath_, path_.w, layers_of_splat(v)}, *seen, there);
-  }
-
-  const PathContext& path_;
-  const VcmPass& pass_;
-  std::uint32_t light_;
-  float time_;
-  bool keeps_beams_ = false;
-  const FilmPass* film_;
-  LightVertices::Chunk& chunk_;
-  const See& see_;
-  Subpath subpath_;
-};
 
 /// An answer of `EyeVisitor`: whether the walk continues, and whether by delta lobes alone.
 struct EyeContinuation : Continuation {
@@ -108,16 +23,16 @@ struct EyeContinuation : Continuation {
   WalkShare towards(float pdf) const { return {1, goes_on && (!by_delta_alone || pdf == infinity) ? 1.0f : 0.0f}; }
 };
 
-/// Step 3: finds the light of an eye path by all techniques except connections to the lens.
+/// Finds the light of an eye path by all techniques except connections to the lens.
 class EyeVisitor {
  public:
   // The path starts (TR eqs. 31-33).
   EyeVisitor(const PathContext& path, const VcmPass& pass, const Vec2& raster, LightLayers& layers,
-             EyePathObserver* observer = nullptr)
+             EyePathLog* log = nullptr)
       : path_(path),
         pass_(pass),
         bidirectional_(pass.bidirectional_at(raster, pass.effort.at(raster))),
-        observer_(observer),
+        log_(log),
         raster_(raster),
         layers_(layers),
         subpath_(pass.bidirectional.techniques) {
@@ -207,7 +122,7 @@ class EyeVisitor {
   }
   void note(const Spectrum& light, bool dispersed, const TechniqueSum& densities,
             float TechniqueDensities::*technique) {
-    if (observer_) observer_->found(flux_of(light, dispersed, path_.w), densities, technique);
+    if (log_) log_->found.push_back({flux_of(light, dispersed, path_.w), densities, technique});
   }
 
   // Whether the path connects and merges at its current vertex or flight.
@@ -217,10 +132,10 @@ class EyeVisitor {
 
   // Counts rays that short eye paths trace, too; the rays of the whole walk are counted elsewhere.
   void count_ray(const WalkState& arrived) {
-    if (observer_ && arrived.non_delta <= 1) observer_->did(&EyeWork::rays, true);
+    if (log_ && arrived.non_delta <= 1) ++log_->short_work.rays;
   }
   void count(double EyeWork::*work, const WalkState& state) {
-    if (observer_) observer_->did(work, state.non_delta == 0);
+    if (log_) log_->count(work, state.non_delta == 0);
   }
 
   // Next-event estimation (TR eqs. 44, 45), and vertex connection (TR eqs. 40, 41).
@@ -274,35 +189,18 @@ class EyeVisitor {
     pass_.surface_merges->for_each_at(gather, raster_, pass_.max_depth(), add);
   }
   VolumeMergeContext volume_context() const {
-    return {path_, bidirectional_, subpath_, pass_.max_depth(), layers_, observer_};
+    return {path_, bidirectional_, subpath_, pass_.max_depth(), layers_, log_};
   }
 
   const PathContext& path_;
   const VcmPass& pass_;
   Bidirectional bidirectional_;
-  EyePathObserver* observer_;
+  EyePathLog* log_;
   const Vec2 raster_;
   std::size_t partner_ = 0;
   bool has_merged_ = false;
   LightLayers& layers_;
   Subpath subpath_;
 };
-
-/// Traces the light paths of a pass. `film`: receives splats, and is prefetched; null if there will be none.
-template <class See>
-RayCounts trace_light_paths(const VcmPass& pass, const FilmPass* film, const See& see) {
-  pass.vertices.begin(pass.light_paths.chunk_count());
-  const WalkLimits limits{.max_depth = pass.max_depth()};
-  return pass.light_paths.for_each([&](const LightPath& start, Sampler& sampler, RayCounts& counts, std::size_t c) {
-    LightVertices::Chunk& chunk = pass.vertices.chunk(c);
-    const PathDraw own = pass.draw.of_path(sampler);
-    const PathContext path{pass.job.scene, own.w, sampler, counts, limits};
-    const auto see_in_chunk = [&](const LightArrival& light, const LensLight& seen, const PlaceEffort& there) {
-      see(light, seen, there, c);
-    };
-    walk_from_light(path, start, own.time, LightVisitor(path, pass, start.index, own.time, film, chunk, see_in_chunk));
-    chunk.ends.push_back(static_cast<std::uint32_t>(chunk.vertices.size()));
-  });
-}
 
 }  // namespace lanthorn
