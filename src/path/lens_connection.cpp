@@ -57,7 +57,7 @@ std::optional<LensLight> connect_to_lens(const PathContext& path, const View& vi
                                          const CameraConnection& lens) {
   const SurfacePoint& at = vertex.at;
   const Vec3 wo = at.shading.to_local(lens.towards);
-  Spectrum value = vertex.state.beta * eval(at.bsdf, vertex.wi_local, wo, Transport::importance);
+  Spectrum value = vertex.state.beta * evaluate(at.bsdf, vertex.wi_local, wo, Transport::importance, {.f = true}).f;
   value *= geometric_cosine(at, lens.towards) * shading_flux_ratio(at, vertex.wi, vertex.wi_local);
   if (value.is_black()) return {};
   return finish(path, view, vertex.state, lens, spawn_ray_to(at, lens.towards, {lens.lens_point}),
