@@ -24,12 +24,9 @@
 
 #include "math/frame.h"
 #include "math/sampling.h"
-#include "surface/clear_coated.h"
 #include "surface/closure.h"
-#include "surface/coated.h"
 #include "surface/conductor.h"
 #include "surface/diffuse.h"
-#include "surface/plastic.h"
 #include "surface/sample.h"
 #include "surface/split_terms.h"
 
@@ -52,18 +49,13 @@ namespace bent_detail {
 template <class C>
 inline constexpr bool mirrored = std::is_same_v<C, Conductor>;
 
-/// True if the closure has delta lobes beside others, which are not mirrored. Rough coats cannot tell which lobe light
-/// belongs to, and rough plastic as a whole scatters like a matte surface.
+/// True if the closure has delta lobes beside others, which are not mirrored; `is_smooth` says so. Rough coats cannot
+/// tell which lobe light belongs to, and rough plastic as a whole scatters like a matte surface.
 template <class C>
-bool has_delta_lobes(const C&) {
+bool has_delta_lobes(const C& closure) {
+  if constexpr (requires { is_smooth(closure); }) return is_smooth(closure);
   return false;
 }
-template <class Base>
-bool has_delta_lobes(const Coated<Base>& c) {
-  return is_smooth(c.coat);
-}
-inline bool has_delta_lobes(const Plastic& p) { return is_smooth(p); }
-inline bool has_delta_lobes(const ClearCoated& c) { return is_smooth(c.passage->coat()); }
 
 template <class C>
 Vec3 image(const Bent<C>& b, const Vec3& w) {

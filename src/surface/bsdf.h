@@ -9,6 +9,7 @@
 
 #include <array>
 #include <optional>
+#include <type_traits>
 #include <variant>
 
 #include "math/frame.h"
@@ -30,10 +31,24 @@
 
 namespace lanthorn {
 
-using Bsdf = ClosureVariant<Diffuse, DiffuseTransmission, Conductor, Dielectric, ThinDielectric, ClearCoated,
-                            CoatedDiffuse, CoatedConductor, CoatedPlastic, Hair, Plastic, Cloth, Measured,
-                            Bent<Diffuse>, Bent<Conductor>, Bent<Plastic>, Bent<ClearCoated>, Bent<CoatedDiffuse>,
-                            Bent<CoatedConductor>, Bent<CoatedPlastic>, Bent<Cloth>, Bent<Measured>>;
+namespace bsdf_detail {
+template <class...>
+struct List {};
+template <class... A, class... B>
+List<A..., B...> operator+(List<A...>, List<B...>);
+template <class... All>
+ClosureVariant<All...> variant_of(List<All...>);
+
+template <Closure C>
+using Forms = std::conditional_t<C::traits.is_opaque(), List<C, Bent<C>>, List<C>>;
+/// The closures, and the bent forms of those that are opaque.
+template <Closure... Closures>
+using WithBentForms = decltype(variant_of((Forms<Closures>() + ...)));
+}  // namespace bsdf_detail
+
+using Bsdf =
+    bsdf_detail::WithBentForms<Diffuse, DiffuseTransmission, Conductor, Dielectric, ThinDielectric, ClearCoated,
+                               CoatedDiffuse, CoatedConductor, CoatedPlastic, Hair, Plastic, Cloth, Measured>;
 
 /// How the surface scatters between wi and wo: f and the densities of both walks along the path, which share most of
 /// their work. Gives the parts that are asked for. `transport` is the quantity that the walk from wi to wo carries:
@@ -62,7 +77,7 @@ inline bool is_fibre(const Bsdf& bsdf) { return bsdf_detail::all_traits[bsdf.ind
 /// True if light may continue behind the surface.
 inline bool transmits(const Bsdf& bsdf) { return bsdf_detail::all_traits[bsdf.index()].transmits; }
 /// True if all light leaves a surface on the side on which it arrives.
-inline bool is_opaque(const Bsdf& bsdf) { return !is_fibre(bsdf) && !transmits(bsdf); }
+inline bool is_opaque(const Bsdf& bsdf) { return bsdf_detail::all_traits[bsdf.index()].is_opaque(); }
 
 /// The cosine factor of f for light along `w`: |cos| to the normal; on a fibre |cos| to the plane perpendicular to it.
 inline float cosine(const Bsdf& bsdf, const Vec3& w) {

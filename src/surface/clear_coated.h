@@ -55,6 +55,8 @@ struct ClearCoated {
   int arrivals = 5;                      ///< how often light may reach the base
 };
 
+inline bool is_smooth(const ClearCoated& c) { return is_smooth(c.passage->coat()); }
+
 // Functions of every closure: meanings, units and conventions as for `Bsdf` (bsdf.h).
 
 BsdfValue evaluate(const ClearCoated& c, const Vec3& wi, const Vec3& wo, Transport transport, BsdfParts parts);

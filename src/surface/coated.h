@@ -39,6 +39,11 @@ using CoatedDiffuse = Coated<Diffuse>;
 using CoatedConductor = Coated<Conductor>;
 using CoatedPlastic = Coated<Plastic>;
 
+template <class Base>
+bool is_smooth(const Coated<Base>& c) {
+  return is_smooth(c.coat);
+}
+
 /// Converts the index of `c` from relative to the outside to relative to a layer of index ratio `coat_eta`.
 inline Conductor under_coat(Conductor c, float coat_eta) {
   c.eta /= coat_eta;

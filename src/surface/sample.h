@@ -17,6 +17,9 @@ enum class Transport : std::uint8_t { radiance, importance };
 struct ClosureTraits {
   bool is_fibre;   ///< scatters all around a line: cosines are to the plane across it, and it has no area
   bool transmits;  ///< light may continue behind the surface, in the medium there
+
+  /// True if all light leaves a surface on the side on which it arrives.
+  constexpr bool is_opaque() const { return !is_fibre && !transmits; }
 };
 
 /// A direction sampled from a closure.
