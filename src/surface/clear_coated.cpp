@@ -158,9 +158,7 @@ std::optional<BsdfSample> sample(const ClearCoated& c, const Vec3& wi, float u_l
     o = reflected->wo;
   }
   if (!(o.z > 0)) return std::nullopt;
-  const BsdfValue value = lobes.evaluate(i, o, {.f = true, .pdf = true});
-  if (!(value.pdf > 0)) return std::nullopt;
-  return BsdfSample{.wo = side * o, .weight = value.f * (o.z / value.pdf), .pdf = value.pdf};
+  return sample_of_all(side * o, o.z, lobes.evaluate(i, o, {.f = true, .pdf = true}));
 }
 
 Spectrum albedo(const ClearCoated& c, const Vec3& wi) {

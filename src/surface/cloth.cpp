@@ -120,9 +120,7 @@ std::optional<BsdfSample> sample(const Cloth& c, const Vec3& wi, float u_lobe, c
     }
     wo = below->wo;
   }
-  const BsdfValue value = evaluate(c, wi, wo, transport, {.f = true, .pdf = true});
-  if (!(value.pdf > 0)) return std::nullopt;
-  return BsdfSample{.wo = wo, .weight = value.f * (abs_cos_theta(wo) / value.pdf), .pdf = value.pdf};
+  return sample_of_all(wo, abs_cos_theta(wo), evaluate(c, wi, wo, transport, {.f = true, .pdf = true}));
 }
 
 Spectrum albedo(const Cloth& c, const Vec3& wi) {

@@ -199,10 +199,17 @@ std::optional<BsdfSample> sample(const Hair& hair, const Vec3& wi, float u_lobe,
   const float phi = lobes.phi + turn;
   const Vec3 wo(sin_i, cos_i * std::cos(phi), cos_i * std::sin(phi));
 
-  const BsdfValue value = evaluate(hair, wi, wo, transport, {.f = true, .pdf = true});
-  if (!(value.pdf > 0) || !(cos_i > 0)) return std::nullopt;
-  return BsdfSample{
-      .wo = wo, .weight = value.f * (cos_i / value.pdf), .pdf = value.pdf, .transmission = !same_hemisphere(wi, wo)};
+  if (!(cos_i > 0)) return std::nullopt;
+  // The lobes have the density, unless the sign was drawn, and f for a walk from the eye.
+  const bool sign_is_known = !draws_sign(hair, transport);
+  BsdfValue value = sign_is_known ? evaluate(lobes, wo) : BsdfValue();
+  if (transport == Transport::importance) {
+    const BsdfValue seen = evaluate(hair, wi, wo, transport, {.f = true, .pdf = !sign_is_known});
+    value = {seen.f, sign_is_known ? value.pdf : seen.pdf};
+  }
+  std::optional<BsdfSample> s = sample_of_all(wo, cos_i, value);
+  if (s) s->transmission = !same_hemisphere(wi, wo);
+  return s;
 }
 
 Spectrum albedo(const Hair& hair, const Vec3& wi) {

@@ -304,9 +304,7 @@ std::optional<BsdfSample> sample(const Measured& m, const Vec3& wi, float /*u_lo
   const std::optional<Vec3> drawn = m.brdf->sample(side * wi, u);
   if (!drawn) return std::nullopt;
   const Vec3 wo = side * *drawn;
-  const BsdfValue value = evaluate(m, wi, wo, transport, {.f = true, .pdf = true});
-  if (!(value.pdf > 0)) return std::nullopt;
-  return BsdfSample{.wo = wo, .weight = value.f * (abs_cos_theta(wo) / value.pdf), .pdf = value.pdf};
+  return sample_of_all(wo, abs_cos_theta(wo), evaluate(m, wi, wo, transport, {.f = true, .pdf = true}));
 }
 
 Spectrum albedo(const Measured& m, const Vec3& wi) { return m.brdf->albedo(side_of(wi) * wi, m.wavelengths); }

@@ -212,9 +212,7 @@ std::optional<BsdfSample> sample(const Plastic& p, const Vec3& wi, float u_lobe,
     o = sample_cosine_hemisphere(u);
   }
   if (o.z <= 0) return std::nullopt;
-  const BsdfValue value = evaluate(p, wi, side * o, transport, {.f = true, .pdf = true});
-  if (!(value.pdf > 0)) return std::nullopt;
-  return BsdfSample{.wo = side * o, .weight = value.f * (o.z / value.pdf), .pdf = value.pdf};
+  return sample_of_all(side * o, o.z, evaluate(p, wi, side * o, transport, {.f = true, .pdf = true}));
 }
 
 Spectrum albedo(const Plastic& p, const Vec3& wi) {

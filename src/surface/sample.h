@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <optional>
 
 #include "math/vec.h"
 #include "spectrum/spectrum.h"
@@ -45,6 +46,13 @@ struct BsdfParts {
   bool f = false, pdf = false, pdf_reverse = false;
 };
 inline constexpr BsdfParts all_parts{.f = true, .pdf = true, .pdf_reverse = true};
+
+/// A direction that some lobe has drawn, as a sample of all lobes: `value` has their f and pdf there. nullopt if the
+/// pdf is 0. `cos`: the cosine factor of wo.
+inline std::optional<BsdfSample> sample_of_all(const Vec3& wo, float cos, const BsdfValue& value) {
+  if (!(value.pdf > 0)) return std::nullopt;
+  return BsdfSample{.wo = wo, .weight = value.f * (cos / value.pdf), .pdf = value.pdf};
+}
 
 /// A value, and the question for it, as the walk sees them that follows the path the other way.
 constexpr BsdfValue reversed(const BsdfValue& v) { return {v.f, v.pdf_reverse, v.pdf}; }
