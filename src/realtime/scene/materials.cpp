@@ -63,7 +63,7 @@ GpuMaterial reduced(const Plastic& p) {
   return plastic_of(p.reflectance, p.f0, p.f90, p.alpha, p.film || smooth ? 0u : gpu::flag_exact);
 }
 
-/// What transmits, glass, keeps only what the split sum uses: its reflection and refraction are delta or need paths.
+/// Glass, which transmits, keeps only what the split sum uses: its reflection and refraction are delta or need paths.
 /// Hair has no split terms.
 template <class Closure>
 GpuMaterial reduced(const Closure& closure) {
