@@ -32,8 +32,10 @@ Arrival in_medium(const FlightDensity& flight, const Direction& wi, const Direct
 }
 Arrival arrival(const Bidirectional& pass, const SurfaceVertex& v, const Direction& direction, const FlightDensity& f,
                 Transport transport) {
-  return {arrival_cosine(v.at, v.wi, direction),
-          pdf_reverse(v.at.bsdf, v.wi_local, v.at.shading.to_local(direction), transport), pass.merging_at(v.at), f};
+  return {
+      arrival_cosine(v.at, v.wi, direction),
+      evaluate(v.at.bsdf, v.wi_local, v.at.shading.to_local(direction), transport, {.pdf_reverse = true}).pdf_reverse,
+      pass.merging_at(v.at), f};
 }
 Arrival arrival(const Bidirectional&, const MediumVertex& v, const Direction& direction, const FlightDensity& f,
                 Transport) {
@@ -50,7 +52,7 @@ struct End : Arrival {
 End eye_end(const Bidirectional& pass, const SurfaceVertex& v, const Direction& direction,
             const FlightDensity& flight) {
   const Vec3 wo = v.at.shading.to_local(direction);
-  const BsdfValues value = eval_and_pdfs(v.at.bsdf, v.wi_local, wo, Transport::radiance);
+  const BsdfValue value = evaluate(v.at.bsdf, v.wi_local, wo, Transport::radiance);
   if (value.f.is_black()) return {};
   return {{arrival_cosine(v.at, v.wi, direction), value.pdf_reverse, pass.merging_at(v.at), flight},
           value.f * cosine(v.at.bsdf, wo),
@@ -67,7 +69,7 @@ End light_end(const Bidirectional& pass, const LightVertex& v, const Direction& 
     return {in_medium(v.flight, v.wi, direction, p), Spectrum(p), p, false};
   }
   const Vec3 wo = v.at.shading.to_local(direction);
-  const BsdfValues value = eval_and_pdfs(v.at.bsdf, v.wi_local, wo, Transport::importance);
+  const BsdfValue value = evaluate(v.at.bsdf, v.wi_local, wo, Transport::importance);
   if (value.f.is_black()) return {};
   return {{area_cosine(v.at, direction), value.pdf_reverse, v.depth > 1 ? pass.merging_at(v.at) : 0.0f, v.flight},
           value.f * (geometric_cosine(v.at, direction) * shading_flux_ratio(v.at, v.wi, v.wi_local)),

@@ -22,7 +22,7 @@ struct Scattering {
 Scattering scatter_towards(const SurfaceVertex& vertex, const Direction& wi) {
   const Bsdf& bsdf = vertex.at.bsdf;
   const Vec3 wo = vertex.at.shading.to_local(wi);
-  const BsdfValue value = eval_and_pdf(bsdf, vertex.wi_local, wo, Transport::radiance);
+  const BsdfValue value = evaluate(bsdf, vertex.wi_local, wo, Transport::radiance, {.f = true, .pdf = true});
   if (value.f.is_black()) return {};
   return {value.f * cosine(bsdf, wo), value.pdf, is_dispersive(bsdf)};
 }

@@ -28,7 +28,7 @@ std::optional<Point> leaving_point(const View&, const MediumVertex& v, const Vec
 // state.beta times the scattering towards the lens, with the cosine of light walks on surfaces.
 Spectrum sent_towards(const SurfaceVertex& v, const Direction& lens) {
   const Vec3 wo = v.at.shading.to_local(lens);
-  return v.state.beta * eval(v.at.bsdf, v.wi_local, wo, Transport::importance) *
+  return v.state.beta * evaluate(v.at.bsdf, v.wi_local, wo, Transport::importance, {.f = true}).f *
          (geometric_cosine(v.at, lens) * shading_flux_ratio(v.at, v.wi, v.wi_local));
 }
 Spectrum sent_towards(const MediumVertex& v, const Direction& lens) {

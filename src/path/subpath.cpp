@@ -124,8 +124,9 @@ void Subpath::depart(const WalkState& state, const Direction& direction) {
 float Subpath::reverse_density(const WalkState& state, const Direction& direction) const {
   if (!previous_.surface) return state.pdf_direction;  // phase functions have the same density in both directions
   const SurfacePoint& at = *previous_.surface;
-  return pdf_reverse(at.bsdf, previous_.wi_local, at.shading.to_local(direction),
-                     start_.is_eye() ? Transport::radiance : Transport::importance);
+  const Transport transport = start_.is_eye() ? Transport::radiance : Transport::importance;
+  return evaluate(at.bsdf, previous_.wi_local, at.shading.to_local(direction), transport, {.pdf_reverse = true})
+      .pdf_reverse;
 }
 
 SubpathDensities Subpath::densities_of_direct_light() const {
