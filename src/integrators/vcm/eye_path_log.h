@@ -30,7 +30,7 @@ struct EyePathLog {
   struct Contribution {
     float flux;              ///< with its weight (`flux_of`)
     TechniqueSum densities;  ///< behind the weight
-    float TechniqueDensities::*technique;
+    Technique technique;
   };
   std::vector<Contribution> found;
   EyeWork work, short_work;  ///< `short_work`: of these, what a short eye path does, too (`Techniques::goes_on`)

@@ -115,13 +115,12 @@ class EyeVisitor {
     });
     layers_.add_hit(v, sum, technique::hit);
   }
-  void add(const Contribution& found, PathClass path_class, std::size_t part, float TechniqueDensities::*technique) {
+  void add(const Contribution& found, PathClass path_class, std::size_t part, Technique technique) {
     const Spectrum light = found.weighted(bidirectional_.techniques);
     layers_.add(path_class, part, light, found.dispersed);
     note(light, found.dispersed, found.densities, technique);
   }
-  void note(const Spectrum& light, bool dispersed, const TechniqueSum& densities,
-            float TechniqueDensities::*technique) {
+  void note(const Spectrum& light, bool dispersed, const TechniqueSum& densities, Technique technique) {
     if (log_) log_->found.push_back({flux_of(light, dispersed, path_.w), densities, technique});
   }
 
