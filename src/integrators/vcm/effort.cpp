@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "lanthorn/number_text.h"
@@ -48,39 +47,14 @@ std::string Effort::describe() const {
                      percent(report_.connected_part), shorter);
 }
 
-std::string Effort::findings() const {
+EffortReport Effort::findings() const {
   // Variances of extreme scenes may exceed all numbers, which JSON does not know.
   const auto finite = [](double x) { return std::isfinite(x) ? x : std::numeric_limits<double>::max(); };
-  const EyeWork& eye = report_.work_of_eye_path;
-  nlohmann::json uniform = nlohmann::json::array();
-  for (const UniformEffort& u : report_.uniform)
-    uniform.push_back({{"light_paths_per_pixel", u.light_paths_per_pixel},
-                       {"connections", u.place.connections},
-                       {"merges", u.place.merges},
-                       {"merges_in_media", u.place.merges_in_media},
-                       {"connects_to_lens", u.place.sees},
-                       {"goes_on", u.place.goes_on},
-                       {"variance", finite(u.variance)},
-                       {"work", u.work}});
-  return nlohmann::json{{"summary", describe()},
-                        {"caustic_light", report_.caustic_light},
-                        {"caustic_part", report_.caustic_part},
-                        {"light_by_light_paths", report_.light_by_light_paths},
-                        {"light_paths_per_pixel", report_.light_paths_per_pixel},
-                        {"merged_part", report_.merged_part},
-                        {"connected_part", report_.connected_part},
-                        {"short_part", report_.short_part},
-                        {"variance", finite(report_.variance)},
-                        {"work", report_.work},
-                        {"eye_path",
-                         {{"rays", eye.rays},
-                          {"next_events", eye.next_events},
-                          {"connections", eye.connections},
-                          {"lookups", eye.lookups},
-                          {"merges", eye.merges}}},
-                        {"light_path", {{"rays", report_.light_rays}, {"vertices", report_.light_vertices}}},
-                        {"everywhere", std::move(uniform)}}
-      .dump();
+  EffortReport report = report_;
+  report.summary = describe();
+  report.variance = finite(report.variance);
+  for (UniformEffort& choice : report.uniform) choice.variance = finite(choice.variance);
+  return report;
 }
 
 }  // namespace lanthorn

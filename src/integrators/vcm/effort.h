@@ -10,41 +10,10 @@
 #include <vector>
 
 #include "camera/view.h"
-#include "integrators/vcm/moments.h"
+#include "lanthorn/effort_report.h"
 #include "math/vec.h"
 
 namespace lanthorn {
-
-/// The effort at one place on the film.
-struct PlaceEffort {
-  std::uint8_t connections = 1;  ///< light paths that each eye vertex is connected to
-  bool merges = true;            ///< on surfaces
-  bool merges_in_media = true;
-  bool sees = true;     ///< light paths are connected to the lens
-  bool goes_on = true;  ///< eye paths go on after a lobe that is not delta (`Techniques::goes_on`)
-};
-
-/// The pilot's forecast for one choice, used for the whole picture.
-struct UniformEffort {
-  double light_paths_per_pixel = 0;
-  PlaceEffort place;
-  double variance = 0;  ///< of one pass: relative to the squared pixel values, mean over the picture
-  double work = 0;      ///< of one pass, per pixel, in units of a ray
-};
-
-/// The pilot's findings, for the user.
-struct EffortReport {
-  double light_by_light_paths = 0;  ///< share of the light that light paths find: by the lens, connections and merging
-  double caustic_light = 0;         ///< share of the light that is caustics
-  double caustic_part = 0;          ///< share of the picture where they are visible
-  double merged_part = 0, connected_part = 0;  ///< share of the picture where merging, or connections, are used
-  double short_part = 0;  ///< share of the picture where eye paths are short (`PlaceEffort::goes_on`)
-  double light_paths_per_pixel = 0;
-  double variance = 0, work = 0;  ///< as in UniformEffort, of the chosen effort
-  std::vector<UniformEffort> uniform;
-  EyeWork work_of_eye_path{};                 ///< with one connection at each vertex and one light path a pixel
-  double light_rays = 0, light_vertices = 0;  ///< of a light path
-};
 
 /// The effort of every pass: the same for the whole film, or one for each block of pixels.
 class Effort {
@@ -69,8 +38,8 @@ class Effort {
   }
   /// One line for the user: findings and choice.
   std::string describe() const;
-  /// The numbers of the report, as the text of a JSON object.
-  std::string findings() const;
+  /// The report, with finite variances.
+  EffortReport findings() const;
 
   /// Precondition: there are blocks.
   std::size_t block_of(const Vec2& raster) const;

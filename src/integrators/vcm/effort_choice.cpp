@@ -163,8 +163,8 @@ void EffortChoice::count_work(EffortReport& report) const {
   report.work_of_eye_path.add(all, 1 / paths);
   report.work_of_eye_path.merges /= per_pixel(1 / m_.scale);
   report.work_of_eye_path.media_merges /= per_pixel(1 / m_.scale);
-  report.light_rays = m_.light_rays / std::max(1.0, m_.light_paths);
-  report.light_vertices = m_.light_vertices / std::max(1.0, m_.light_paths);
+  const double light_paths = std::max(1.0, m_.light_paths);
+  report.work_of_light_path = {m_.light_rays / light_paths, m_.light_vertices / light_paths};
 }
 
 double EffortChoice::per_pixel(float light_paths) const {

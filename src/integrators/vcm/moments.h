@@ -12,6 +12,7 @@
 #include <span>
 #include <vector>
 
+#include "lanthorn/effort_report.h"
 #include "math/vec.h"
 #include "path/mis.h"
 
@@ -67,23 +68,6 @@ class CandidateArrays {
 
   std::array<std::vector<float>, techniques.size()> samples_;
   std::vector<float> goes_on_;
-};
-
-/// Counts of the costly operations of eye paths.
-struct EyeWork {
-  double rays = 0, next_events = 0, connections = 0;
-  double lookups = 0, merges = 0;              ///< on surfaces
-  double media_lookups = 0, media_merges = 0;  ///< on flights and at scatterings
-
-  void add(const EyeWork& other, double factor = 1) {
-    rays += factor * other.rays;
-    next_events += factor * other.next_events;
-    connections += factor * other.connections;
-    lookups += factor * other.lookups;
-    merges += factor * other.merges;
-    media_lookups += factor * other.media_lookups;
-    media_merges += factor * other.media_merges;
-  }
 };
 
 /// Second moments of one eye path's light, one for each candidate, from two independent sets of light paths.

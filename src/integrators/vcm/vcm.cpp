@@ -125,8 +125,9 @@ class VertexConnectionAndMerging final : public Integrator {
     if (!prepared_) return {};
     return settings_.chooses_effort ? prepared_->effort.describe() : prepared_->emission.remark;
   }
-  std::string findings() const override {
-    return settings_.chooses_effort && prepared_ ? prepared_->effort.findings() : std::string();
+  std::optional<EffortReport> findings() const override {
+    if (!settings_.chooses_effort || !prepared_) return std::nullopt;
+    return prepared_->effort.findings();
   }
   bool passes_share_wavelengths() const override { return true; }
   // Until the tests of the radii are done, passes must add their counts one after the other.

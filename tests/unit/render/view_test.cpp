@@ -51,7 +51,7 @@ TEST(View, IsPartOfWhatAStateBelongsTo) {
     return identity_difference(a.state, b.state).value_or("none");
   };
   EXPECT_EQ(difference([](ViewDescription&) {}), "none");
-  EXPECT_EQ(plan_render(scene, own, {}).state.settings.find("\"view\""), std::string::npos);
+  EXPECT_FALSE(plan_render(scene, own, {}).state.record.identity.view);
   EXPECT_EQ(difference([](ViewDescription& v) {
               std::get<description::PerspectiveCamera>(v.camera.node).fov += 1;
             }).substr(0, 14),

@@ -1,0 +1,373 @@
+// SPDX-FileCopyrightText: 2026 The Lanthorn authors
+// SPDX-License-Identifier: Apache-2.0
+#include "render/record.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <iterator>
+#include <limits>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <span>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "lanthorn/error.h"
+#include "lanthorn/text.h"
+
+namespace lanthorn {
+
+namespace {
+
+using description::Filter;
+using description::FilterKind;
+using nlohmann::json;
+
+using FileHashes = std::map<std::string, std::set<std::string>>;
+
+// The words for the values of an enumeration, in their order.
+constexpr std::array color_words{"rgb", "spectral"};
+constexpr std::array filter_words{"box", "triangle", "gaussian", "mitchell", "sinc"};
+constexpr std::span<const char* const> words_of(ColorMode) { return color_words; }
+constexpr std::span<const char* const> words_of(FilterKind) { return filter_words; }
+
+// The members of each object, for reading and writing alike. `member` takes a name and a variable, and:
+// `flag`: is written only if it is true; `added`: keeps its default if it is missing, as in files of before it was
+// added; `others`: all other members. An optional variable may be missing, too.
+
+template <class Members>
+void list_members(Filter& f, Members& member) {
+  member("kind", f.kind);
+  member("radius", f.radius);
+  if (f.kind == FilterKind::gaussian) member("sigma", f.sigma);
+  if (f.kind == FilterKind::mitchell) {
+    member("b", f.b);
+    member("c", f.c);
+  }
+  if (f.kind == FilterKind::sinc) member("tau", f.tau);
+}
+
+template <class Members>
+void list_members(RenderIdentity& i, Members& member) {
+  member("version", i.version);
+  member("scene_hash", i.scene_hash);
+  member("files", i.files);
+  member("integrator", i.integrator);
+  member("parameters", i.parameters);
+  member("seed", i.seed);
+  member("color", i.color);
+  member("max_depth", i.max_depth);
+  member("photons", i.photons);
+  member("resolution", i.resolution);
+  member("crop", i.crop);
+  member("margin", i.margin);
+  member("filter", i.filter);
+  member("plateau_wavelength_sets", i.wavelength_sets);
+  member.flag("heroes_of_paths", i.heroes_of_paths);
+  member.flag("filter_lobes_apart", i.filter_lobes_apart);
+  member("clamp", i.clamp);
+  member("view", i.view);
+  member("coarse", i.coarse);
+  member.others(i.others);
+}
+
+template <class Members>
+void list_members(EyeWork& w, Members& member) {
+  member("rays", w.rays);
+  member("next_events", w.next_events);
+  member("connections", w.connections);
+  member("lookups", w.lookups);
+  member("merges", w.merges);
+}
+
+template <class Members>
+void list_members(LightWork& w, Members& member) {
+  member("rays", w.rays);
+  member("vertices", w.vertices);
+}
+
+template <class Members>
+void list_members(UniformEffort& u, Members& member) {
+  member("light_paths_per_pixel", u.light_paths_per_pixel);
+  member("connections", u.place.connections);
+  member("merges", u.place.merges);
+  member("merges_in_media", u.place.merges_in_media);
+  member("connects_to_lens", u.place.sees);
+  member.added("goes_on", u.place.goes_on);
+  member("variance", u.variance);
+  member("work", u.work);
+}
+
+template <class Members>
+void list_members(EffortReport& r, Members& member) {
+  member("summary", r.summary);
+  member("caustic_light", r.caustic_light);
+  member("caustic_part", r.caustic_part);
+  member("light_by_light_paths", r.light_by_light_paths);
+  member("light_paths_per_pixel", r.light_paths_per_pixel);
+  member("merged_part", r.merged_part);
+  member("connected_part", r.connected_part);
+  member.added("short_part", r.short_part);
+  member("variance", r.variance);
+  member("work", r.work);
+  member("eye_path", r.work_of_eye_path);
+  member("light_path", r.work_of_light_path);
+  member("everywhere", r.uniform);
+}
+
+template <class Members>
+void list_members(RenderRecord& r, Members& member) {
+  member("identity", r.identity);
+  member("scene", r.scene);
+  member.added("measures_exposure", r.measures_exposure);
+  member.flag("display_emission", r.display_emission);
+  member.flag("bias_not_measured", r.bias_not_measured);
+  member("findings", r.findings);
+  member.others(r.others);
+}
+
+std::string text_of(const json& value) { return value.dump(-1, ' ', false, json::error_handler_t::replace); }
+
+/// A struct whose members are listed above.
+template <class T>
+concept Listed = requires(T& value, int& members) {
+  list_members(value, members);
+};
+
+class Writer {
+ public:
+  template <class T>
+  void operator()(const char* name, T& value) {
+    object_[name] = written(value);
+  }
+  template <class T>
+  void operator()(const char* name, std::optional<T>& value) {
+    if (value) object_[name] = written(*value);
+  }
+  void flag(const char* name, bool value) {
+    if (value) object_[name] = true;
+  }
+  template <class T>
+  void added(const char* name, T& value) {
+    object_[name] = written(value);
+  }
+  void others(const OtherMembers& texts) {
+    for (const auto& [name, text] : texts) object_[name] = json::parse(text);
+  }
+
+  template <Listed T>
+  static json written(T& value) {
+    Writer members;
+    list_members(value, members);
+    return std::move(members.object_);
+  }
+
+ private:
+  static json written(bool value) { return value; }
+  static json written(const std::string& text) { return text; }
+  template <std::integral T>
+  static json written(const T& value) {
+    return static_cast<std::uint64_t>(value);  // none is below 0
+  }
+  template <std::floating_point T>
+  static json written(const T& value) {
+    return value;
+  }
+  template <class T>
+  requires std::is_enum_v<T>
+  static json written(const T& value) { return words_of(value)[static_cast<std::size_t>(value)]; }
+  static json written(const Vec2& v) { return {v.x, v.y}; }
+  static json written(const std::map<std::string, std::string>& texts) { return texts; }
+  static json written(const FileHashes& files) {
+    json object = json::object();
+    for (const auto& [name, hashes] : files) object[name] = hashes.size() == 1 ? json(*hashes.begin()) : json(hashes);
+    return object;
+  }
+  template <std::size_t n>
+  static json written(std::array<int, n>& values) {
+    return written_list(values);
+  }
+  static json written(std::vector<UniformEffort>& values) { return written_list(values); }
+  template <class List>
+  static json written_list(List& values) {
+    json list = json::array();
+    for (auto& value : values) list.push_back(written(value));
+    return list;
+  }
+
+  json object_ = json::object();
+};
+
+class Reader {
+ public:
+  /// `path`: of the object, in messages.
+  Reader(const json& object, std::string path, const std::string& file)
+      : object_(object), path_(std::move(path)), file_(file) {
+    require(object.is_object(), "an object", path_);
+  }
+
+  void require(bool is_so, const std::string& expected, const std::string& path) const {
+    if (!is_so) throw Error({file_}, fmt::format("damaged: expected {} at {}", expected, path));
+  }
+
+  template <class T>
+  void operator()(const char* name, T& value) {
+    static const json missing = json::value_t::discarded;
+    const json* const found = find(name);
+    read(found ? *found : missing, path_of(name), value);
+  }
+  template <class T>
+  void operator()(const char* name, std::optional<T>& value) {
+    if (const json* const found = find(name)) read(*found, path_of(name), value.emplace());
+  }
+  template <class T>
+  void added(const char* name, T& value) {
+    if (const json* const found = find(name)) read(*found, path_of(name), value);
+  }
+  void flag(const char* name, bool& value) { added(name, value); }
+  void others(OtherMembers& texts) const {
+    for (const auto& [name, value] : object_.items())
+      if (!known_.contains(name)) texts[name] = text_of(value);
+  }
+
+ private:
+  std::string path_of(const std::string& name) const { return path_ + '.' + excerpt(name); }
+  const json* find(const std::string& name) {
+    known_.insert(name);
+    const auto found = object_.find(name);
+    return found == object_.end() ? nullptr : &*found;
+  }
+
+  template <Listed T>
+  void read(const json& from, const std::string& path, T& to) const {
+    Reader members(from, path, file_);
+    list_members(to, members);
+  }
+  void read(const json& from, const std::string& path, bool& to) const {
+    require(from.is_boolean(), "true or false", path);
+    to = from.get<bool>();
+  }
+  void read(const json& from, const std::string& path, std::string& to) const {
+    require(from.is_string(), "text", path);
+    to = from.get<std::string>();
+  }
+  template <std::integral T>
+  void read(const json& from, const std::string& path, T& to) const {
+    constexpr auto most = static_cast<std::uint64_t>(std::numeric_limits<T>::max());
+    require(from.is_number_unsigned() && from.get<std::uint64_t>() <= most, fmt::format("a count up to {}", most),
+            path);
+    to = from.get<T>();
+  }
+  template <std::floating_point T>
+  void read(const json& from, const std::string& path, T& to) const {
+    constexpr double most = std::numeric_limits<T>::max();
+    if (from.is_null()) {  // written for infinities and for what is not a number
+      to = std::numeric_limits<T>::quiet_NaN();
+      return;
+    }
+    require(from.is_number() && from.get<double>() >= -most && from.get<double>() <= most, "a number", path);
+    to = from.get<T>();
+  }
+  template <class T>
+  requires std::is_enum_v<T>
+  void read(const json& from, const std::string& path, T& to) const {
+    const auto words = words_of(to);
+    const auto found = std::find(words.begin(), words.end(), from);
+    require(found != words.end(), fmt::format("one of {}", fmt::join(words, ", ")), path);
+    to = static_cast<T>(found - words.begin());
+  }
+  void read(const json& from, const std::string& path, Vec2& to) const {
+    require(from.is_array() && from.size() == 2, "two numbers", path);
+    read(from[0], path + "[0]", to.x);
+    read(from[1], path + "[1]", to.y);
+  }
+  template <std::size_t n>
+  void read(const json& from, const std::string& path, std::array<int, n>& to) const {
+    require(from.is_array() && from.size() == n, fmt::format("{} counts", n), path);
+    for (std::size_t i = 0; i < n; ++i) read(from[i], fmt::format("{}[{}]", path, i), to[i]);
+  }
+  void read(const json& from, const std::string& path, std::map<std::string, std::string>& to) const {
+    require(from.is_object(), "an object", path);
+    for (const auto& [name, value] : from.items()) read(value, path + '.' + excerpt(name), to[name]);
+  }
+  void read(const json& from, const std::string& path, FileHashes& to) const {
+    require(from.is_object(), "an object", path);
+    for (const auto& [name, hashes] : from.items()) {
+      const std::string place = path + '.' + excerpt(name);
+      for (const json& hash : hashes.is_array() ? hashes : json::array({hashes})) {
+        std::string text;
+        read(hash, place, text);
+        to[name].insert(text);
+      }
+    }
+  }
+  void read(const json& from, const std::string& path, std::vector<UniformEffort>& to) const {
+    require(from.is_array(), "a list", path);
+    for (std::size_t i = 0; i < from.size(); ++i) read(from[i], fmt::format("{}[{}]", path, i), to.emplace_back());
+  }
+
+  const json& object_;
+  std::string path_;
+  const std::string& file_;
+  std::set<std::string> known_;
+};
+
+constexpr const char* root = "settings";
+
+// Numbers that are possible one by one, but not together.
+void check(const RenderIdentity& i, const Reader& reader) {
+  const std::string identity = fmt::format("{}.identity.", root);
+  const auto& [width, height] = i.resolution;
+  const auto& [x0, y0, x1, y1] = i.crop;
+  reader.require(x0 < x1 && y0 < y1 && x1 <= width && y1 <= height, "a part of the resolution", identity + "crop");
+  const auto& [left, top, right, bottom] = i.margin.value_or(std::array<int, 4>{});
+  reader.require(left <= x0 && top <= y0 && right <= width - x1 && bottom <= height - y1,
+                 "pixels that are in the resolution", identity + "margin");
+  constexpr std::uint32_t most_sets = 16;
+  reader.require(!i.wavelength_sets || (*i.wavelength_sets > 0 && *i.wavelength_sets <= most_sets),
+                 fmt::format("a count from 1 to {}", most_sets), identity + "plateau_wavelength_sets");
+}
+
+}  // namespace
+
+json json_of(RenderIdentity identity) { return Writer::written(identity); }
+json json_of(RenderRecord record) { return Writer::written(record); }
+
+std::string settings_text(const RenderRecord& record) { return text_of(json_of(record)); }
+
+RenderRecord read_record(const json& settings, const std::string& file) {
+  RenderRecord record;
+  Reader reader(settings, root, file);
+  list_members(record, reader);
+  check(record.identity, reader);
+  return record;
+}
+
+RenderRecord read_record(const std::string& text, const std::string& file) {
+  return read_record(json::parse(text, nullptr, /*allow_exceptions=*/false), file);
+}
+
+std::array<int, 2> rendered_size(const RenderIdentity& identity) {
+  const auto& [x0, y0, x1, y1] = identity.crop;
+  const auto& [left, top, right, bottom] = identity.margin.value_or(std::array<int, 4>{});
+  return {left + x1 - x0 + right, top + y1 - y0 + bottom};
+}
+
+RenderRecord common_record(const RenderRecord& a, const RenderRecord& b) {
+  json common = json_of(a);
+  const json other = json_of(b);
+  for (auto member = common.begin(); member != common.end();) {
+    const auto found = other.find(member.key());
+    member = found != other.end() && *found == *member ? std::next(member) : common.erase(member);
+  }
+  return read_record(common, {});
+}
+
+}  // namespace lanthorn
