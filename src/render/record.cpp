@@ -42,8 +42,7 @@ constexpr std::span<const char* const> words_of(FilterKind) { return filter_word
 // `flag`: is written only if it is true; `added`: keeps its default if it is missing, as in files of before it was
 // added; `others`: all other members. An optional variable may be missing, too.
 
-template <class Members>
-void list_members(Filter& f, Members& member) {
+void list_members(Filter& f, auto& member) {
   member("kind", f.kind);
   member("radius", f.radius);
   if (f.kind == FilterKind::gaussian) member("sigma", f.sigma);
@@ -54,8 +53,7 @@ void list_members(Filter& f, Members& member) {
   if (f.kind == FilterKind::sinc) member("tau", f.tau);
 }
 
-template <class Members>
-void list_members(RenderIdentity& i, Members& member) {
+void list_members(RenderIdentity& i, auto& member) {
   member("version", i.version);
   member("scene_hash", i.scene_hash);
   member("files", i.files);
@@ -78,8 +76,7 @@ void list_members(RenderIdentity& i, Members& member) {
   member.others(i.others);
 }
 
-template <class Members>
-void list_members(EyeWork& w, Members& member) {
+void list_members(EyeWork& w, auto& member) {
   member("rays", w.rays);
   member("next_events", w.next_events);
   member("connections", w.connections);
@@ -87,14 +84,12 @@ void list_members(EyeWork& w, Members& member) {
   member("merges", w.merges);
 }
 
-template <class Members>
-void list_members(LightWork& w, Members& member) {
+void list_members(LightWork& w, auto& member) {
   member("rays", w.rays);
   member("vertices", w.vertices);
 }
 
-template <class Members>
-void list_members(UniformEffort& u, Members& member) {
+void list_members(UniformEffort& u, auto& member) {
   member("light_paths_per_pixel", u.light_paths_per_pixel);
   member("connections", u.place.connections);
   member("merges", u.place.merges);
@@ -105,8 +100,7 @@ void list_members(UniformEffort& u, Members& member) {
   member("work", u.work);
 }
 
-template <class Members>
-void list_members(EffortReport& r, Members& member) {
+void list_members(EffortReport& r, auto& member) {
   member("summary", r.summary);
   member("caustic_light", r.caustic_light);
   member("caustic_part", r.caustic_part);
@@ -122,8 +116,7 @@ void list_members(EffortReport& r, Members& member) {
   member("everywhere", r.uniform);
 }
 
-template <class Members>
-void list_members(RenderRecord& r, Members& member) {
+void list_members(RenderRecord& r, auto& member) {
   member("identity", r.identity);
   member("scene", r.scene);
   member.added("measures_exposure", r.measures_exposure);
@@ -135,6 +128,9 @@ void list_members(RenderRecord& r, Members& member) {
 
 std::string text_of(const json& value) { return value.dump(-1, ' ', false, json::error_handler_t::replace); }
 
+template <class T>
+concept Enumeration = std::is_enum_v<T>;
+
 /// A struct whose members are listed above.
 template <class T>
 concept Listed = requires(T& value, int& members) {
@@ -143,62 +139,37 @@ concept Listed = requires(T& value, int& members) {
 
 class Writer {
  public:
-  template <class T>
-  void operator()(const char* name, T& value) {
-    object_[name] = written(value);
-  }
+  void operator()(const char* name, auto& value) { object_[name] = written(value); }
   template <class T>
   void operator()(const char* name, std::optional<T>& value) {
     if (value) object_[name] = written(*value);
   }
+  void added(const char* name, auto& value) { object_[name] = written(value); }
   void flag(const char* name, bool value) {
     if (value) object_[name] = true;
-  }
-  template <class T>
-  void added(const char* name, T& value) {
-    object_[name] = written(value);
   }
   void others(const OtherMembers& texts) {
     for (const auto& [name, text] : texts) object_[name] = json::parse(text);
   }
 
-  template <Listed T>
-  static json written(T& value) {
+  static json written(Listed auto& value) {
     Writer members;
     list_members(value, members);
     return std::move(members.object_);
   }
 
  private:
-  static json written(bool value) { return value; }
-  static json written(const std::string& text) { return text; }
-  template <std::integral T>
-  static json written(const T& value) {
-    return static_cast<std::uint64_t>(value);  // none is below 0
-  }
-  template <std::floating_point T>
-  static json written(const T& value) {
-    return value;
-  }
-  template <class T>
-  requires std::is_enum_v<T>
-  static json written(const T& value) { return words_of(value)[static_cast<std::size_t>(value)]; }
+  static json written(const auto& value) { return value; }
+  static json written(const Enumeration auto& value) { return words_of(value)[static_cast<std::size_t>(value)]; }
   static json written(const Vec2& v) { return {v.x, v.y}; }
-  static json written(const std::map<std::string, std::string>& texts) { return texts; }
   static json written(const FileHashes& files) {
     json object = json::object();
     for (const auto& [name, hashes] : files) object[name] = hashes.size() == 1 ? json(*hashes.begin()) : json(hashes);
     return object;
   }
-  template <std::size_t n>
-  static json written(std::array<int, n>& values) {
-    return written_list(values);
-  }
-  static json written(std::vector<UniformEffort>& values) { return written_list(values); }
-  template <class List>
-  static json written_list(List& values) {
+  static json written(std::vector<UniformEffort>& choices) {
     json list = json::array();
-    for (auto& value : values) list.push_back(written(value));
+    for (UniformEffort& choice : choices) list.push_back(written(choice));
     return list;
   }
 
@@ -217,8 +188,7 @@ class Reader {
     if (!is_so) throw Error({file_}, fmt::format("damaged: expected {} at {}", expected, path));
   }
 
-  template <class T>
-  void operator()(const char* name, T& value) {
+  void operator()(const char* name, auto& value) {
     static const json missing = json::value_t::discarded;
     const json* const found = find(name);
     read(found ? *found : missing, path_of(name), value);
@@ -227,8 +197,7 @@ class Reader {
   void operator()(const char* name, std::optional<T>& value) {
     if (const json* const found = find(name)) read(*found, path_of(name), value.emplace());
   }
-  template <class T>
-  void added(const char* name, T& value) {
+  void added(const char* name, auto& value) {
     if (const json* const found = find(name)) read(*found, path_of(name), value);
   }
   void flag(const char* name, bool& value) { added(name, value); }
@@ -245,8 +214,7 @@ class Reader {
     return found == object_.end() ? nullptr : &*found;
   }
 
-  template <Listed T>
-  void read(const json& from, const std::string& path, T& to) const {
+  void read(const json& from, const std::string& path, Listed auto& to) const {
     Reader members(from, path, file_);
     list_members(to, members);
   }
@@ -261,56 +229,50 @@ class Reader {
   template <std::integral T>
   void read(const json& from, const std::string& path, T& to) const {
     constexpr auto most = static_cast<std::uint64_t>(std::numeric_limits<T>::max());
-    require(from.is_number_unsigned() && from.get<std::uint64_t>() <= most, fmt::format("a count up to {}", most),
-            path);
+    const bool is_count = from.is_number_unsigned() || (from.is_number_integer() && from.get<std::int64_t>() >= 0);
+    require(is_count && from.get<std::uint64_t>() <= most, fmt::format("a count up to {}", most), path);
     to = from.get<T>();
   }
   template <std::floating_point T>
   void read(const json& from, const std::string& path, T& to) const {
     constexpr double most = std::numeric_limits<T>::max();
-    if (from.is_null()) {  // written for infinities and for what is not a number
-      to = std::numeric_limits<T>::quiet_NaN();
-      return;
-    }
-    require(from.is_number() && from.get<double>() >= -most && from.get<double>() <= most, "a number", path);
-    to = from.get<T>();
+    const bool is_none = from.is_null();  // written for infinities and for what is not a number
+    require(is_none || (from.is_number() && from >= -most && from <= most), "a number", path);
+    to = is_none ? std::numeric_limits<T>::quiet_NaN() : from.get<T>();
   }
-  template <class T>
-  requires std::is_enum_v<T>
+  template <Enumeration T>
   void read(const json& from, const std::string& path, T& to) const {
     const auto words = words_of(to);
     const auto found = std::find(words.begin(), words.end(), from);
     require(found != words.end(), fmt::format("one of {}", fmt::join(words, ", ")), path);
     to = static_cast<T>(found - words.begin());
   }
-  void read(const json& from, const std::string& path, Vec2& to) const {
-    require(from.is_array() && from.size() == 2, "two numbers", path);
-    read(from[0], path + "[0]", to.x);
-    read(from[1], path + "[1]", to.y);
-  }
-  template <std::size_t n>
-  void read(const json& from, const std::string& path, std::array<int, n>& to) const {
-    require(from.is_array() && from.size() == n, fmt::format("{} counts", n), path);
+  template <class T, std::size_t n>
+  void read(const json& from, const std::string& path, std::array<T, n>& to) const {
+    require(from.is_array() && from.size() == n, fmt::format("{} numbers", n), path);
     for (std::size_t i = 0; i < n; ++i) read(from[i], fmt::format("{}[{}]", path, i), to[i]);
   }
-  void read(const json& from, const std::string& path, std::map<std::string, std::string>& to) const {
-    require(from.is_object(), "an object", path);
-    for (const auto& [name, value] : from.items()) read(value, path + '.' + excerpt(name), to[name]);
-  }
-  void read(const json& from, const std::string& path, FileHashes& to) const {
-    require(from.is_object(), "an object", path);
-    for (const auto& [name, hashes] : from.items()) {
-      const std::string place = path + '.' + excerpt(name);
-      for (const json& hash : hashes.is_array() ? hashes : json::array({hashes})) {
-        std::string text;
-        read(hash, place, text);
-        to[name].insert(text);
-      }
-    }
+  void read(const json& from, const std::string& path, Vec2& to) const {
+    std::array<float, 2> numbers{};
+    read(from, path, numbers);
+    to = {numbers[0], numbers[1]};
   }
   void read(const json& from, const std::string& path, std::vector<UniformEffort>& to) const {
     require(from.is_array(), "a list", path);
-    for (std::size_t i = 0; i < from.size(); ++i) read(from[i], fmt::format("{}[{}]", path, i), to.emplace_back());
+    to.resize(from.size());
+    for (std::size_t i = 0; i < to.size(); ++i) read(from[i], fmt::format("{}[{}]", path, i), to[i]);
+  }
+  template <class T>
+  void read(const json& from, const std::string& path, std::map<std::string, T>& to) const {
+    require(from.is_object(), "an object", path);
+    for (const auto& [name, value] : from.items()) read(value, path + '.' + excerpt(name), to[name]);
+  }
+  void read(const json& from, const std::string& path, std::set<std::string>& hashes) const {
+    for (const json& hash : from.is_array() ? from : json::array({from})) {
+      std::string text;
+      read(hash, path, text);
+      hashes.insert(text);
+    }
   }
 
   const json& object_;
@@ -367,7 +329,11 @@ RenderRecord common_record(const RenderRecord& a, const RenderRecord& b) {
     const auto found = other.find(member.key());
     member = found != other.end() && *found == *member ? std::next(member) : common.erase(member);
   }
-  return read_record(common, {});
+  RenderRecord record;
+  const std::string nowhere;
+  Reader reader(common, root, nowhere);
+  list_members(record, reader);
+  return record;
 }
 
 }  // namespace lanthorn

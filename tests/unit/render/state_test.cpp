@@ -357,7 +357,7 @@ TEST(State, MessagesNameTheMemberOfARecordThatIsDamaged) {
       {{{"max_depth", -1}}, "a count up to 2147483647 at settings.identity.max_depth"},
       {{{"color", 1}}, "one of rgb, spectral at settings.identity.color"},
       {{{"integrator", 1}}, "text at settings.identity.integrator"},
-      {{{"resolution", {6}}}, "2 counts at settings.identity.resolution"},
+      {{{"resolution", {6}}}, "2 numbers at settings.identity.resolution"},
       {{{"resolution", {6, "4"}}}, "a count up to 2147483647 at settings.identity.resolution[1]"},
       {{{"crop", {0, 0, 7, 4}}}, "a part of the resolution at settings.identity.crop"},
       {{{"crop", {3, 0, 3, 4}}}, "a part of the resolution at settings.identity.crop"},
