@@ -12,6 +12,7 @@
 
 #include "lanthorn/color.h"
 #include "lanthorn/effort_report.h"
+#include "lanthorn/render_options.h"
 #include "lanthorn/scene_description.h"
 
 namespace lanthorn {
@@ -39,7 +40,7 @@ struct RenderIdentity {
   std::optional<std::uint32_t> wavelength_sets{};
   bool heroes_of_paths = false;       ///< paths share a set's wavelengths, but each has its own hero (`PassDraw`)
   bool filter_lobes_apart = false;    ///< `FilterPart`
-  std::optional<float> clamp{};       ///< ViewOptions::clamp
+  RenderOptions options{};            ///< those of `RenderOption::is_recorded`
   std::optional<std::string> view{};  ///< hash of a view that is not the scene file's
   std::optional<std::array<int, 2>> coarse{};  ///< size of the coarse picture that takes the place of the first pass
   OtherMembers others{};

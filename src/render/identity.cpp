@@ -110,7 +110,8 @@ std::uint64_t hash_of(const SceneDescription& scene) {
                      std::bit_cast<std::uint32_t>(e.scale), up, hash_bytes(std::as_bytes(std::span(name)))});
 }
 
-RenderIdentity identity_of(const Scene& scene, const ViewDescription& view, const RenderPlan& plan) {
+RenderIdentity identity_of(const Scene& scene, const ViewDescription& view, const RenderOptions& options,
+                           const RenderPlan& plan) {
   const SceneDescription& description = scene.description();
   const RenderSettings& s = plan.settings;
   const PixelWindow &crop = plan.view.crop, &window = plan.view.window;
@@ -126,8 +127,10 @@ RenderIdentity identity_of(const Scene& scene, const ViewDescription& view, cons
                           .resolution = {plan.view.camera.width(), plan.view.camera.height()},
                           .crop = {crop.x0, crop.y0, crop.x1, crop.y1},
                           .filter = view.filter,
-                          .filter_lobes_apart = plan.view.filter.negative_share() != 0,
-                          .clamp = plan.view.sensor.path_limit};
+                          .filter_lobes_apart = plan.view.filter.negative_share() != 0};
+  for_each_render_option([&](const auto& option) {
+    if (option.is_recorded) identity.options.*option.value = options.*option.value;
+  });
   if (window != crop)
     identity.margin = {crop.x0 - window.x0, crop.y0 - window.y0, window.x1 - crop.x1, window.y1 - crop.y1};
   if (plan.integrator->passes_share_wavelengths() && s.color == ColorMode::spectral) {
@@ -142,8 +145,9 @@ RenderIdentity identity_of(const Scene& scene, const ViewDescription& view, cons
 
 }  // namespace
 
-RenderRecord record_of(const Scene& scene, const ViewDescription& view, const RenderPlan& plan) {
-  const RenderRecord record{.identity = identity_of(scene, view, plan),
+RenderRecord record_of(const Scene& scene, const ViewDescription& view, const RenderOptions& options,
+                       const RenderPlan& plan) {
+  const RenderRecord record{.identity = identity_of(scene, view, options, plan),
                             .scene = fs::path(scene.description().filename).filename().string(),
                             .measures_exposure = view.film.measures_exposure,
                             .display_emission = view.film.display_emission,

@@ -9,6 +9,7 @@
 namespace lanthorn {
 
 /// `RenderState::record` of this render before its preparation.
-RenderRecord record_of(const Scene& scene, const ViewDescription& view, const RenderPlan& plan);
+RenderRecord record_of(const Scene& scene, const ViewDescription& view, const RenderOptions& options,
+                       const RenderPlan& plan);
 
 }  // namespace lanthorn

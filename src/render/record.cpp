@@ -70,7 +70,9 @@ void list_members(RenderIdentity& i, auto& member) {
   member("plateau_wavelength_sets", i.wavelength_sets);
   member.flag("heroes_of_paths", i.heroes_of_paths);
   member.flag("filter_lobes_apart", i.filter_lobes_apart);
-  member("clamp", i.clamp);
+  for_each_render_option([&](const auto& option) {
+    if (option.is_recorded) member(option.name, i.options.*option.value);
+  });
   member("view", i.view);
   member("coarse", i.coarse);
   member.others(i.others);

@@ -58,10 +58,10 @@ std::string field_name(const std::vector<std::string>& path) {
   if (field == "parameters" && path.size() == 2) return "--set " + excerpt(path[1]);
   if (field == "margin") return "the margin that --denoise adds to --crop";
   if (field == "filter") return excerpt(fmt::format("the scene's {}", fmt::join(path, ".")));
-  if (field == "max_depth") return "--max-depth";
   if (field == "coarse") return "the pixels of a coarse picture, for whose passes there was no time";
-  for (const char* option : {"integrator", "resolution", "crop", "seed", "color", "photons"})
-    if (field == option && path.size() == 1) return "--" + field;
+  bool is_option = false;
+  for_each_render_option([&](const auto& option) { is_option = is_option || field == option.name; });
+  if (is_option && path.size() == 1) return flag_name(field);
   return excerpt(fmt::format("{}", fmt::join(path, ".")));
 }
 

@@ -281,37 +281,39 @@ TEST(State, ForgedHeadersAreErrors) {
 
 // A record with all members, each of which differs from its default.
 RenderRecord full_record() {
-  return {.identity = {.version = "1.2",
-                       .scene_hash = "0f",
-                       .files = {{"a.ply", {"01"}}, {"b.png", {"02", "03"}}},
-                       .integrator = "auto",
-                       .parameters = {{"alpha", "0.5"}},
-                       .seed = ~std::uint64_t{0},
-                       .color = ColorMode::spectral,
-                       .max_depth = 9,
-                       .photons = 10000,
-                       .resolution = {9, 8},
-                       .crop = {2, 1, 6, 5},
-                       .margin = std::array{2, 0, 0, 0},
-                       .filter = {.kind = description::FilterKind::mitchell, .radius = {2, 3}, .b = 0.1f, .c = 0.2f},
-                       .wavelength_sets = 2,
-                       .heroes_of_paths = true,
-                       .filter_lobes_apart = true,
-                       .clamp = 0.1f,
-                       .view = "0c",
-                       .coarse = std::array{4, 3},
-                       .others = {{"new", "[1,{}]"}}},
-          .scene = "a.pbrt",
-          .measures_exposure = true,
-          .display_emission = true,
-          .bias_not_measured = true,
-          .findings = EffortReport{.summary = "few caustics",
-                                   .short_part = 0.25,
-                                   .variance = 3.5,
-                                   .uniform = {{.place = {.connections = 4, .goes_on = false}, .work = 7}},
-                                   .work_of_eye_path = {.lookups = 2},
-                                   .work_of_light_path = {.vertices = 5}},
-          .others = {{"host", R"("a")"}}};
+  RenderRecord record{
+      .identity = {.version = "1.2",
+                   .scene_hash = "0f",
+                   .files = {{"a.ply", {"01"}}, {"b.png", {"02", "03"}}},
+                   .integrator = "auto",
+                   .parameters = {{"alpha", "0.5"}},
+                   .seed = ~std::uint64_t{0},
+                   .color = ColorMode::spectral,
+                   .max_depth = 9,
+                   .photons = 10000,
+                   .resolution = {9, 8},
+                   .crop = {2, 1, 6, 5},
+                   .margin = std::array{2, 0, 0, 0},
+                   .filter = {.kind = description::FilterKind::mitchell, .radius = {2, 3}, .b = 0.1f, .c = 0.2f},
+                   .wavelength_sets = 2,
+                   .heroes_of_paths = true,
+                   .filter_lobes_apart = true,
+                   .view = "0c",
+                   .coarse = std::array{4, 3},
+                   .others = {{"new", "[1,{}]"}}},
+      .scene = "a.pbrt",
+      .measures_exposure = true,
+      .display_emission = true,
+      .bias_not_measured = true,
+      .findings = EffortReport{.summary = "few caustics",
+                               .short_part = 0.25,
+                               .variance = 3.5,
+                               .uniform = {{.place = {.connections = 4, .goes_on = false}, .work = 7}},
+                               .work_of_eye_path = {.lookups = 2},
+                               .work_of_light_path = {.vertices = 5}},
+      .others = {{"host", R"("a")"}}};
+  record.identity.options.clamp = 0.1f;
+  return record;
 }
 
 TEST(State, KeepsTheRecordOfItsRender) {
@@ -335,7 +337,7 @@ TEST(State, KeepsTheRecordOfItsRender) {
             R"("scene":"a.pbrt"})");
   EXPECT_FALSE(identity_difference(read.identity, state.record.identity));
   EXPECT_EQ(read.identity.files, state.record.identity.files);
-  EXPECT_EQ(read.identity.clamp, 0.1f);
+  EXPECT_EQ(read.identity.options.clamp, 0.1f);
   EXPECT_EQ(read.findings->uniform.at(0).place.connections, 4);
 }
 
