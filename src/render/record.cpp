@@ -26,7 +26,6 @@ namespace lanthorn {
 
 namespace {
 
-using description::Filter;
 using description::FilterKind;
 using nlohmann::json;
 
@@ -42,7 +41,7 @@ constexpr std::span<const char* const> words_of(FilterKind) { return filter_word
 // `flag`: is written only if it is true; `added`: keeps its default if it is missing, as in files of before it was
 // added; `others`: all other members. An optional variable may be missing, too.
 
-void list_members(Filter& f, auto& member) {
+void list_members(description::Filter& f, auto& member) {
   member("kind", f.kind);
   member("radius", f.radius);
   if (f.kind == FilterKind::gaussian) member("sigma", f.sigma);
@@ -128,7 +127,7 @@ void list_members(RenderRecord& r, auto& member) {
   member.others(r.others);
 }
 
-std::string text_of(const json& value) { return value.dump(-1, ' ', false, json::error_handler_t::replace); }
+std::string dumped(const json& value) { return value.dump(-1, ' ', false, json::error_handler_t::replace); }
 
 template <class T>
 concept Enumeration = std::is_enum_v<T>;
@@ -139,7 +138,7 @@ concept Listed = requires(T& value, int& members) {
   list_members(value, members);
 };
 
-class Writer {
+class RecordWriter {
  public:
   void operator()(const char* name, auto& value) { object_[name] = written(value); }
   template <class T>
@@ -155,7 +154,7 @@ class Writer {
   }
 
   static json written(Listed auto& value) {
-    Writer members;
+    RecordWriter members;
     list_members(value, members);
     return std::move(members.object_);
   }
@@ -178,10 +177,10 @@ class Writer {
   json object_ = json::object();
 };
 
-class Reader {
+class RecordReader {
  public:
   /// `path`: of the object, in messages.
-  Reader(const json& object, std::string path, const std::string& file)
+  RecordReader(const json& object, std::string path, const std::string& file)
       : object_(object), path_(std::move(path)), file_(file) {
     require(object.is_object(), "an object", path_);
   }
@@ -205,7 +204,7 @@ class Reader {
   void flag(const char* name, bool& value) { added(name, value); }
   void others(OtherMembers& texts) const {
     for (const auto& [name, value] : object_.items())
-      if (!known_.contains(name)) texts[name] = text_of(value);
+      if (!known_.contains(name)) texts[name] = dumped(value);
   }
 
  private:
@@ -217,7 +216,7 @@ class Reader {
   }
 
   void read(const json& from, const std::string& path, Listed auto& to) const {
-    Reader members(from, path, file_);
+    RecordReader members(from, path, file_);
     list_members(to, members);
   }
   void read(const json& from, const std::string& path, bool& to) const {
@@ -283,11 +282,11 @@ class Reader {
   std::set<std::string> known_;
 };
 
-constexpr const char* root = "settings";
+constexpr const char* record_path = "settings";
 
 // Numbers that are possible one by one, but not together.
-void check(const RenderIdentity& i, const Reader& reader) {
-  const std::string identity = fmt::format("{}.identity.", root);
+void check_together(const RenderIdentity& i, const RecordReader& reader) {
+  const std::string identity = fmt::format("{}.identity.", record_path);
   const auto& [width, height] = i.resolution;
   const auto& [x0, y0, x1, y1] = i.crop;
   reader.require(x0 < x1 && y0 < y1 && x1 <= width && y1 <= height, "a part of the resolution", identity + "crop");
@@ -301,16 +300,16 @@ void check(const RenderIdentity& i, const Reader& reader) {
 
 }  // namespace
 
-json json_of(RenderIdentity identity) { return Writer::written(identity); }
-json json_of(RenderRecord record) { return Writer::written(record); }
+json json_of(RenderIdentity identity) { return RecordWriter::written(identity); }
+json json_of(RenderRecord record) { return RecordWriter::written(record); }
 
-std::string settings_text(const RenderRecord& record) { return text_of(json_of(record)); }
+std::string settings_text(const RenderRecord& record) { return dumped(json_of(record)); }
 
 RenderRecord read_record(const json& settings, const std::string& file) {
   RenderRecord record;
-  Reader reader(settings, root, file);
+  RecordReader reader(settings, record_path, file);
   list_members(record, reader);
-  check(record.identity, reader);
+  check_together(record.identity, reader);
   return record;
 }
 
@@ -333,7 +332,7 @@ RenderRecord common_record(const RenderRecord& a, const RenderRecord& b) {
   }
   RenderRecord record;
   const std::string nowhere;
-  Reader reader(common, root, nowhere);
+  RecordReader reader(common, record_path, nowhere);
   list_members(record, reader);
   return record;
 }

@@ -31,8 +31,8 @@ using namespace plain;
 namespace {
 
 // Limits, for which each command line has its own words.
-constexpr std::tuple limits{field("passes", &RenderOptions::passes), field("seconds", &RenderOptions::seconds),
-                            field("noise", &RenderOptions::noise)};
+constexpr std::tuple limit_members{field("passes", &RenderOptions::passes), field("seconds", &RenderOptions::seconds),
+                                   field("noise", &RenderOptions::noise)};
 
 // Names of parameters, which use hyphens where Python uses underscores.
 std::string with_hyphens(std::string name) {
@@ -69,7 +69,7 @@ RenderOptions options_of_data(const Value& data) {
   Keys known{"pass_range"};
   const auto read_option = [&](const auto& member) { read_member(reader, dict, options, member, known); };
   for_each_render_option([&](const auto& option) { read_option(field(option.name, option.value)); });
-  std::apply([&](const auto&... member) { (read_option(member), ...); }, limits);
+  std::apply([&](const auto&... member) { (read_option(member), ...); }, limit_members);
   const Value* range = dict.find("pass_range");
   if (range != nullptr && !range->is_none()) {
     reader.at("pass_range", [&] {
