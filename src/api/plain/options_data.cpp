@@ -30,15 +30,9 @@ using namespace plain;
 
 namespace {
 
-constexpr auto option_members =
-    std::tuple(Member<RenderOptions, decltype(RenderOptions::resolution)>{"resolution", &RenderOptions::resolution},
-               Member<RenderOptions, decltype(RenderOptions::crop)>{"crop", &RenderOptions::crop},
-               Member<RenderOptions, decltype(RenderOptions::clamp)>{"clamp", &RenderOptions::clamp},
-               field("integrator", &RenderOptions::integrator), field("passes", &RenderOptions::passes),
-               field("seconds", &RenderOptions::seconds), field("noise", &RenderOptions::noise),
-               field("seed", &RenderOptions::seed), field("color", &RenderOptions::color),
-               field("photons", &RenderOptions::photons), field("max_depth", &RenderOptions::max_depth),
-               field("memory", &RenderOptions::memory));
+// Limits, for which each command line has its own words.
+constexpr std::tuple limit_members{field("passes", &RenderOptions::passes), field("seconds", &RenderOptions::seconds),
+                                   field("noise", &RenderOptions::noise)};
 
 // Names of parameters, which use hyphens where Python uses underscores.
 std::string with_hyphens(std::string name) {
@@ -73,7 +67,9 @@ RenderOptions options_of_data(const Value& data) {
   const Dict& dict = dict_of(reader, data);
   RenderOptions options;
   Keys known{"pass_range"};
-  std::apply([&](const auto&... member) { (read_member(reader, dict, options, member, known), ...); }, option_members);
+  const auto read_option = [&](const auto& member) { read_member(reader, dict, options, member, known); };
+  for_each_render_option([&](const auto& option) { read_option(field(option.name, option.value)); });
+  std::apply([&](const auto&... member) { (read_option(member), ...); }, limit_members);
   const Value* range = dict.find("pass_range");
   if (range != nullptr && !range->is_none()) {
     reader.at("pass_range", [&] {

@@ -6,8 +6,7 @@
 //
 // 1. pilot.h        a few passes over a grid of pixels; EyePathLog has each contribution with its densities
 // 2. moments.h      the second moments that each candidate would have had
-// 3. choice.h       the candidates with the least product of variance and work, block by block
-// 4. report.h       what it tells the user
+// 3. choice.h       the candidates with the least product of variance and work, block by block; what it tells the user
 #include "integrators/auto/auto.h"
 
 #include <memory>
@@ -24,8 +23,8 @@ void plan_effort(const RenderJob& job, const VcmSettings& settings, VcmPreparati
   prepared.effort = Effort(pilot_light_paths(job));
   EffortChoice choice = choose_effort(job, measure_candidates(job, settings, prepared));
   prepared.effort = std::move(choice.effort);
-  prepared.remark = choice.report.describe();
-  prepared.findings = choice.report.as_json();
+  prepared.remark = choice.report.summary;
+  prepared.findings = std::move(choice.report);
 }
 
 IntegratorInfo auto_info() {

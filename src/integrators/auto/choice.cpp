@@ -2,13 +2,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "integrators/auto/choice.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <string>
 #include <utility>
 #include <vector>
 
+#include "lanthorn/number_text.h"
 #include "photon/guides/rare_light.h"
 
 namespace lanthorn {
@@ -47,6 +51,20 @@ constexpr double short_eye_paths = 4;  // they have few dimensions; not used in 
 // Factor on path tracing's product of variance and work: light paths must be better than this. Path tracing alone is
 // stratified best, and merges add bias.
 constexpr double margin = 0.8;
+
+// One line for the user: findings and choice.
+std::string describe(const EffortReport& r) {
+  const auto percent = [](double share) { return fmt::format("{:.{}f} %", 100 * share, share < 0.1 ? 1 : 0); };
+  const bool has_caustics = r.caustic_light >= 0.001;
+  const std::string found = has_caustics ? fmt::format("caustics make {} of the light, in {} of the picture",
+                                                       percent(r.caustic_light), percent(r.caustic_part))
+                                         : "hardly any light is in caustics";
+  if (r.light_paths_per_pixel == 0) return found + ": path tracing";
+  const std::string shorter =
+      r.short_part > 0 ? fmt::format("; in {}, eye paths end at their first merge", percent(r.short_part)) : "";
+  return fmt::format("{}: {} light paths a pixel, merged in {} and connected in {} of the picture{}", found,
+                     short_number(r.light_paths_per_pixel), percent(r.merged_part), percent(r.connected_part), shorter);
+}
 
 PlaceEffort place_of(const EffortCandidate& c) {
   return {static_cast<std::uint8_t>(c.connections), c.merges, c.merges_in_media, c.sees, c.goes_on};
@@ -163,8 +181,8 @@ void Chooser::count_work(EffortReport& report) const {
   report.work_of_eye_path.add(all, 1 / paths);
   report.work_of_eye_path.merges /= per_pixel(1 / m_.scale);
   report.work_of_eye_path.media_merges /= per_pixel(1 / m_.scale);
-  report.light_rays = m_.light_rays / std::max(1.0, m_.light_paths);
-  report.light_vertices = m_.light_vertices / std::max(1.0, m_.light_paths);
+  const double light_paths = std::max(1.0, m_.light_paths);
+  report.work_of_light_path = {m_.light_rays / light_paths, m_.light_vertices / light_paths};
 }
 
 double Chooser::per_pixel(float light_paths) const {
@@ -247,6 +265,11 @@ EffortReport Chooser::report_on(const Plan& plan, float light_paths) const {
   report.caustic_light = light > 0 ? caustic / light : 0;
   report.light_paths_per_pixel = per_pixel(light_paths);
   count_work(report);
+  report.summary = describe(report);
+  // Variances of extreme scenes may exceed all numbers, which JSON does not know.
+  const auto finite = [](double x) { return std::isfinite(x) ? x : std::numeric_limits<double>::max(); };
+  report.variance = finite(report.variance);
+  for (UniformEffort& choice : report.uniform) choice.variance = finite(choice.variance);
   return report;
 }
 

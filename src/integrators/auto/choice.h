@@ -3,7 +3,6 @@
 #pragma once
 
 #include "integrators/auto/measurement.h"
-#include "integrators/auto/report.h"
 #include "path/render_job.h"
 
 namespace lanthorn {

@@ -9,18 +9,10 @@
 #include <vector>
 
 #include "camera/view.h"
+#include "lanthorn/effort_report.h"
 #include "math/vec.h"
 
 namespace lanthorn {
-
-/// The effort at one place on the film.
-struct PlaceEffort {
-  std::uint8_t connections = 1;  ///< light paths that each eye vertex is connected to
-  bool merges = true;            ///< on surfaces
-  bool merges_in_media = true;
-  bool sees = true;     ///< light paths are connected to the lens
-  bool goes_on = true;  ///< eye paths go on after a lobe that is not delta (`Techniques::goes_on`)
-};
 
 /// The effort of every pass: the same for the whole film, or one for each block of pixels.
 class Effort {

@@ -4,26 +4,10 @@
 
 #include <vector>
 
+#include "lanthorn/effort_report.h"
 #include "path/mis.h"
 
 namespace lanthorn {
-
-/// Counts of the costly operations of eye paths.
-struct EyeWork {
-  double rays = 0, next_events = 0, connections = 0;
-  double lookups = 0, merges = 0;              ///< on surfaces
-  double media_lookups = 0, media_merges = 0;  ///< on flights and at scatterings
-
-  void add(const EyeWork& other, double factor = 1) {
-    rays += factor * other.rays;
-    next_events += factor * other.next_events;
-    connections += factor * other.connections;
-    lookups += factor * other.lookups;
-    merges += factor * other.merges;
-    media_lookups += factor * other.media_lookups;
-    media_merges += factor * other.media_merges;
-  }
-};
 
 /// What an eye path finds and does, for the pilot of `auto`; other renders keep none.
 struct EyePathLog {

@@ -124,7 +124,7 @@ class VertexConnectionAndMerging final : public Integrator {
   MemoryUse memory_use(const RenderSettings& settings) const override { return settings_.memory_use(settings); }
   std::string limitation(const Scene& scene) const override { return settings_.limitation(scene); }
   std::string remark() const override { return prepared_ ? prepared_->remark : std::string(); }
-  std::string findings() const override { return prepared_ ? prepared_->findings : std::string(); }
+  std::optional<EffortReport> findings() const override { return prepared_ ? prepared_->findings : std::nullopt; }
   bool passes_share_wavelengths() const override { return true; }
   // Until the tests of the radii are done, passes must add their counts one after the other.
   bool passes_may_overlap() const override { return !tests_ || tests_->are_done(); }

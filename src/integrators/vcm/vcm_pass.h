@@ -31,7 +31,8 @@ struct VcmPreparation {
   FirstMergeRadii radii;
   FirstVolumeRadii volume_radii;
   Effort effort;
-  std::string remark, findings;  ///< as of Integrator
+  std::string remark;  ///< as of Integrator
+  std::optional<EffortReport> findings;
 
   VcmPreparation(const RenderJob& job, const VcmSettings& settings);
   VcmPreparation(const VcmPreparation&) = delete;

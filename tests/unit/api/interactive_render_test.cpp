@@ -149,8 +149,9 @@ TEST(InteractiveRender, CoarsePicturesOfAutoHaveNoPilot) {
   });
   ASSERT_EQ(coarse.status.problem, "");
   EXPECT_TRUE(coarse.picture->is_coarse);
-  EXPECT_NE(coarse.picture->state.settings.find("\"integrator\":\"vcm\""), std::string::npos);
-  EXPECT_NE(coarse.picture->state.settings.find("\"emission\":\"power\""), std::string::npos);
+  const RenderIdentity& identity = coarse.picture->state.record.identity;
+  EXPECT_EQ(identity.integrator, "vcm");
+  EXPECT_EQ(identity.parameters.at("emission"), "power");
   EXPECT_EQ(coarse.picture->state.integrator, "auto");
   EXPECT_EQ(coarse.picture->remark, "");
   EXPECT_FALSE(coarse.picture->seconds_left);
