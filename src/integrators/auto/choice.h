@@ -3,6 +3,7 @@
 #pragma once
 
 #include "integrators/auto/measurement.h"
+#include "integrators/vcm/effort.h"
 #include "path/render_job.h"
 
 namespace lanthorn {
