@@ -376,6 +376,11 @@ requires(!NumberElement<T>) struct Convert<std::vector<T>> {
   }
 };
 
+template <class T>
+struct Convert<description::Table<T>> {
+  static Value write(const description::Table<T>& table) { return plain::write(table.entries()); }
+};
+
 template <class T, std::size_t n>
 requires(!std::is_arithmetic_v<T>) struct Convert<std::array<T, n>> {
   static void read(Reader& reader, const Value& data, std::array<T, n>& out) {

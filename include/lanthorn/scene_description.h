@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 // A scene as plain data, made by a reader (pbrt, glTF, OBJ) or by a program; `build_scene` turns it into a Scene. It
-// has no behaviour and no pointers: parts refer to each other by index. Every part that can be invalid stores its
-// location in the file.
+// has no behaviour and no pointers: parts refer to each other by index. Copies of a description share their tables
+// until they change. Every part that can be invalid stores its location in the file.
 #pragma once
 
 #include <array>
@@ -19,6 +19,7 @@
 #include "lanthorn/error.h"
 #include "lanthorn/file_access.h"
 #include "lanthorn/measured_data.h"
+#include "lanthorn/table.h"
 #include "lanthorn/transform.h"
 #include "lanthorn/vec.h"
 
@@ -682,19 +683,19 @@ struct SceneDescription {
   FileAccess access;                               ///< for files read while the scene is built
   ViewDescription view;                            ///< the file's own
   description::RenderHints hints;
-  std::vector<description::EmbeddedImage> embedded_images;
-  std::vector<description::FloatTexture> float_textures;
-  std::vector<description::SpectrumTexture> spectrum_textures;
-  std::vector<std::shared_ptr<const MeasuredData>> measured_brdfs;  ///< none is null; shared by copies of the scene
-  std::vector<description::Material> materials;                     ///< [0] is the default material
-  std::vector<description::Medium> media;
-  std::vector<description::AreaLight> area_lights;
-  std::vector<description::Shape> shapes;
-  std::vector<description::Object> objects;
-  std::vector<description::Instance> instances;
-  std::vector<description::Light> lights;
-  EnvironmentChoice environment;               ///< the choice that `replace_environment` applied
-  std::vector<description::Light> own_lights;  ///< `lights` before `replace_environment`; else empty
+  description::Table<description::EmbeddedImage> embedded_images;
+  description::Table<description::FloatTexture> float_textures;
+  description::Table<description::SpectrumTexture> spectrum_textures;
+  description::Table<std::shared_ptr<const MeasuredData>> measured_brdfs;  ///< none is null
+  description::Table<description::Material> materials;                     ///< [0] is the default material
+  description::Table<description::Medium> media;
+  description::Table<description::AreaLight> area_lights;
+  description::Table<description::Shape> shapes;
+  description::Table<description::Object> objects;
+  description::Table<description::Instance> instances;
+  description::Table<description::Light> lights;
+  EnvironmentChoice environment;                      ///< the choice that `replace_environment` applied
+  description::Table<description::Light> own_lights;  ///< `lights` before `replace_environment`; else empty
   std::vector<description::Warning> warnings;
   ColorSpace color_space = ColorSpace::srgb;  ///< of the film; its white point is the colour of lights given as numbers
   /// Position of this description's origin in the coordinates of the file, metres: see `move_origin`.

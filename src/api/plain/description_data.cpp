@@ -107,9 +107,9 @@ NameTable names_of(const std::vector<T>& items) {
 
 Reader reader_for(const SceneDescription& scene) {
   Reader reader;
-  reader.names["materials"] = names_of(scene.materials);
-  reader.names["media"] = names_of(scene.media);
-  reader.names["objects"] = names_of(scene.objects);
+  reader.names["materials"] = names_of(scene.materials.entries());
+  reader.names["media"] = names_of(scene.media.entries());
+  reader.names["objects"] = names_of(scene.objects.entries());
   for (std::size_t i = 0; i < scene.lights.size(); ++i)
     reader.names["lights"].emplace(name_of_light(static_cast<Index>(i)), static_cast<Index>(i));
   for (std::size_t i = 0; i < scene.area_lights.size(); ++i)
@@ -236,9 +236,9 @@ DescriptionEdits edits_of_data(const Value& value, const SceneDescription& scene
   SceneEdits changes;
   // Excludes the members of the view, because they are part of the view's own identity.
   reader.hash = scene.hash;
-  read_edits(reader, data, "materials", scene.materials, changes.materials);
-  read_edits(reader, data, "lights", scene.lights, changes.lights);
-  read_edits(reader, data, "area_lights", scene.area_lights, changes.area_lights);
+  read_edits(reader, data, "materials", scene.materials.entries(), changes.materials);
+  read_edits(reader, data, "lights", scene.lights.entries(), changes.lights);
+  read_edits(reader, data, "area_lights", scene.area_lights.entries(), changes.area_lights);
   std::vector<AnimatedTransform> places;
   for (const description::Instance& instance : scene.instances) places.push_back(instance.object_to_world);
   read_edits(reader, data, "instances", places, changes.instances);

@@ -140,7 +140,7 @@ TEST_F(RendererTest, ShapesHiddenFromTheCameraHaveShadows) {
   ASSERT_EQ(description.shapes.size(), 2u);
   description.shapes[1].visible_to_camera = false;
   const Scene hidden(description);
-  description.shapes.pop_back();
+  description.shapes.edit().pop_back();
   const Scene without(description);
   const View view = make_view(hidden.description().view);
   for (const ShadowKind shadows : {ShadowKind::maps, ShadowKind::traced}) {
