@@ -32,17 +32,21 @@ using Index = std::uint32_t;
 struct SampledSpectrum {
   std::vector<float> nm;
   std::vector<float> values;
+  friend bool operator==(const SampledSpectrum&, const SampledSpectrum&) = default;
 };
 /// RGB as given, in a colour space. Its use decides its meaning (albedo, light, plain numbers).
 struct RgbSpectrum {
   Rgb rgb;
   ColorSpace space = ColorSpace::srgb;
+  friend bool operator==(const RgbSpectrum&, const RgbSpectrum&) = default;
 };
 struct BlackbodySpectrum {
   float kelvin = 6500;
+  friend bool operator==(const BlackbodySpectrum&, const BlackbodySpectrum&) = default;
 };
 struct NamedSpectrum {
   std::string name;  ///< a name known to `named_spectrum`
+  friend bool operator==(const NamedSpectrum&, const NamedSpectrum&) = default;
 };
 /// A spectrum parameter: constant, RGB, blackbody, named or sampled (the reader turns spectrum files into samples).
 using SpectrumValue = std::variant<float, RgbSpectrum, BlackbodySpectrum, NamedSpectrum, SampledSpectrum>;
@@ -56,6 +60,7 @@ struct FloatParameter {
 struct SpectrumParameter {
   SpectrumValue value = 0.0f;
   std::optional<Index> texture;  ///< into SceneDescription::spectrum_textures
+  friend bool operator==(const SpectrumParameter&, const SpectrumParameter&) = default;
 };
 
 // Textures. `FloatParameter`s and `SpectrumParameter`s inside them may refer only to earlier textures.
@@ -437,6 +442,7 @@ struct AreaLight {
   std::optional<float> power;
   bool two_sided = false;
   SourceLocation location;
+  friend bool operator==(const AreaLight&, const AreaLight&) = default;
 };
 /// Displaces a mesh: triangles and quads are split until no edge is longer than `edge_length` (metres, world space);
 /// then each vertex moves along its normal by `height` (in the mesh's space).
@@ -482,6 +488,7 @@ struct Instance {
 struct Emission {
   SpectrumValue spectrum = 1.0f;
   float scale = 1;
+  friend bool operator==(const Emission&, const Emission&) = default;
 };
 /// How a kind of light is presented to users.
 struct LightKind {
@@ -494,6 +501,7 @@ struct PointLight {
   Emission intensity;
   Point from{0};
   std::optional<float> power;
+  friend bool operator==(const PointLight&, const PointLight&) = default;
 };
 /// Falloff of a spot light between its cones. x in [0,1] is the fraction of the cosine's way from the outer to the
 /// inner cone: pbrt's smoothstep 3x^2 - 2x^3, or glTF's x^2.
@@ -507,6 +515,7 @@ struct SpotLight {
   float cone_angle = 30, cone_delta_angle = 5;  ///< degrees
   SpotFalloff falloff = SpotFalloff::smoothstep;
   std::optional<float> power;
+  friend bool operator==(const SpotLight&, const SpotLight&) = default;
 };
 /// Parallel light, or a round light infinitely far away that rays can meet, such as the sun (.53 degrees).
 struct DistantLight {
@@ -518,6 +527,7 @@ struct DistantLight {
   float angle = 0;                ///< under which the light's diameter is seen, degrees, in [0, 180); 0: parallel light
   bool visible_to_camera = true;  ///< false: camera rays do not see the round light; all other rays do
   std::optional<float> illuminance;
+  friend bool operator==(const DistantLight&, const DistantLight&) = default;
 };
 /// Colours over the sphere, row by row from the top.
 struct SphericalTexels {
@@ -538,6 +548,7 @@ struct InfiniteLight {
   /// Corners of a rectangle, in order around it, in world space regardless of the light's transform. Light passes only
   /// through it, in the direction opposite to (p3 - p0) x (p1 - p0).
   std::optional<std::array<Point, 4>> portal;
+  friend bool operator==(const InfiniteLight&, const InfiniteLight&) = default;
 };
 /// A point light whose intensity is multiplied by a grey image in one of the layouts of an infinite light.
 struct GoniometricLight {
@@ -546,6 +557,7 @@ struct GoniometricLight {
   Emission intensity;
   std::string image;
   std::optional<float> power;
+  friend bool operator==(const GoniometricLight&, const GoniometricLight&) = default;
 };
 /// A point light that projects an image along z, with x to the right and y up.
 struct ProjectionLight {
@@ -556,12 +568,14 @@ struct ProjectionLight {
   float scale = 1;
   float fov = 90;  ///< degrees, over the shorter side
   std::optional<float> power;
+  friend bool operator==(const ProjectionLight&, const ProjectionLight&) = default;
 };
 struct Light {
   std::variant<PointLight, SpotLight, DistantLight, InfiniteLight, GoniometricLight, ProjectionLight> node;
   Transform light_to_world;
   std::optional<Index> medium;  ///< medium around the light, into SceneDescription::media; none: vacuum
   SourceLocation location;
+  friend bool operator==(const Light&, const Light&) = default;
 };
 
 // Cameras and film.

@@ -35,7 +35,7 @@ class Table {
     is_taken_ = true;
     return unshared();
   }
-  bool is_taken() const { return is_taken_; }
+  bool is_taken() const { return is_taken_ && !empty(); }
 
   const std::vector<T>& entries() const {
     static const std::vector<T> none;
