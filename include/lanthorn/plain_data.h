@@ -30,12 +30,18 @@ namespace lanthorn::plain {
 
 using description::Index;
 
+/// The index of each named entry of a table.
+using NameTable = std::map<std::string, Index>;
+
 /// State of reading a value and everything in it: tracks the current path for messages, and hashes what it reads.
 class Reader {
  public:
-  /// For each table ("materials", ...): the index of each named entry in that vector.
-  std::map<std::string, std::map<std::string, Index>> names;
-  std::uint64_t hash = 0;  ///< of all that has been read
+  std::map<std::string, std::shared_ptr<const NameTable>> names;  ///< by table ("materials", ...)
+  std::uint64_t hash = 0;                                         ///< of all that has been read
+  bool is_hashing = true;                                         ///< false: nobody asks for `hash`
+
+  /// The names of a table; empty if it has none.
+  const NameTable& names_in(const std::string& table) const;
 
   void mix(const void* bytes, std::size_t count);
   void mix(std::string_view text) { mix(text.data(), text.size()); }
@@ -374,6 +380,11 @@ requires(!NumberElement<T>) struct Convert<std::vector<T>> {
     for (const T& value : values) list.push_back(plain::write(value));
     return list;
   }
+};
+
+template <class T>
+struct Convert<description::Table<T>> {
+  static Value write(const description::Table<T>& table) { return plain::write(table.entries()); }
 };
 
 template <class T, std::size_t n>

@@ -143,12 +143,14 @@ std::vector<NamedLight> Viewer::lights() const {
 }
 
 SharedScene Viewer::in_environment(const EnvironmentChoice& choice) {
-  const auto edit = [&](const Scene& scene) {
-    return edit_scene(scene, {.environment = choice, .hash = description_of(*scene_).hash});
+  const auto edit = [&](const SharedScene& scene) {
+    SceneDescription description = description_of(*scene);
+    replace_environment(description, choice);
+    return build_scene(std::move(description), scene);
   };
   SharedScene& first = surroundings_[choice.source];
-  if (!first) first = edit(*scene_);
-  return description_of(*first).environment == choice ? first : edit(*first);
+  if (!first) first = edit(scene_);
+  return description_of(*first).environment == choice ? first : edit(first);
 }
 
 // Lights that are the same in both environments keep their factors.

@@ -43,8 +43,14 @@ Shape shape_of(Reader& reader, const Value& data, bool is_integral, const std::s
   return {};
 }
 
+const NameTable& Reader::names_in(const std::string& table) const {
+  static const NameTable none;
+  const auto found = names.find(table);
+  return found != names.end() ? *found->second : none;
+}
+
 void Reader::mix(const void* bytes, std::size_t count) {
-  hash = hash_words({hash, hash_bytes({static_cast<const std::byte*>(bytes), count})});
+  if (is_hashing) hash = hash_words({hash, hash_bytes({static_cast<const std::byte*>(bytes), count})});
 }
 
 void Reader::fail(const std::string& expected, const Value& got) const {
@@ -73,7 +79,7 @@ void read_reference(Reader& reader, const Value& data, const char* table, Index&
     return read(reader, data, out);
   }
   const std::string& name = *data.as<std::string>();
-  const std::map<std::string, Index>& known = reader.names[table];
+  const NameTable& known = reader.names_in(table);
   if (const auto found = known.find(name); found != known.end()) {
     out = found->second;
     return reader.mix(&out, sizeof(out));

@@ -49,7 +49,7 @@ bool is_all_around(const Light& light) { return is_infinite(light) && !std::hold
 std::vector<Group> groups_of(const Scene& scene) {
   const std::vector<Light>& lights = scene.lights();
   std::set<std::uint32_t> starts;
-  for (const EmittingShape& shape : scene.data()->emitters) starts.insert(shape.first_light);
+  for (const EmittingShape& shape : scene.data()->shapes->emitters) starts.insert(shape.first_light);
   std::vector<Group> groups;
   for (std::uint32_t i = 0; i < lights.size(); ++i) {
     if (!has_view(lights[i])) continue;

@@ -112,7 +112,7 @@ GpuMaterial blended(const std::vector<Part>& parts) {
 
 /// The mean of the parts' mapped normals, in the frame of dp/du, dp/dv and the smooth normal; nullopt if none has one.
 std::optional<Normal> normal_at(const Scene& scene, std::uint32_t material, const Vec2& uv) {
-  const MaterialTable& table = scene.data()->materials;
+  const MaterialTable& table = scene.data()->materials->table;
   const TexturePoint at{.uv = uv};
   Normal sum(0);
   bool is_mapped = false;
@@ -177,7 +177,7 @@ GpuMaterial reduce(const Bsdf& bsdf) {
 }
 
 GpuMaterial material_at(const Scene& scene, std::uint32_t material, const Vec2& uv) {
-  const MaterialTable& table = scene.data()->materials;
+  const MaterialTable& table = scene.data()->materials->table;
   TexturePoint at;
   at.uv = uv;
   at.position = scene.bounding_sphere().centre;

@@ -46,11 +46,10 @@ RenderOptions small(std::uint64_t passes = 3) {
 }
 
 SharedScene darker(float factor) {
-  SceneEdits edits;
-  edits.area_lights[0] = description_of(*box()).area_lights[0];
-  scale_light(edits.area_lights[0], factor);
-  edits.hash = static_cast<std::uint64_t>(1000 * factor);
-  return edit_scene(*box(), edits);
+  SceneDescription description = description_of(*box());
+  scale_light(description.area_lights[0], factor);
+  description.hash = static_cast<std::uint64_t>(1000 * factor);
+  return build_scene(std::move(description), box());
 }
 
 Image picture_of(const SharedScene& scene, const ViewDescription& view, const RenderOptions& options) {
