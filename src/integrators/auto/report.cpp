@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include "integrators/auto/report.h"
+#include "integrators/auto/choice.h"
 
 #include <fmt/format.h>
 
