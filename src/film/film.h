@@ -18,11 +18,12 @@
 #include "film/filter.h"
 #include "film/pixel_window.h"
 #include "film/sensor.h"
+#include "lanthorn/color.h"
 #include "lanthorn/image.h"
 #include "lanthorn/state.h"
 #include "math/vec.h"
-#include "spectrum/buckets.h"
 #include "spectrum/spectrum.h"
+#include "spectrum/wavelengths.h"
 
 namespace lanthorn {
 

@@ -113,6 +113,15 @@ Attempt open(const Platform& platform) {
 constexpr const char* advice =
     "Install a driver of the graphics card, or libgl1-mesa-dri and libegl1 to draw in software";
 
+// Ignores other messages (performance, portability, deprecated functions), which do not affect the frame.
+void APIENTRY note(GLenum /*source*/, GLenum type, GLuint /*id*/, GLenum /*severity*/, GLsizei length,
+                   const GLchar* text, const void* log) {
+  if (type != GL_DEBUG_TYPE_ERROR && type != GL_DEBUG_TYPE_UNDEFINED_BEHAVIOR) return;
+  auto& messages = *static_cast<std::vector<std::string>*>(const_cast<void*>(log));
+  const char* kind = type == GL_DEBUG_TYPE_ERROR ? "error" : "undefined behaviour";
+  messages.push_back(fmt::format("OpenGL {}: {}", kind, std::string(text, static_cast<std::size_t>(length))));
+}
+
 }  // namespace
 
 Driver current_driver(std::string platform) {
@@ -182,6 +191,20 @@ CurrentScope::~CurrentScope() {
     eglMakeCurrent(display_, draw_, read_, context_);
   else
     eglMakeCurrent(eglGetCurrentDisplay(), EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+}
+
+DebugLog::DebugLog() : messages_(std::make_unique<std::vector<std::string>>()) {
+  glEnable(GL_DEBUG_OUTPUT);
+  glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
+  glDebugMessageCallback(note, messages_.get());
+}
+
+void DebugLog::check() const {
+  if (glGetGraphicsResetStatus() != GL_NO_ERROR)
+    throw Unavailable("the OpenGL context was lost: the driver of the graphics card was reset");
+  if (messages_->empty()) return;
+  const std::vector<std::string> said = std::exchange(*messages_, {});
+  throw Error(said.front());
 }
 
 }  // namespace lanthorn::gl

@@ -1,9 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// An OpenGL 4.5 core context without window or display, created with EGL.
+// An OpenGL 4.5 core context without window or display, created with EGL, and the errors that OpenGL reports.
 #pragma once
 
+#include <memory>
 #include <string>
+#include <vector>
 
 #include "lanthorn/error.h"
 
@@ -57,6 +59,22 @@ class CurrentScope {
 
  private:
   void *display_, *context_, *draw_, *read_;  // the previous ones; null: none
+};
+
+/// Collects the errors and the undefined behaviour that OpenGL reports for the context that was current when the log
+/// was created. Must live as long as the context is used.
+class DebugLog {
+ public:
+  DebugLog();
+
+  /// Messages so far, in order.
+  const std::vector<std::string>& messages() const { return *messages_; }
+  /// Throws Unavailable if the driver was reset and the context is lost, or Error with the first message, if there is
+  /// one; this empties the log.
+  void check() const;
+
+ private:
+  std::unique_ptr<std::vector<std::string>> messages_;  // OpenGL stores its address
 };
 
 }  // namespace lanthorn::gl

@@ -8,8 +8,7 @@
 #include "base/memory.h"
 #include "ibl/bake_plan.h"
 #include "ibl/brute_force.h"
-#include "ibl/irradiance.h"
-#include "ibl/level_roughness.h"
+#include "ibl/point_sums.h"
 #include "ibl/prefilter.h"
 #include "ibl/spherical_harmonics.h"
 #include "lanthorn/error.h"
@@ -50,6 +49,40 @@ const CubeMap& level_of_size(const CubePyramid& pyramid, int size) {
   for (const CubeMap& map : pyramid)
     if (map.size() <= size) return map;
   return pyramid.back();
+}
+
+// All light of the environment as points: the texels of a map, each with its solid angle as the fourth component of
+// its flux, and the suns, without one. A kernel's sums over them are normalised by dividing by the sum of the fourth
+// component: a white environment gives 1.
+std::vector<PointFlux> points_of(const CubeMap& map, const Environment& environment) {
+  const std::vector<float> solid_angles = cube_solid_angles(map.size());
+  constexpr float sun_spacing = 0.02f;
+  std::vector<PointFlux> points = environment.sun_points(sun_spacing);
+  const int n = map.size();
+  for (int face = 0; face < cube_faces; ++face)
+    for (int y = 0; y < n; ++y)
+      for (int x = 0; x < n; ++x) {
+        const float omega =
+            solid_angles[static_cast<std::size_t>(y) * static_cast<std::size_t>(n) + static_cast<std::size_t>(x)];
+        Spectrum flux = omega * map.texel(face, x, y);
+        flux[3] = omega;
+        points.push_back({map.direction(face, x, y), flux});
+      }
+  return points;
+}
+
+// (1/pi) ∫ L cos dω for all normals, by a sum over all points.
+CubeMap irradiance_map(const std::vector<PointFlux>& points, int size) {
+  CubeMap map(size);
+  for_texel_batches(map, [&](const DirectionBatch& at, auto&& store) {
+    SpectrumBatch sums;
+    for (const PointFlux& point : points) add_point(point, CosineKernel{}, at, sums);
+    store([&](std::size_t i) {
+      const Spectrum sum = sums[i];
+      return Spectrum{sum[0], sum[1], sum[2], 0} / sum[3];
+    });
+  });
+  return map;
 }
 
 template <class Integrate>

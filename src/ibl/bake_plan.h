@@ -12,6 +12,10 @@
 
 namespace lanthorn {
 
+/// Roughness of the level at x = level / last level; and the inverse.
+float level_roughness(float x, RoughnessMapping mapping);
+float level_of_roughness(float roughness, RoughnessMapping mapping);
+
 struct LevelPlan {
   int size = 1;
   float roughness = 0, alpha = 0;

@@ -6,7 +6,7 @@
 #include <bit>
 #include <cmath>
 
-#include "ibl/level_roughness.h"
+#include "ibl/bake_plan.h"
 
 namespace lanthorn {
 

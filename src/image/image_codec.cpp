@@ -12,16 +12,43 @@
 #include <algorithm>
 #include <cerrno>
 #include <csignal>
+#include <filesystem>
+#include <system_error>
 #include <thread>
 
 #include "base/parallel.h"
 #include "base/threads.h"
-#include "image/fallback_libraries.h"
 #include "lanthorn/error.h"
 
 namespace lanthorn {
 
 namespace {
+
+namespace fs = std::filesystem;
+
+// Loads the shared libraries of a folder that the system lacks, so that modules that need them find them loaded. The
+// system's libraries take precedence: drivers must not meet an older library of the same name.
+void load_fallback_libraries(const fs::path& folder) {
+  std::vector<fs::path> missing;
+  std::error_code ignored;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored))
+    if (dlopen(entry.path().filename().c_str(), RTLD_LAZY | RTLD_LOCAL) == nullptr) missing.push_back(entry.path());
+  // All libraries that the system provides are loaded by now, including for those that need each other.
+  for (const fs::path& library : missing) dlopen(library.c_str(), RTLD_LAZY | RTLD_LOCAL);
+}
+
+// The folder of such libraries beside this library's modules, which the relocatable archive has
+// (scripts/bundle-libraries); empty if it does not exist.
+fs::path folder_of_fallback_libraries() {
+  Dl_info own{};
+  if (dladdr(reinterpret_cast<const void*>(&folder_of_fallback_libraries), &own) == 0) return {};
+  const fs::path beside = fs::path(own.dli_fname).parent_path();
+  std::error_code ignored;
+  // The second path is for a library in glibc-hwcaps/x86-64-v3.
+  for (const char* modules : {"lanthorn", "../../lanthorn"})
+    if (fs::path folder = beside / modules / "fallback"; fs::is_directory(folder, ignored)) return folder;
+  return {};
+}
 
 void* load_module() {
   void* module = dlopen(LANTHORN_IMAGE_MODULE, RTLD_LAZY | RTLD_LOCAL);

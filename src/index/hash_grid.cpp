@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "base/parallel.h"
-#include "index/bounds_of.h"
 
 namespace lanthorn {
 
@@ -21,6 +20,19 @@ constexpr float max_cells_per_axis = 0x1p20f;
 constexpr std::size_t min_points_per_block = 16;
 /// Points are first sorted by groups of blocks, at most 2^max_group_bits groups.
 constexpr int max_group_bits = 10;
+
+// Bounding box of the points, computed in parallel; empty if there are none.
+Bounds bounds_of(std::span<const Point> points) {
+  std::vector<Bounds> parts((points.size() + chunk - 1) / chunk);
+  parallel_chunks(points.size(), chunk, [&](std::size_t c, std::size_t begin, std::size_t end) {
+    Bounds b;
+    for (std::size_t i = begin; i < end; ++i) b.extend(points[i]);
+    parts[c] = b;
+  });
+  Bounds all;
+  for (const Bounds& b : parts) all.extend(b);
+  return all;
+}
 
 }  // namespace
 

@@ -9,12 +9,10 @@
 #include <optional>
 #include <variant>
 
-#include "light/cylinder_emitter.h"
-#include "light/disk_emitter.h"
 #include "light/emitter_sample.h"
 #include "light/parallelogram_emitter.h"
 #include "light/patch_emitter.h"
-#include "light/sphere_emitter.h"
+#include "light/quadric_emitters.h"
 #include "light/triangle_emitter.h"
 #include "math/vec.h"
 

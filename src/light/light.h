@@ -15,7 +15,6 @@
 #include "light/area_light.h"
 #include "light/brightness.h"
 #include "light/cone_profile.h"
-#include "light/distant_light.h"
 #include "light/even_profile.h"
 #include "light/far_light.h"
 #include "light/image_profile.h"

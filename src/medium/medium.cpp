@@ -180,6 +180,17 @@ Flight fly(const Medium& medium, const Segment& segment, const Spectrum& beta, c
   return std::visit([&](const auto& m) { return fly_through(m, segment, beta, w, rng); }, medium);
 }
 
+std::optional<Spectrum> passing_weight(const Medium& medium, float distance, const Spectrum& beta,
+                                       const Wavelengths& w) {
+  const auto* homogeneous = std::get_if<HomogeneousMedium>(&medium);
+  if (homogeneous == nullptr) return {};
+  // A flight chooses a wavelength by its throughput, and a distance by the extinction at that wavelength
+  // (HomogeneousMedium::fly).
+  const Spectrum through = homogeneous->attenuation(distance, w).transmittance;
+  const float passing = sum_of(beta * through) / sum_of(beta);
+  return passing > 0 ? through / passing : Spectrum();
+}
+
 VolumeEmission emission_along(const Medium& medium, const Segment& segment, const Wavelengths& w, HashRng& rng) {
   return std::visit([&](const auto& m) { return emission_in(m, segment, w, rng); }, medium);
 }

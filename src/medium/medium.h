@@ -52,6 +52,15 @@ float scattering_length(const Medium& medium, const Segment& segment, const Wave
 /// Lets a walk of throughput `beta` cross the segment or scatter on it; samples free flight.
 Flight fly(const Medium& medium, const Segment& segment, const Spectrum& beta, const Wavelengths& w, HashRng& rng);
 
+/// True if the probability with which flights (`fly`) pass a point is known.
+inline bool knows_passing(const Medium& medium) { return std::holds_alternative<HomogeneousMedium>(medium); }
+
+/// Transmittance over `distance` (m), divided by the probability that a flight of throughput `beta` passes its end: the
+/// flight's remaining flux relative to its start, by wavelength. 1 if all wavelengths are attenuated alike. Nullopt
+/// unless `knows_passing`.
+std::optional<Spectrum> passing_weight(const Medium& medium, float distance, const Spectrum& beta,
+                                       const Wavelengths& w);
+
 /// Volumetric emission of the whole segment as seen from its origin, attenuated on the way, wherever a walk scatters.
 /// Unbiased; exact if there is a closed form.
 VolumeEmission emission_along(const Medium& medium, const Segment& segment, const Wavelengths& w, HashRng& rng);

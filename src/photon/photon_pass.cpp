@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "medium/passing.h"
+#include "medium/medium.h"
 #include "path/depth.h"
 #include "path/walk.h"
 

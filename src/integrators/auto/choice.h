@@ -2,8 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "integrators/auto/measurement.h"
+#include "integrators/auto/pilot.h"
 #include "integrators/vcm/effort.h"
+#include "lanthorn/effort_report.h"
 #include "path/render_job.h"
 
 namespace lanthorn {

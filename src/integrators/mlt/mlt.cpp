@@ -7,14 +7,16 @@
 // states of the Markov chains, so that there is no start-up bias (Veach 1997, section 11.3.1).
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <memory>
 #include <numeric>
 #include <optional>
 #include <vector>
 
 #include "base/parallel.h"
+#include "base/parameters.h"
 #include "integrators/integrator.h"
 #include "integrators/mlt/mlt_paths.h"
-#include "integrators/mlt/mlt_settings.h"
 #include "path/emission_pass.h"
 #include "path/mis.h"
 #include "path/splat.h"
@@ -23,6 +25,24 @@
 namespace lanthorn {
 
 namespace {
+
+// User settings.
+struct MltSettings {
+  bool multiplexed = true;     ///< over bidirectional path tracing, else over path tracing
+  int roulette_depth;          ///< of path tracing
+  float large_steps;           ///< probability of large mutations
+  float sigma;                 ///< standard deviation of small ones
+  std::uint64_t chain_length;  ///< mutations
+  double bootstrap;            ///< independent paths for each mutation
+
+  explicit MltSettings(const Parameters& parameters)
+      : multiplexed(choice<bool, 2>(parameters, "over", {{{"bdpt", true}, {"path", false}}})),
+        roulette_depth(static_cast<int>(parameters.number("roulette-depth", 1, 1e6))),
+        large_steps(static_cast<float>(parameters.number("large-steps", 1e-3, 1))),
+        sigma(static_cast<float>(parameters.number("sigma", 1e-6, 1))),
+        chain_length(static_cast<std::uint64_t>(parameters.number("chain-length", 1, 1e9))),
+        bootstrap(parameters.number("bootstrap", 1e-3, 1e3)) {}
+};
 
 // The scalar contribution function I, to which the density of the chains is proportional. It is the mean magnitude of
 // the colour channels, not luminance, which would make saturated blue paths rare and very bright.
@@ -53,7 +73,10 @@ class MetropolisLightTransport final : public Integrator {
     contents.splats = true;
     return contents;
   }
-  MemoryUse memory_use(const RenderSettings&) const override { return settings_.memory_use(); }
+  MemoryUse memory_use(const RenderSettings&) const override {
+    const double counts_of_mutation = sizeof(RayCounts) / static_cast<double>(settings_.chain_length);
+    return {0, settings_.bootstrap * sizeof(double) + counts_of_mutation, 0};
+  }
   void prepare(const RenderJob& job) override;
   bool passes_share_wavelengths() const override { return true; }
   bool crops_are_exact() const override { return false; }
@@ -217,8 +240,17 @@ PassReport MetropolisLightTransport::render_pass(const RenderJob& job, std::uint
 
 }  // namespace
 
-std::unique_ptr<Integrator> make_metropolis_light_transport(const MltSettings& settings) {
-  return std::make_unique<MetropolisLightTransport>(settings);
+IntegratorInfo mlt_info() {
+  return {"mlt",
+          "Metropolis light transport: paths mutated where they carry much light; unbiased",
+          "Kelemen et al. 2002; Hachisuka et al. 2014",
+          {{"over", "bdpt", "bdpt: each path by one of its techniques (multiplexed); path: paths traced from the eye"},
+           {"roulette-depth", "3", "over=path: scattering event from which Russian roulette may end a path, from 1"},
+           {"large-steps", "0.3", "probability in (0,1] of a large step, which draws a new path"},
+           {"sigma", "0.01", "standard deviation of small steps, in primary samples from [0,1)"},
+           {"chain-length", "256", "mutations of each Markov chain in a pass"},
+           {"bootstrap", "0.25", "independent paths of a pass / mutations of a pass"}},
+          [](const Parameters& p) { return std::make_unique<MetropolisLightTransport>(MltSettings(p)); }};
 }
 
 }  // namespace lanthorn

@@ -11,9 +11,9 @@
 #include <optional>
 #include <span>
 
+#include "index/point_index.h"
 #include "path/vertex.h"
 #include "path/walk.h"
-#include "photon/gather/differential_check.h"
 #include "photon/gather/kernels.h"
 #include "photon/gather/photon_hit.h"
 #include "photon/photon_map.h"
@@ -43,6 +43,35 @@ struct ChosenNearest {
   std::span<const Neighbour> nearest;  ///< the farthest one first
   std::size_t wanted = 0;              ///< number that bounds the disc
 };
+
+/// Differential checking (Jensen 1996, "Global Illumination using Photon Maps"): the number of nearest photons that an
+/// estimate should use. `nearest` is sorted by distance; its slots index `light`. The function evaluates the estimate
+/// of a constant kernel while it adds photons from the nearest on. Where the estimate has grown monotonically, or
+/// fallen monotonically, by more than the share `threshold` since some photon, the disc has reached an area of
+/// different light and is cut at that photon. At least `least_checked` photons remain. Noise can cut a disc too, more
+/// often for lower thresholds.
+inline std::size_t settled_count(std::span<const Neighbour> nearest, std::span<const Spectrum> light, float threshold) {
+  constexpr std::size_t least_checked = 8;
+  // Light per area of the disc up to each photon, without that photon.
+  float sum = 0, previous = 0;
+  struct Run {
+    std::size_t begin = 0;
+    float from = 0;
+    bool grows = false;
+  } run;
+  for (std::size_t i = 0; i < nearest.size(); ++i) {
+    const float estimate = nearest[i].dist2 > 0 ? sum / nearest[i].dist2 : 0.0f;
+    sum += sum_of(light[nearest[i].slot]);
+    const bool grows = estimate > previous;
+    if (i < least_checked)
+      run = {i, estimate, grows};
+    else if (grows != run.grows)
+      run = {i - 1, previous, grows};
+    if (std::fabs(estimate - run.from) > threshold * run.from && run.from > 0) return run.begin + 1;
+    previous = estimate;
+  }
+  return nearest.size();
+}
 
 /// The `wanted` nearest of the photons found, in any order. Differential checking may choose fewer.
 inline ChosenNearest choose_nearest(std::span<Neighbour> found, std::size_t wanted, std::span<const Spectrum> light,

@@ -10,7 +10,7 @@
 
 #include "lanthorn/error.h"
 #include "lanthorn/text.h"
-#include "medium/passing.h"
+#include "medium/medium.h"
 #include "path/depth.h"
 #include "photon/media/volume_estimators.h"
 

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <utility>
 
-#include "gl/context.h"
 #include "realtime/scene/materials.h"
 #include "realtime/scene/shader_files.h"
 #include "realtime/scene/view_focus.h"

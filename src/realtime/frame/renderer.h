@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "camera/view.h"
-#include "gl/debug_log.h"
+#include "gl/context.h"
 #include "gl/program.h"
 #include "gl/timer.h"
 #include "lanthorn/image.h"

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "camera/view.h"
@@ -35,7 +36,12 @@ enum class ShadowKind : std::uint8_t {
 struct FrameSettings {
   FrameSettings() = default;
   /// Takes the shadows and views of lights from the technique's parameters.
-  explicit FrameSettings(TechniqueChoice choice);
+  explicit FrameSettings(TechniqueChoice choice) : technique(std::move(choice)) {
+    if (!technique.info().description.has_light_views) return;
+    shadows = static_cast<ShadowKind>(technique.word("shadows"));
+    views.map_size = technique.whole("map");
+    views.sky_views = technique.whole("sky");
+  }
 
   TechniqueChoice technique;
   ShadowKind shadows = ShadowKind::maps;

@@ -5,16 +5,24 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
+#include <utility>
+#include <vector>
 
+#include "index/hash_grid.h"
+#include "path/light_layers.h"
+#include "path/lobe_split.h"
+#include "path/walk.h"
 #include "photon/gather/kernels.h"
+#include "photon/gather/photon_hit.h"
 #include "photon/gather/pilot_radius.h"
 #include "photon/gather/radius_schedule.h"
 #include "realtime/scene/view_focus.h"
 #include "realtime/techniques/frame_context.h"
 #include "realtime/techniques/ispm/bounce_map.h"
-#include "realtime/techniques/ispm/near_photons.h"
 #include "realtime/techniques/ispm/photon_light.h"
+#include "realtime/techniques/ispm/photon_tiles.h"
 #include "realtime/techniques/ispm/photon_walk.h"
 
 namespace lanthorn {
@@ -42,6 +50,60 @@ PhotonGather gather_of(const FrameContext& frame) {
   // Software OpenGL is slow at triangles.
   const std::string& gather = frame.settings.technique.text("gather");
   return gather == "tiles" || (gather == "auto" && frame.is_software) ? PhotonGather::tiles : PhotonGather::splat;
+}
+
+/// The photons of a frame, for gathering at points. The kernel is the same as in photon.glsl.
+class NearPhotons {
+ public:
+  NearPhotons(SharedPhotons photons, const PhotonVolume& volume);
+
+  bool holds(const SharedPhotons& photons, const PhotonVolume& volume) const {
+    return photons_ == photons && volume_ == volume;
+  }
+  /// Adds the photons' light that the vertex scatters to the eye, as far as the split leaves it to photons.
+  void gather(const SurfaceVertex& vertex, const LobeSplit& split, int max_depth, LightLayers& layers) const;
+
+ private:
+  Spectrum light_of(const GpuPhoton& photon, const GatherVertex& met, const LobeSplit& split) const;
+
+  SharedPhotons photons_;
+  PhotonVolume volume_;
+  float reach_;
+  IndexBuild<HashGrid> index_;
+};
+
+NearPhotons::NearPhotons(SharedPhotons photons, const PhotonVolume& volume)
+    : photons_(std::move(photons)), volume_(volume), reach_(std::hypot(volume.radius, volume.half_height)) {
+  std::vector<Point> points;
+  points.reserve(photons_->photons.size());
+  for (const GpuPhoton& photon : photons_->photons) points.push_back(photon.position);
+  index_ = HashGrid::build(points, reach_);
+}
+
+void NearPhotons::gather(const SurfaceVertex& vertex, const LobeSplit& split, int max_depth,
+                         LightLayers& layers) const {
+  const GatherVertex met(vertex);
+  Spectrum indirect, caustic;
+  index_.index.for_each_near(vertex.at.position, reach_, [&](std::uint32_t slot, float) {
+    const std::uint32_t i = index_.order[slot];
+    if (!met.admits({.eye_scatterings = max_depth - static_cast<int>(photons_->depths[i])})) return;
+    (i < photons_->indirect ? indirect : caustic) += light_of(photons_->photons[i], met, split);
+  });
+  const bool is_dispersed = met.is_dispersed(false);  // photons have their colour already
+  layers.add(PathClass::indirect, vertex.state.beta * indirect, is_dispersed);
+  layers.add(vertex.state.non_delta == 0 ? PathClass::caustic : PathClass::indirect, vertex.state.beta * caustic,
+             is_dispersed);
+}
+
+Spectrum NearPhotons::light_of(const GpuPhoton& photon, const GatherVertex& met, const LobeSplit& split) const {
+  const Vec3 offset = met.vertex().at.position - photon.position;
+  const float height = dot(offset, photon.surface_normal()), r2 = volume_.radius * volume_.radius;
+  const float flat2 = length_squared(offset) - height * height;
+  if (flat2 >= r2 || std::fabs(height) > volume_.half_height) return {};
+  const std::optional<PhotonHit> hit = met.scatter(photon.incident());
+  if (!hit) return {};
+  const Spectrum power(photon.power.x, photon.power.y, photon.power.z, 0);
+  return hit->f * power * (split.wide(hit->pdf) * hit->ratio * 2 * inv_pi / r2 * (1 - flat2 / r2));
 }
 
 class ImageSpacePhotons final : public Technique {

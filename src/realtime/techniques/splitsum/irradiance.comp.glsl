@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// (1/pi) times the integral of L cos, for each texel of a map of one level, as ibl/irradiance.cpp.
+// (1/pi) times the integral of L cos, for each texel of a map of one level, as ibl/bake.cpp.
 #include "cube_map.glsl"
 #include "points.glsl"
 layout(local_size_x = work_group) in;

@@ -4,13 +4,51 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
+#include <vector>
 
+#include "gl/context.h"
+#include "gl/program.h"
+#include "integrators/environment_image.h"
+#include "realtime/scene/environment_fingerprint.h"
 #include "realtime/techniques/frame_context.h"
-#include "realtime/techniques/splitsum/environment_light.h"
+#include "realtime/techniques/splitsum/environment_baker.h"
 
 namespace lanthorn {
 
 namespace {
+
+/// Split-sum shading of visible surfaces, by the maps of the scene's environment.
+class EnvironmentLight {
+ public:
+  explicit EnvironmentLight(const gl::ShaderFiles& files)
+      : files_(files), shade_(files, "screen.vert.glsl", "split_sum.frag.glsl") {}
+
+  /// Bakes the maps if the environment has changed; returns whether it has. A GPU bakes them itself; with software
+  /// OpenGL the CPU does.
+  bool prepare(const Scene& scene) {
+    std::vector<Vec3> fingerprint = environment_fingerprint(scene);
+    if (fingerprint == fingerprint_) return false;
+    const Image image = environment_image(scene);
+    maps_ = gl::current_driver("").software ? EnvironmentMaps(SplitSum(image))
+                                            : EnvironmentBaker(files_).bake(image, split_sum_settings(image));
+    fingerprint_ = std::move(fingerprint);
+    return true;
+  }
+  /// Uses the program split_sum.frag.glsl with its maps. G-buffer and scene must be bound.
+  void use(const WindowRays& rays) const {
+    shade_.use();
+    shade_.set("eye", rays.eye);
+    shade_.set("axis", glm::vec4(rays.axis, rays.parallel ? 1 : 0));
+    maps_.bind(shade_);
+  }
+
+ private:
+  gl::ShaderFiles files_;
+  gl::Program shade_;
+  EnvironmentMaps maps_;
+  std::vector<Vec3> fingerprint_;
+};
 
 class EnvironmentAlone final : public Technique {
  public:

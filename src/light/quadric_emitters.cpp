@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include "light/sphere_emitter.h"
+#include "light/quadric_emitters.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,6 +11,7 @@
 #include "math/sampling.h"
 
 namespace lanthorn {
+
 namespace {
 
 /// The cone of directions from an outside point to a sphere.
@@ -106,5 +107,80 @@ Bounds SphereEmitter::bounds() const {
 }
 
 NormalCone SphereEmitter::normal_cone() const { return {}; }
+
+CylinderEmitter::CylinderEmitter(const Transform& object_to_world, float radius_, float z_min_, float z_max_,
+                                 float phi_max_)
+    : linear(object_to_world.matrix),
+      origin(object_to_world.point(Point(0))),
+      radius(radius_),
+      z_min(std::fmin(z_min_, z_max_)),
+      z_max(std::fmax(z_min_, z_max_)),
+      phi_max(std::clamp(phi_max_, 0.0f, 2 * pi)),
+      max_stretch(lanthorn::max_stretch(linear, 2)) {
+  const float mean = integrate(64, [&](const Vec2& u) {
+    const float phi = u.x * phi_max;
+    return stretch(linear, {std::cos(phi), std::sin(phi), 0});
+  });
+  area = radius * phi_max * (z_max - z_min) * mean;
+}
+
+EmitterPoint CylinderEmitter::sample_area(const Vec2& u) const {
+  const auto normal_at = [&](const Vec2& x) {
+    const float phi = x.y * phi_max;
+    return Vec3(std::cos(phi), std::sin(phi), 0);
+  };
+  const Vec2 x = sample_by_stretch(u, linear, max_stretch, normal_at);
+  const Normal n = normal_at(x);
+  return {linear * (radius * n + Vec3(0, 0, lerp(x.x, z_min, z_max))) + origin, map_normal(linear, n)};
+}
+
+std::optional<Vec2> CylinderEmitter::invert_sample_area(const Point& point) const {
+  if (max_stretch != 0) return {};
+  const Vec3 p = glm::inverse(linear) * (point - origin);
+  return clamped_to_square({(p.z - z_min) / (z_max - z_min), turn_around_z(p.x, p.y) * (2 * pi / phi_max)});
+}
+
+Bounds CylinderEmitter::bounds() const {
+  const Vec3 half = radius * half_extent(linear[0], linear[1]);
+  Bounds b = box_around(origin + z_min * linear[2], half);
+  b.extend(box_around(origin + z_max * linear[2], half));
+  return b;
+}
+
+NormalCone CylinderEmitter::normal_cone() const { return {}; }
+
+DiskEmitter::DiskEmitter(const Transform& object_to_world, float height, float radius_, float inner_radius_,
+                         float phi_max_)
+    : centre(object_to_world.point({0, 0, height})),
+      axis_x(object_to_world.vector({1, 0, 0})),
+      axis_y(object_to_world.vector({0, 1, 0})),
+      normal(map_normal(glm::mat3(object_to_world.matrix), {0, 0, 1})),
+      radius(radius_),
+      inner_radius(inner_radius_),
+      phi_max(std::clamp(phi_max_, 0.0f, 2 * pi)),
+      area(0.5f * phi_max * (radius - inner_radius) * (radius + inner_radius) * norm(cross(axis_x, axis_y))) {}
+
+EmitterPoint DiskEmitter::sample_area(const Vec2& u) const {
+  Vec2 p;
+  if (is_whole()) {
+    p = radius * sample_concentric_disk(u);
+  } else {
+    const float r = std::sqrt(lerp(u.x, inner_radius * inner_radius, radius * radius)), phi = u.y * phi_max;
+    p = r * Vec2(std::cos(phi), std::sin(phi));
+  }
+  return {centre + p.x * axis_x + p.y * axis_y, normal};
+}
+
+std::optional<Vec2> DiskEmitter::invert_sample_area(const Point& point) const {
+  const Vec2 p = barycentric(centre, centre + axis_x, centre + axis_y, point);
+  if (is_whole()) return clamped_to_square(invert_concentric_disk(p / radius));
+  const float inner2 = inner_radius * inner_radius;
+  return clamped_to_square(
+      {(dot(p, p) - inner2) / (radius * radius - inner2), turn_around_z(p.x, p.y) * (2 * pi / phi_max)});
+}
+
+Bounds DiskEmitter::bounds() const { return box_around(centre, radius * half_extent(axis_x, axis_y)); }
+
+NormalCone DiskEmitter::normal_cone() const { return {normal, 1}; }
 
 }  // namespace lanthorn

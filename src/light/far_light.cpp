@@ -1,8 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include "light/distant_light.h"
-
-#include "light/covering_disk.h"
+#include "light/far_light.h"
 
 namespace lanthorn {
 
