@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <string>
 #include <vector>
 
@@ -13,32 +12,13 @@
 #include "lanthorn/methods.h"
 #include "lanthorn/plain_data.h"
 #include "lanthorn/text.h"
+#include "plain/type.h"
 
 namespace lanthorn {
-
-namespace plain {
-
-template <>
-struct Names<ColorMode> {
-  static constexpr std::array<std::pair<std::string_view, ColorMode>, 2> list{
-      {{"rgb", ColorMode::rgb}, {"spectral", ColorMode::spectral}}};
-};
-
-}  // namespace plain
 
 using namespace plain;
 
 namespace {
-
-constexpr auto option_members =
-    std::tuple(Member<RenderOptions, decltype(RenderOptions::resolution)>{"resolution", &RenderOptions::resolution},
-               Member<RenderOptions, decltype(RenderOptions::crop)>{"crop", &RenderOptions::crop},
-               Member<RenderOptions, decltype(RenderOptions::clamp)>{"clamp", &RenderOptions::clamp},
-               field("integrator", &RenderOptions::integrator), field("passes", &RenderOptions::passes),
-               field("seconds", &RenderOptions::seconds), field("noise", &RenderOptions::noise),
-               field("seed", &RenderOptions::seed), field("color", &RenderOptions::color),
-               field("photons", &RenderOptions::photons), field("max_depth", &RenderOptions::max_depth),
-               field("memory", &RenderOptions::memory));
 
 // Names of parameters, which use hyphens where Python uses underscores.
 std::string with_hyphens(std::string name) {
@@ -72,16 +52,8 @@ RenderOptions options_of_data(const Value& data) {
   Reader reader;
   const Dict& dict = dict_of(reader, data);
   RenderOptions options;
-  Keys known{"pass_range"};
-  std::apply([&](const auto&... member) { (read_member(reader, dict, options, member, known), ...); }, option_members);
-  const Value* range = dict.find("pass_range");
-  if (range != nullptr && !range->is_none()) {
-    reader.at("pass_range", [&] {
-      std::array<std::uint64_t, 2> passes{};
-      read(reader, *range, passes);
-      options.pass_range = PassRange{passes[0], passes[1]};
-    });
-  }
+  Keys known;
+  read_members(reader, dict, type_of<RenderOptions>(), &options, known);
   for (const auto& [name, value] : dict.entries()) {
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
     require_parameter_of_any_method(name, known);
