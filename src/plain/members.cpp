@@ -447,6 +447,7 @@ template const Type& type_of<std::vector<Rgb>>();
 template const Type& type_of<Transform>();
 template const Type& type_of<AnimatedTransform>();
 template const Type& type_of<ToneCurve>();
+template const Type& type_of<FilterKind>();
 template const Type& type_of<SpectrumValue>();
 template const Type& type_of<RgbSpectrum>();
 template const Type& type_of<BlackbodySpectrum>();

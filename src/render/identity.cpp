@@ -19,6 +19,7 @@
 #include <variant>
 #include <vector>
 
+#include "lanthorn/plain_data.h"
 #include "lanthorn/version.h"
 #include "math/hash.h"
 
@@ -29,8 +30,7 @@ namespace {
 namespace fs = std::filesystem;
 
 nlohmann::json describe_filter(const description::Filter& f) {
-  constexpr std::array names{"box", "triangle", "gaussian", "mitchell", "sinc"};
-  nlohmann::json result{{"kind", names[static_cast<std::size_t>(f.kind)]}, {"radius", {f.radius.x, f.radius.y}}};
+  nlohmann::json result{{"kind", *plain::write(f.kind).as<std::string>()}, {"radius", {f.radius.x, f.radius.y}}};
   if (f.kind == description::FilterKind::gaussian) result["sigma"] = f.sigma;
   if (f.kind == description::FilterKind::mitchell) result.update({{"b", f.b}, {"c", f.c}});
   if (f.kind == description::FilterKind::sinc) result["tau"] = f.tau;
