@@ -44,8 +44,8 @@ class Reader {
 
 /// How values of a C++ type are read and written.
 struct Type;
-/// Defined for bool, double, std::uint64_t, Vec3, DVec3, Rgb, std::vector of Vec3 and of Rgb, Transform, ToneCurve, and
-/// std::optional of names.
+/// Defined for the types that the library and its programs read and write, such as bool, double, Vec3, Transform, and
+/// std::vector<Vec3>. Other types do not link: plain/members.cpp ends with the list.
 template <class T>
 const Type& type_of();
 

@@ -138,7 +138,7 @@ constexpr Type describe(std::type_identity<T>) {
     return numbers<T>(Kind::row);
   else if constexpr (std::is_same_v<T, std::string>)
     return {.kind = Kind::text};
-  else if constexpr (std::is_enum_v<T>)
+  else if constexpr (std::is_enum_v<T> && sizeof(T) == 1)
     return {.kind = Kind::choice, .names = value_names<T>};
   else
     return {.kind = Kind::structure, .name = members_of<T>.type, .members = members_of<T>.list};

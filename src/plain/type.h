@@ -18,7 +18,7 @@ enum class Kind : std::uint8_t {
   flag,
   number,
   text,
-  choice,     ///< an enumeration, whose values have names
+  choice,     ///< an enumeration of one byte, whose values have names
   row,        ///< a fixed number of numbers: a colour, a point
   rows,       ///< an array of rows or of numbers
   optional,   ///< has no or one item
