@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Time per call of each closure's eval, pdf and sample, through the variant, with different directions in every call.
+// Time per call of each closure's f, pdf, all parts and sample, through the variant, with different directions in every
+// call.
 #include <benchmark/benchmark.h>
 
 #include <array>
@@ -46,12 +47,15 @@ void run(benchmark::State& state, Call&& call) {
 }
 
 void register_closure(const std::string& name, const Bsdf& bsdf) {
-  benchmark::RegisterBenchmark(("eval/" + name).c_str(), [bsdf](benchmark::State& state) {
-    run(state, [&](const Query& q) { return eval(bsdf, q.wi, q.wo, Transport::radiance); });
-  });
-  benchmark::RegisterBenchmark(("pdf/" + name).c_str(), [bsdf](benchmark::State& state) {
-    run(state, [&](const Query& q) { return pdf(bsdf, q.wi, q.wo); });
-  });
+  const auto evaluation = [&](const std::string& what, BsdfParts parts) {
+    benchmark::RegisterBenchmark((what + '/' + name).c_str(), [bsdf, parts](benchmark::State& state) {
+      run(state, [&](const Query& q) { return evaluate(bsdf, q.wi, q.wo, Transport::radiance, parts); });
+    });
+  };
+  evaluation("f", {.f = true});
+  evaluation("pdf", {.pdf = true});
+  evaluation("f_and_pdf", {.f = true, .pdf = true});
+  evaluation("all", all_parts);
   benchmark::RegisterBenchmark(("sample/" + name).c_str(), [bsdf](benchmark::State& state) {
     run(state, [&](const Query& q) { return sample(bsdf, q.wi, q.u_lobe, q.u, Transport::radiance); });
   });

@@ -45,7 +45,7 @@ Input read_input(const DenoiseCommand& a) {
     const StateSummary summary = summarize(*state);
     const MeasuredPicture measured = measured_picture_of(*state);
     return {with_noise(*state, measured.picture),
-            metadata_of(summary, measured.error, a.settings.reproducible, nullptr), summary.measures_exposure,
+            metadata_of(summary, measured.error, a.settings.reproducible, nullptr), summary.record.measures_exposure,
             with_margin(*state)};
   }
   const std::string metadata = read_image_metadata(a.input);

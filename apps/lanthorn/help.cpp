@@ -18,8 +18,8 @@ constexpr std::size_t line_width = 80, text_column = 26;
 constexpr const char* help_title = "Help";
 constexpr std::size_t most_shown = 20;  // options; a command with more hides its rare ones
 
-// The options that several commands have. Options that are not here belong to one command; they come first, as
-// "Options", and are common.
+// Options that several commands have, in their order. Those that are not here come at the end of the group that they
+// name. If they name none, they belong to one command; they come first, as "Options", and are common.
 struct OptionGroup {
   const char* title;
   std::vector<std::string> common, others;
@@ -30,7 +30,7 @@ const std::vector<OptionGroup>& option_groups() {
       {"Result",
        {"--output", "--resolution", "--noise", "--time", "--passes", "--denoise", "--resume"},
        {"--crop", "--pass-range", "--checkpoint", "--reproducible", "--force", "--json"}},
-      {"Method", {"--integrator", "--set"}, {"--photons", "--max-depth", "--clamp", "--color", "--seed"}},
+      {"Method", {"--integrator", "--set"}, {}},
       {"Camera and light",
        {"--camera", "--orbit", "--turntable", "--fov", "--aperture", "--environment"},
        {"--variant", "--focus", "--look-at", "--environment-rotate", "--environment-scale", "--environment-up",
@@ -47,15 +47,20 @@ bool is_among(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-bool is_rare(const std::string& name) {
-  return std::any_of(option_groups().begin(), option_groups().end(),
-                     [&](const OptionGroup& group) { return is_among(group.others, name); });
+const OptionGroup* group_that_lists(const std::string& name) {
+  for (const OptionGroup& group : option_groups())
+    if (is_among(group.common, name) || is_among(group.others, name)) return &group;
+  return nullptr;
 }
 
-std::string title_of(const std::string& name) {
-  for (const OptionGroup& group : option_groups())
-    if (is_among(group.common, name) || is_among(group.others, name)) return group.title;
-  return "Options";
+bool is_rare(const Option& option) {
+  const OptionGroup* const group = group_that_lists(option.long_name());
+  return group ? is_among(group->others, option.long_name()) : !option.group.empty();
+}
+
+std::string title_of(const Option& option) {
+  if (const OptionGroup* const group = group_that_lists(option.long_name())) return group->title;
+  return option.group.empty() ? "Options" : option.group;
 }
 
 // Fills lines with the words of a text that starts at `column`; further lines are indented by `indent`.
@@ -162,7 +167,7 @@ void add_help(CLI::App& command, const OptionTable& table) {
             for (const Option& option : *options) {
               CLI::Option* const known = command.get_option(option.long_name());
               known->description(formatter->hides_options ? option.brief : option.description(/*in_short=*/true));
-              if (formatter->hides_options && is_rare(option.long_name())) known->group("");
+              if (formatter->hides_options && is_rare(option)) known->group("");
             }
             throw CLI::CallForHelp();
           },
@@ -172,7 +177,7 @@ void add_help(CLI::App& command, const OptionTable& table) {
 
 void group_options(CLI::App& command, const OptionTable& table) {
   for (const Option& option : table)
-    if (!option.is_argument()) command.get_option(option.long_name())->group(title_of(option.long_name()));
+    if (!option.is_argument()) command.get_option(option.long_name())->group(title_of(option));
 }
 
 std::vector<const CLI::Option*> visible_options(const CLI::App& command, bool positional) {
@@ -189,6 +194,9 @@ std::vector<HelpGroup> grouped_options(const CLI::App& command) {
       for (const std::string& name : names)
         if (const CLI::Option* option = command.get_option_no_throw(name); option && option->get_group() == group.title)
           groups.back().options.push_back(option);
+    for (const CLI::Option* option : visible_options(command, /*positional=*/false))
+      if (option->get_group() == group.title && !group_that_lists(option->get_name()))
+        groups.back().options.push_back(option);
   }
   groups.push_back({help_title, {}});
   for (const CLI::Option* option : visible_options(command, /*positional=*/false)) {

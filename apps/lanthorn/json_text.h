@@ -5,6 +5,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "lanthorn/render_record.h"
+
 namespace lanthorn::program {
 
 constexpr int one_line = -1;  ///< as `indent`: no line breaks
@@ -17,5 +19,8 @@ inline std::string json_text(const nlohmann::json& json, int indent) {
 
 /// The text of a report, to be printed or written to a file.
 inline std::string report_text(const nlohmann::json& json) { return json_text(json, 2) + '\n'; }
+
+/// The record of a render for a report, a client or a picture's metadata.
+inline nlohmann::json settings_json(const RenderRecord& record) { return nlohmann::json::parse(settings_text(record)); }
 
 }  // namespace lanthorn::program

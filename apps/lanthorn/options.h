@@ -47,6 +47,8 @@ struct Option {
   std::string otherwise{};  ///< the default, where there is one to tell
   bool required = false;
   std::string excludes{};  ///< name of another option that cannot be given at the same time
+  /// The title in the help above this option, which -h does not show; for options that `help.cpp` does not list.
+  std::string group{};
 
   bool is_argument() const { return !names.starts_with('-'); }
   /// The longest name: "--photons".

@@ -13,6 +13,7 @@
 
 #include "console.h"
 #include "estimate_json.h"
+#include "json_text.h"
 #include "lanthorn/file.h"
 #include "lanthorn/version.h"
 
@@ -22,14 +23,14 @@ namespace fs = std::filesystem;
 
 nlohmann::json metadata_of(const StateSummary& state, const ErrorEstimate& error, bool reproducible,
                            const nlohmann::json& statistics) {
-  const nlohmann::json settings = nlohmann::json::parse(state.settings);
-  nlohmann::json metadata = settings.value("identity", nlohmann::json::object());
+  const nlohmann::json settings = settings_json(state.record);
+  nlohmann::json metadata = settings.at("identity");
   if (settings.contains("scene")) metadata["scene"] = settings["scene"];
   if (const auto findings = settings.find("findings"); findings != settings.end()) {
     metadata["findings"] = *findings;
     metadata["findings"].erase("everywhere");
   }
-  if (state.display_emission) metadata["display_emission"] = true;
+  if (state.record.display_emission) metadata["display_emission"] = true;
   metadata["version"] = version;
   metadata["passes"] = state.pass_count;
   if (state.cut_share > 0) metadata["cut_share"] = state.cut_share;
@@ -257,7 +258,7 @@ Image picture_for(const fs::path& file, const Image& image) {
 
 void write_preview(const fs::path& path, StatePicture& picture, const OutputSettings& settings) {
   const StateSummary& summary = picture.summary();
-  write(path, picture.image_for(path), settings, settings.measures_exposure.value_or(summary.measures_exposure),
+  write(path, picture.image_for(path), settings, settings.measures_exposure.value_or(summary.record.measures_exposure),
         metadata_of(summary, picture.error(), settings.reproducible, nullptr).dump());
 }
 
@@ -279,7 +280,7 @@ void write_output(const fs::path& path, StatePicture& picture, const OutputSetti
   const StateSummary& summary = picture.summary();
   nlohmann::json metadata = metadata_of(summary, picture.error(), settings.reproducible, statistics);
   if (picture.denoised_error()) metadata["denoised_error"] = estimate_json(*picture.denoised_error());
-  write_picture(path, picture.image_for(path), settings, summary.measures_exposure, metadata.dump());
+  write_picture(path, picture.image_for(path), settings, summary.record.measures_exposure, metadata.dump());
 }
 
 void report_film(const FilmReport& report) {

@@ -7,7 +7,6 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -54,9 +53,9 @@ void announce_checkpoints(const Checkpoints& checkpoints) {
 // Reports a choice that the scene made because the user did not.
 void announce_color(const RenderCommand& a, const RenderState& state, SaidLines& said) {
   if (a.quiet || a.options.color) return;
-  const std::string color = nlohmann::json::parse(summarize(state).settings)["identity"]["color"];
-  say_once(color == "rgb" ? "color rgb: nothing in the scene disperses light (--color spectral: exact spectra)"
-                          : "color spectral: glass disperses light, or spectra are measured (--color rgb: less noise)",
+  const bool is_rgb = summarize(state).record.identity.color == ColorMode::rgb;
+  say_once(is_rgb ? "color rgb: nothing in the scene disperses light (--color spectral: exact spectra)"
+                  : "color spectral: glass disperses light, or spectra are measured (--color rgb: less noise)",
            said);
 }
 
@@ -83,25 +82,21 @@ std::optional<HostPort> viewer_of(const RenderCommand& a) {
 }
 
 // The predictions of `auto` for each choice, including that for the whole picture as one region.
-void print_efforts(const StateSummary& state) {
-  const nlohmann::json settings = nlohmann::json::parse(state.settings);
-  const auto findings = settings.find("findings");
-  if (findings == settings.end()) return;
-  const double variance = findings->at("variance").get<double>(), work = findings->at("work").get<double>();
+void print_efforts(const EffortReport& report) {
   say("light paths  connections  lens  merged      variance   work   product\n");
-  const auto row = [&](const nlohmann::json& choice, const std::string& techniques) {
-    const double v = choice.at("variance").get<double>() / variance, w = choice.at("work").get<double>() / work;
-    say("{:11.3g}  {:29}  {:8.3g}  {:5.3g}  {:8.3g}\n", choice.at("light_paths_per_pixel").get<double>(), techniques, v,
-        w, v * w);
+  const auto row = [&](const std::string& techniques, double light_paths, double variance, double work) {
+    const double v = variance / report.variance, w = work / report.work;
+    say("{:11.3g}  {:29}  {:8.3g}  {:5.3g}  {:8.3g}\n", light_paths, techniques, v, w, v * w);
   };
-  row(*findings, "as it pays");
-  for (const nlohmann::json& choice : findings->at("everywhere")) {
-    const bool surfaces = choice.at("merges").get<bool>(), media = choice.at("merges_in_media").get<bool>();
-    const char* merged = surfaces ? (media ? "all" : "surfaces") : (media ? "media" : "-");
-    // Older states lack these keys.
-    if (!choice.value("goes_on", true)) merged = "once";
-    const char* lens = choice.at("light_paths_per_pixel") > 0 && choice.value("connects_to_lens", true) ? "yes" : "-";
-    row(choice, fmt::format("{:11}  {:4}  {}", choice.at("connections").get<int>(), lens, merged));
+  row("as it pays", report.light_paths_per_pixel, report.variance, report.work);
+  for (const UniformEffort& choice : report.uniform) {
+    const PlaceEffort& place = choice.place;
+    const char* merged =
+        place.merges ? (place.merges_in_media ? "all" : "surfaces") : (place.merges_in_media ? "media" : "-");
+    if (!place.goes_on) merged = "once";
+    const char* lens = choice.light_paths_per_pixel > 0 && place.sees ? "yes" : "-";
+    row(fmt::format("{:11}  {:4}  {}", place.connections, lens, merged), choice.light_paths_per_pixel, choice.variance,
+        choice.work);
   }
 }
 
@@ -114,7 +109,10 @@ Observer make_observer(const RenderCommand& a, Onlookers& onlookers) {
   };
   observer.can_drop = set_can_drop;
   if (!a.quiet) observer.remark = [](const std::string& text) { say("{}\n", text); };
-  if (a.verbose) observer.prepared = [](const RenderState& state) { print_efforts(summarize(state)); };
+  if (a.verbose)
+    observer.prepared = [](const RenderState& state) {
+      if (const auto findings = summarize(state).record.findings) print_efforts(*findings);
+    };
   if (onlookers.checkpoints)
     observer.checkpoint = [&](const RenderState& state, double since) {
       return onlookers.checkpoints->save_if_due(state, since);
@@ -174,7 +172,7 @@ void explain_coarse(const CoarsePicture& coarse) {
 }
 
 bool measures_exposure(const RenderCommand& a, const Session& session) {
-  return a.output.measures_exposure.value_or(summarize(session.state()).measures_exposure);
+  return a.output.measures_exposure.value_or(summarize(session.state()).record.measures_exposure);
 }
 
 // How all frames of a film are shown, as far as it follows from the first frame.

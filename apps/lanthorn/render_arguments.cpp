@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <limits>
+#include <utility>
 
 namespace lanthorn::program {
 
@@ -116,63 +117,40 @@ Option parameter_option(RenderOptions& o) {
 
 }  // namespace
 
+namespace {
+
+ValueType<std::string> type_of(const RenderOption<std::string>&) { return text_type("INTEGRATOR"); }
+ValueType<float> type_of(const RenderOption<float>&) { return number_type<float>(); }
+ValueType<ColorMode> type_of(const RenderOption<ColorMode>&) {
+  return choice_type<ColorMode>({{"rgb", ColorMode::rgb}, {"spectral", ColorMode::spectral}});
+}
+ValueType<std::array<int, 2>> type_of(const RenderOption<std::array<int, 2>>&) { return resolution_type(); }
+ValueType<std::array<int, 4>> type_of(const RenderOption<std::array<int, 4>>&) { return pixel_window_type(); }
+ValueType<std::uint64_t> type_of(const RenderOption<int>& option) { return count_type({option.least, largest_int}); }
+ValueType<std::uint64_t> type_of(const RenderOption<std::uint64_t>& option) {
+  return option.is_bytes ? bytes_type() : count_type({.low = option.least});
+}
+
+}  // namespace
+
 OptionTable render_options(RenderArguments& a) {
   RenderOptions& o = a.options;
-  const OptionTable picture{
-      {.names = "scene",
-       .value = into(a.scene, existing_file_type()),
-       .brief = "Scene file (.pbrt, .gltf, .glb, .obj)",
-       .required = true},
-      {.names = "-i,--integrator",
-       .value = into(o.integrator, text_type("INTEGRATOR")),
-       .brief = "Rendering method; 'lanthorn list' shows them",
-       .otherwise = "auto, or the scene file's if it names a method that only Lanthorn has"},
-      threads_option(a.threads),
-      {.names = "-s,--seed",
-       .value = into(o.seed, count_type()),
-       .brief = "Seed of all random numbers",
-       .otherwise = "the scene file's, else 0"},
-      {.names = "--color",
-       .value = into(o.color, choice_type<ColorMode>({{"rgb", ColorMode::rgb}, {"spectral", ColorMode::spectral}})),
-       .brief = "Colour mode",
-       .otherwise = "spectral if glass disperses light or the scene has measured spectra other than metals', else rgb"},
-      {.names = "-r,--resolution",
-       .value = into(o.resolution, resolution_type()),
-       .brief = "Size of the picture: 1000x600, or 1000 (width alone)",
-       .details = "If only the width is given, the shape stays that of the scene file.",
-       .otherwise = "the scene file's"},
-      {.names = "--clamp",
-       .value = into(o.clamp, number_type<float>()),
-       .brief = "Clamp each path's contribution to a pixel, except for directly visible lights (biased)",
-       .details = "Fireflies become fewer, but light is lost. The EXR file records the limit.",
-       .otherwise = "no limit"},
-      {.names = "--crop",
-       .value = into(o.crop, pixel_window_type()),
-       .brief = "Render only these pixels (x1, y1 excluded)",
-       .details =
-           "With the same --photons they equal those of the whole picture, exactly or up to rounding (docs/using.md); "
-           "not with auto and mlt. --denoise also renders 24 pixels around them, which are kept in states only."},
-      {.names = "-n,--photons",
-       .value = into(o.photons, count_type({.low = 1})),
-       .brief = "Light paths per pass, such as 500000, 200k or 1M",
-       .details = "auto traces as many as reduce the error per work, from none to 4 times this number.",
-       .otherwise = "the scene file's (not for auto), else one per pixel, at least 100k (auto, bdpt, vcm: 10k; auto: "
-                    "at most 524k)"},
-      {.names = "-d,--max-depth",
-       .value = into(o.max_depth, count_type({1, largest_int})),
-       .brief = "Largest number of scattering events per path",
-       .details = "In media of high albedo the default is higher: the depth at which a thousandth of the light is "
-                  "left. A passage under the surface of skin or wax counts once. The program reports how much light "
-                  "the limit may have cut off.",
-       .otherwise = "the scene file's, else 64; in media up to 4096"},
-      {.names = "--memory",
-       .value = into(o.memory, bytes_type()),
-       .brief = "Memory limit for the film and a pass's photons or light vertices: 512M, 2G",
-       .details = "The scene is not counted. A render that needs more is refused before it starts; reversephotonmap "
-                  "works in blocks of pixels that fit. Most methods keep at most 8.4M light paths at a time (auto, "
-                  "bdpt, bpm, vcm: 2.1M; sppm, ppm, photonmap: all). The picture does not depend on the limit.",
-       .otherwise = "free memory"}};
-  return joined(joined(joined(picture, read_options(a.reading)), scene_options(a.reading)), {parameter_option(o)});
+  OptionTable picture{{.names = "scene",
+                       .value = into(a.scene, existing_file_type()),
+                       .brief = "Scene file (.pbrt, .gltf, .glb, .obj)",
+                       .required = true}};
+  for_each_render_option([&](const auto& option) {
+    const std::string letter = option.letter;
+    picture.push_back({.names = (letter.empty() ? "" : '-' + letter + ',') + flag_name(option.name),
+                       .value = into(o.*option.value, type_of(option)),
+                       .brief = option.brief,
+                       .details = option.details,
+                       .otherwise = option.otherwise,
+                       .group = "Method"});
+  });
+  picture.push_back(threads_option(a.threads));
+  return joined(joined(joined(std::move(picture), read_options(a.reading)), scene_options(a.reading)),
+                {parameter_option(o)});
 }
 
 }  // namespace lanthorn::program

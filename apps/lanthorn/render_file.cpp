@@ -87,8 +87,8 @@ std::string passes_text(const StateSummary& state) {
 }
 
 nlohmann::json settings_of(const StateSummary& state) {
-  const nlohmann::json all = nlohmann::json::parse(state.settings);
-  nlohmann::json settings = all.value("identity", nlohmann::json::object());
+  const nlohmann::json all = settings_json(state.record);
+  nlohmann::json settings = all.at("identity");
   settings["integrator"] = state.integrator;
   for (const char* member : {"scene", "findings"})
     if (const auto found = all.find(member); found != all.end()) settings[member] = *found;

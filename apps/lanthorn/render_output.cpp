@@ -79,10 +79,8 @@ nlohmann::json describe(const FilmReport& report) {
 nlohmann::json describe(const PathEnds& ends) { return {{"paths", ends.paths}, {"cut_share", ends.share()}}; }
 
 // How much throughput the paths of this render's passes had left when they reached the limit.
-nlohmann::json describe_limit(const nlohmann::json& settings, const RayCounts& rays) {
-  return {{"max_depth", settings.at("identity").at("max_depth")},
-          {"eye", describe(rays.eye)},
-          {"light", describe(rays.light)}};
+nlohmann::json describe_limit(int max_depth, const RayCounts& rays) {
+  return {{"max_depth", max_depth}, {"eye", describe(rays.eye)}, {"light", describe(rays.light)}};
 }
 
 // What the limit of scattering events cut off; empty if that is little. Uses the share in the whole picture: a fifth of
@@ -90,20 +88,19 @@ nlohmann::json describe_limit(const nlohmann::json& settings, const RayCounts& r
 std::string loss_by_limit(const StateSummary& state) {
   constexpr double much = 0.002;
   if (state.cut_share < much) return {};
-  const nlohmann::json settings = nlohmann::json::parse(state.settings);
   return fmt::format(
       "the limit of {} scattering events ended paths that still had {} % of the throughput: light may be missing "
       "where paths are long; a higher --max-depth finds it",
-      settings.at("identity").at("max_depth").get<int>(), short_number(100 * state.cut_share));
+      state.record.identity.max_depth, short_number(100 * state.cut_share));
 }
 
 void write_report(const std::string& path, const Scene& scene, StatePicture& picture,
                   const RenderStatistics& statistics) {
   nlohmann::json report = describe(statistics);
   const StateSummary& summary = picture.summary();
-  report["settings"] = nlohmann::json::parse(summary.settings);
+  report["settings"] = settings_json(summary.record);
   report["film"] = describe(summary.report);
-  report["depth_limit"] = describe_limit(report["settings"], statistics.rays);
+  report["depth_limit"] = describe_limit(summary.record.identity.max_depth, statistics.rays);
   report["error"] = estimate_json(picture.error());
   if (picture.denoised_error()) report["denoised_error"] = estimate_json(*picture.denoised_error());
   report["passes_total"] = summary.pass_count;

@@ -113,31 +113,21 @@ ValueType<std::pair<std::string, float>> light_factor_type() {
 }
 
 SharedScene scale_lights(const SharedScene& scene, const LightFactors& factors) {
-  const SceneDescription& description = description_of(*scene);
   check_names(*scene, factors);
-  SceneEdits edits;
   std::string text;
   for (const auto& [name, factor] : factors)
     if (factor != 1) text += fmt::format("{}={},", name, factor);
   if (text.empty()) return scene;
-  const auto factor_of = [&](const std::string& name) {
-    const auto found = factors.find(name);
-    return found == factors.end() ? 1.0f : found->second;
+  SceneDescription description = description_of(*scene);
+  const auto scale = [&](auto& lights, const auto& name_of) {
+    for (description::Index i = 0; i < lights.size(); ++i)
+      if (const auto found = factors.find(name_of(i)); found != factors.end() && found->second != 1)
+        scale_light(lights[i], found->second);
   };
-  for (description::Index i = 0; i < description.area_lights.size(); ++i)
-    if (const float factor = factor_of(name_of_area_light(i)); factor != 1) {
-      description::AreaLight light = description.area_lights[i];
-      scale_light(light, factor);
-      edits.area_lights[i] = light;
-    }
-  for (description::Index i = 0; i < description.lights.size(); ++i)
-    if (const float factor = factor_of(name_of_light(i)); factor != 1) {
-      description::Light light = description.lights[i];
-      scale_light(light, factor);
-      edits.lights[i] = light;
-    }
-  edits.hash = hash_of(description.hash, text);
-  return edit_scene(*scene, edits);
+  scale(description.area_lights, name_of_area_light);
+  scale(description.lights, name_of_light);
+  description.hash = hash_of(description.hash, text);
+  return build_scene(std::move(description), scene);
 }
 
 ViewDescription view_of(const Scene& scene, const SceneChanges& changes, const ViewOptions& options) {

@@ -168,11 +168,11 @@ void add_serve(CLI::App& app) {
   constexpr const char* footer =
       "The page shows the picture as it refines, moves the camera (drag: orbit; shift or right\n"
       "button: pan; wheel: zoom), sets lens and environment, dims lights, chooses method, size,\n"
-      "layer, exposure and tone curve, denoises the picture, saves it and gives the command line that renders it.\n"
-      "Its address holds a random token: without it, nothing can be read.\n"
-      "From another machine: ssh -L 8080:localhost:8080 MACHINE, then open the address there. Nothing is rendered "
-      "while\n"
-      "nobody looks, unless -o is given.\n\nExamples:\n"
+      "layer, exposure and tone curve, denoises the picture, saves it and gives the command line\n"
+      "that renders it. Its address holds a random token: without it, nothing can be read.\n"
+      "From another machine: ssh -L 8080:localhost:8080 MACHINE, then open the address there.\n"
+      "Nothing is rendered while nobody looks, unless -o is given.\n\n"
+      "Examples:\n"
       "  lanthorn serve scene.pbrt\n"
       "  lanthorn serve scene.glb -i path -r 960x540 --port 0 -o last.exr";
   add_command(app, {"serve", "Show a scene in a browser while it renders, and move camera and lights",

@@ -13,6 +13,8 @@ struct SourceLocation {
   std::string file;
   int line = 0;
   int column = 0;
+
+  friend bool operator==(const SourceLocation&, const SourceLocation&) = default;
 };
 
 /// Bad scene, file or option. Thrown only where input and settings enter the library; the program catches it once, in

@@ -21,8 +21,8 @@
 namespace lanthorn {
 
 /// A change to the picture of an `InteractiveRender`. Empty members leave their part unchanged. A new view or new
-/// options only replace the film; the scene is not rebuilt. A new scene takes as long as its function: `edit_scene`
-/// replaces lights, materials and transforms in a fraction of a millisecond; `build_scene` rebuilds all geometry.
+/// options only replace the film; the scene is not rebuilt. A new scene takes as long as its function: with a previous
+/// scene, `build_scene` replaces lights, materials and transforms in a fraction of a millisecond.
 struct RenderEdit {
   /// Makes the scene, on the render's thread. If it throws, the next edit calls it again, unless that edit brings
   /// another function. Must not return null.
@@ -100,7 +100,7 @@ struct InteractiveSnapshot {
 ///
 ///     InteractiveRender render(scene, description_of(*scene).view, options);
 ///     render.edit({.view = moved});                      // the camera has moved: restarts
-///     render.edit({.scene = [=] { return edit_scene(*scene, edits); }});
+///     render.edit({.scene = [=] { return build_scene(changed, scene); }});
 ///     std::uint64_t shown = 0;
 ///     while (is_open) {
 ///       const InteractiveSnapshot now = render.wait(shown, std::chrono::milliseconds(50));

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,12 +17,18 @@
 
 namespace lanthorn::plain {
 
+/// The index of each named entry of a table.
+using NameTable = std::map<std::string, std::uint32_t>;
+
 /// State of reading a value and everything in it: tracks the current path for messages, and hashes what it reads.
 class Reader {
  public:
-  /// For each table ("materials", ...): the index of each named entry in that vector.
-  std::map<std::string, std::map<std::string, std::uint32_t>> names;
-  std::uint64_t hash = 0;  ///< of all that has been read
+  std::map<std::string, std::shared_ptr<const NameTable>> names;  ///< by table ("materials", ...)
+  std::uint64_t hash = 0;                                         ///< of all that has been read
+  bool is_hashing = true;                                         ///< false: nobody asks for `hash`
+
+  /// The names of a table; empty if it has none.
+  const NameTable& names_in(const std::string& table) const;
 
   void mix(const void* bytes, std::size_t count);
   void mix(std::string_view text) { mix(text.data(), text.size()); }

@@ -117,22 +117,26 @@ struct LookAt {
   friend bool operator==(const LookAt&, const LookAt&) = default;
 };
 
-/// `like`: a scene from the same `SceneFile`; the new scene shares its images instead of reading them again. Throws
-/// Error at the location of an error in the description.
-SharedScene build_scene(SceneDescription description, const SharedScene& like = {});
-
-/// Replacements, by index into the vectors of the same names of a scene's description (`description_of`).
-struct SceneEdits {
-  std::map<description::Index, description::Material> materials{};
-  std::map<description::Index, description::AreaLight> area_lights{};
-  std::map<description::Index, description::Light> lights{};
-  std::map<description::Index, AnimatedTransform> instances{};  ///< object to world
-  /// A replacement as by `replace_environment`; `lights` then indexes the lights after it.
-  std::optional<EnvironmentChoice> environment{};
-  /// A number of your choice that identifies these edits of this scene; needed only to resume states of the edited
-  /// scene in another process.
-  std::optional<std::uint64_t> hash{};
-};
+/// Builds the parts whose descriptions differ from those of `previous`, and shares the others with it. To change a
+/// scene, change a copy of its description (`description_of`) and build that:
+///
+///     SceneDescription description = description_of(*scene);
+///     scale_light(description.lights[0], 0.5f);
+///     scene = build_scene(std::move(description), scene);
+///
+/// The old scene stays as it is. Changes of materials, lights, media and places of instances take time that depends on
+/// their numbers, not on the number of triangles. The first move of an instance also builds an acceleration structure
+/// for the shapes that are not instanced. Images that `previous` has read are not read again.
+///
+/// Shapes, objects, float textures and the shutter interval need new geometry. So do a material that becomes or was an
+/// interface or hair, or gets another interior medium, and a new transform for an instance that emits or was not
+/// visible. New geometry needs the meshes: a copy of `description_of` lacks them, and such changes to it throw Error.
+///
+/// States belong to a description's `hash`. If the changed description still has the hash of the old one, it gets a
+/// number that no other scene has: another process then cannot resume states of the scene.
+///
+/// Throws Error at the location of an error in the description.
+SharedScene build_scene(SceneDescription description, const SharedScene& previous = {});
 
 /// Names of a description's lights and area lights in options: light1, light2, ..., area1, area2, ...
 std::string name_of_light(description::Index index);
@@ -140,16 +144,6 @@ std::string name_of_area_light(description::Index index);
 /// Multiplies the light's emission by `factor`.
 void scale_light(description::Light& light, float factor);
 void scale_light(description::AreaLight& light, float factor);
-
-/// The scene with replacements. It shares geometry, acceleration structures, images and media with the old scene, which
-/// does not change: the time depends on the numbers of materials, lights and instances, not on the number of triangles.
-/// The first edit of an instance also builds an acceleration structure for the shapes that are not instanced.
-///
-/// Throws Error for indices out of range, and for edits that require the scene to be rebuilt: a material that becomes
-/// or was an interface or hair, or gets another interior medium; a new transform for an instance that emits or was not
-/// visible. Without `SceneEdits::hash`, states of an edited scene belong to this scene object: they cannot be resumed
-/// by another process.
-SharedScene edit_scene(const Scene& scene, const SceneEdits& edits);
 
 /// The description that the scene was built from, without its meshes, and including warnings from building.
 const SceneDescription& description_of(const Scene& scene);

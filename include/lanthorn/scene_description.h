@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 // A scene as plain data, made by a reader (pbrt, glTF, OBJ) or by a program; `build_scene` turns it into a Scene. It
-// has no behaviour and no pointers: parts refer to each other by index. Every part that can be invalid stores its
-// location in the file.
+// has no behaviour and no pointers: parts refer to each other by index. Copies of a description share their tables
+// until they change. Every part that can be invalid stores its location in the file.
 #pragma once
 
 #include <array>
@@ -19,6 +19,7 @@
 #include "lanthorn/error.h"
 #include "lanthorn/file_access.h"
 #include "lanthorn/measured_data.h"
+#include "lanthorn/table.h"
 #include "lanthorn/transform.h"
 #include "lanthorn/vec.h"
 
@@ -31,17 +32,21 @@ using Index = std::uint32_t;
 struct SampledSpectrum {
   std::vector<float> nm;
   std::vector<float> values;
+  friend bool operator==(const SampledSpectrum&, const SampledSpectrum&) = default;
 };
 /// RGB as given, in a colour space. Its use decides its meaning (albedo, light, plain numbers).
 struct RgbSpectrum {
   Rgb rgb;
   ColorSpace space = ColorSpace::srgb;
+  friend bool operator==(const RgbSpectrum&, const RgbSpectrum&) = default;
 };
 struct BlackbodySpectrum {
   float kelvin = 6500;
+  friend bool operator==(const BlackbodySpectrum&, const BlackbodySpectrum&) = default;
 };
 struct NamedSpectrum {
   std::string name;  ///< a name known to `named_spectrum`
+  friend bool operator==(const NamedSpectrum&, const NamedSpectrum&) = default;
 };
 /// A spectrum parameter: constant, RGB, blackbody, named or sampled (the reader turns spectrum files into samples).
 using SpectrumValue = std::variant<float, RgbSpectrum, BlackbodySpectrum, NamedSpectrum, SampledSpectrum>;
@@ -55,6 +60,7 @@ struct FloatParameter {
 struct SpectrumParameter {
   SpectrumValue value = 0.0f;
   std::optional<Index> texture;  ///< into SceneDescription::spectrum_textures
+  friend bool operator==(const SpectrumParameter&, const SpectrumParameter&) = default;
 };
 
 // Textures. `FloatParameter`s and `SpectrumParameter`s inside them may refer only to earlier textures.
@@ -436,6 +442,7 @@ struct AreaLight {
   std::optional<float> power;
   bool two_sided = false;
   SourceLocation location;
+  friend bool operator==(const AreaLight&, const AreaLight&) = default;
 };
 /// Displaces a mesh: triangles and quads are split until no edge is longer than `edge_length` (metres, world space);
 /// then each vertex moves along its normal by `height` (in the mesh's space).
@@ -481,6 +488,7 @@ struct Instance {
 struct Emission {
   SpectrumValue spectrum = 1.0f;
   float scale = 1;
+  friend bool operator==(const Emission&, const Emission&) = default;
 };
 /// How a kind of light is presented to users.
 struct LightKind {
@@ -493,6 +501,7 @@ struct PointLight {
   Emission intensity;
   Point from{0};
   std::optional<float> power;
+  friend bool operator==(const PointLight&, const PointLight&) = default;
 };
 /// Falloff of a spot light between its cones. x in [0,1] is the fraction of the cosine's way from the outer to the
 /// inner cone: pbrt's smoothstep 3x^2 - 2x^3, or glTF's x^2.
@@ -506,6 +515,7 @@ struct SpotLight {
   float cone_angle = 30, cone_delta_angle = 5;  ///< degrees
   SpotFalloff falloff = SpotFalloff::smoothstep;
   std::optional<float> power;
+  friend bool operator==(const SpotLight&, const SpotLight&) = default;
 };
 /// Parallel light, or a round light infinitely far away that rays can meet, such as the sun (.53 degrees).
 struct DistantLight {
@@ -517,6 +527,7 @@ struct DistantLight {
   float angle = 0;                ///< under which the light's diameter is seen, degrees, in [0, 180); 0: parallel light
   bool visible_to_camera = true;  ///< false: camera rays do not see the round light; all other rays do
   std::optional<float> illuminance;
+  friend bool operator==(const DistantLight&, const DistantLight&) = default;
 };
 /// Colours over the sphere, row by row from the top.
 struct SphericalTexels {
@@ -537,6 +548,7 @@ struct InfiniteLight {
   /// Corners of a rectangle, in order around it, in world space regardless of the light's transform. Light passes only
   /// through it, in the direction opposite to (p3 - p0) x (p1 - p0).
   std::optional<std::array<Point, 4>> portal;
+  friend bool operator==(const InfiniteLight&, const InfiniteLight&) = default;
 };
 /// A point light whose intensity is multiplied by a grey image in one of the layouts of an infinite light.
 struct GoniometricLight {
@@ -545,6 +557,7 @@ struct GoniometricLight {
   Emission intensity;
   std::string image;
   std::optional<float> power;
+  friend bool operator==(const GoniometricLight&, const GoniometricLight&) = default;
 };
 /// A point light that projects an image along z, with x to the right and y up.
 struct ProjectionLight {
@@ -555,12 +568,14 @@ struct ProjectionLight {
   float scale = 1;
   float fov = 90;  ///< degrees, over the shorter side
   std::optional<float> power;
+  friend bool operator==(const ProjectionLight&, const ProjectionLight&) = default;
 };
 struct Light {
   std::variant<PointLight, SpotLight, DistantLight, InfiniteLight, GoniometricLight, ProjectionLight> node;
   Transform light_to_world;
   std::optional<Index> medium;  ///< medium around the light, into SceneDescription::media; none: vacuum
   SourceLocation location;
+  friend bool operator==(const Light&, const Light&) = default;
 };
 
 // Cameras and film.
@@ -682,19 +697,19 @@ struct SceneDescription {
   FileAccess access;                               ///< for files read while the scene is built
   ViewDescription view;                            ///< the file's own
   description::RenderHints hints;
-  std::vector<description::EmbeddedImage> embedded_images;
-  std::vector<description::FloatTexture> float_textures;
-  std::vector<description::SpectrumTexture> spectrum_textures;
-  std::vector<std::shared_ptr<const MeasuredData>> measured_brdfs;  ///< none is null; shared by copies of the scene
-  std::vector<description::Material> materials;                     ///< [0] is the default material
-  std::vector<description::Medium> media;
-  std::vector<description::AreaLight> area_lights;
-  std::vector<description::Shape> shapes;
-  std::vector<description::Object> objects;
-  std::vector<description::Instance> instances;
-  std::vector<description::Light> lights;
-  EnvironmentChoice environment;               ///< the choice that `replace_environment` applied
-  std::vector<description::Light> own_lights;  ///< `lights` before `replace_environment`; else empty
+  description::Table<description::EmbeddedImage> embedded_images;
+  description::Table<description::FloatTexture> float_textures;
+  description::Table<description::SpectrumTexture> spectrum_textures;
+  description::Table<std::shared_ptr<const MeasuredData>> measured_brdfs;  ///< none is null
+  description::Table<description::Material> materials;                     ///< [0] is the default material
+  description::Table<description::Medium> media;
+  description::Table<description::AreaLight> area_lights;
+  description::Table<description::Shape> shapes;
+  description::Table<description::Object> objects;
+  description::Table<description::Instance> instances;
+  description::Table<description::Light> lights;
+  EnvironmentChoice environment;                      ///< the choice that `replace_environment` applied
+  description::Table<description::Light> own_lights;  ///< `lights` before `replace_environment`; else empty
   std::vector<description::Warning> warnings;
   ColorSpace color_space = ColorSpace::srgb;  ///< of the film; its white point is the colour of lights given as numbers
   /// Position of this description's origin in the coordinates of the file, metres: see `move_origin`.

@@ -74,7 +74,7 @@ struct Observer {
   std::function<void(bool)> can_drop = [](bool) {};
   /// After the preparation, with a message for the user about what the method measured and chose, if anything.
   std::function<void(const std::string&)> remark = [](const auto&) {};
-  /// After the preparation. The state's settings contain its results (`StateSummary::settings`).
+  /// After the preparation. The state's record contains its results (`RenderRecord::findings`).
   std::function<void(const RenderState&)> prepared = [](const auto&) {};
   /// After every pass.
   std::function<void(const RenderState&, const RenderStatistics&)> progress = [](const auto&, const auto&) {};

@@ -14,6 +14,7 @@
 #include "lanthorn/error_estimate.h"
 #include "lanthorn/image.h"
 #include "lanthorn/render_options.h"
+#include "lanthorn/render_record.h"
 
 namespace lanthorn {
 
@@ -47,13 +48,10 @@ struct StateSummary {
   std::uint64_t pass_count = 0;
   double seconds = 0;     ///< spent rendering, summed over all processes
   bool mergeable = true;  ///< passes do not depend on earlier ones
-  /// A JSON object. Its member "identity" determines the picture (hashes of the scene and its files, seed, method and
-  /// parameters, colour mode, resolution, crop, ...) and must be equal to resume or to merge.
-  std::string settings;
-  bool measures_exposure = false, display_emission = false;  ///< see description::Film
-  int width = 0, height = 0;                                 ///< pixels
-  ImageWindow window;                                        ///< position of these pixels in the whole picture
-  int margin = 0;                                            ///< ViewOptions::margin
+  RenderRecord record;
+  int width = 0, height = 0;  ///< pixels
+  ImageWindow window;         ///< position of these pixels in the whole picture
+  int margin = 0;             ///< ViewOptions::margin
   FilmReport report;
   /// The share of path throughput that reached the limit of scattering events (PathEnds), from the camera or from
   /// lights, whichever is larger: an indication of how much light the limit may have cut off.

@@ -63,6 +63,7 @@ struct AnimatedTransform {
   bool is_moving() const { return !(start == end); }
   /// The map at `time`, clamped to [start_time, end_time].
   Transform at(float time) const;
+  friend bool operator==(const AnimatedTransform&, const AnimatedTransform&) = default;
 };
 
 }  // namespace lanthorn

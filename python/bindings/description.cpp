@@ -24,7 +24,7 @@ SeenScene edited(const SeenScene& scene, const py::dict& edits) {
   SeenScene result{scene.scene, std::move(changes.view)};
   if (changes.scene) {
     const py::gil_scoped_release release;
-    result.scene = edit_scene(*scene.scene, *changes.scene);
+    result.scene = build_scene(*std::move(changes.scene), scene.scene);
   }
   return result;
 }

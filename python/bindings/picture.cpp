@@ -19,8 +19,8 @@ Picture picture_of_state(const RenderState& state, bool with_noise_layers) {
   MeasuredPicture measured = measured_picture_of(state);
   const StateSummary summary = summarize(state);
   Picture picture{.error = std::move(measured.error),
-                  .measures_exposure = summary.measures_exposure,
-                  .display_emission = summary.display_emission};
+                  .measures_exposure = summary.record.measures_exposure,
+                  .display_emission = summary.record.display_emission};
   picture.image = with_noise_layers ? with_noise(state, measured.picture) : std::move(measured.picture);
   picture.image.window = summary.window;
   return picture;

@@ -154,6 +154,23 @@ std::string session_text(const PythonSession& s) {
          std::to_string(s.planned_passes()) + " passes>";
 }
 
+std::string session_help() {
+  std::string options;
+  for_each_render_option([&](const auto& option) { options.append(option.name).append(", "); });
+  return "Renders a scene pass by pass, with the picture available at any time.\n\n"
+         "Keyword arguments are the options of `lanthorn render`:\n" +
+         options +
+         "passes, seconds, noise, pass_range.\n"
+         "resolution is (width, height), crop (x0, y0, x1, y1), color 'rgb' or 'spectral', photons the light paths "
+         "per\n"
+         "pass, memory in bytes, noise the error at which to stop (0.02 is 2 %), pass_range (first, end). Other "
+         "keywords\n"
+         "are parameters of the method (see `methods`). Raises Error for unknown options and invalid values.\n\n"
+         "Rendering does not hold the GIL. Ctrl-C raises KeyboardInterrupt after the current pass; the session keeps "
+         "all\n"
+         "passes and can continue.";
+}
+
 void bind_passes(py::module_& module) {
   py::class_<Passes>(module, "Passes", "The pictures of a session, pass by pass: see Session.passes.")
       .def(
@@ -165,16 +182,7 @@ void bind_passes(py::module_& module) {
 
 void bind_session(py::module_& module) {
   bind_passes(module);
-  py::class_<PythonSession, SharedSession>(
-      module, "Session",
-      "Renders a scene pass by pass, with the picture available at any time.\n\n"
-      "Keyword arguments are the options of `lanthorn render`: integrator, passes, seconds, noise (the error at which\n"
-      "to stop, 0.02 is 2 %), seed, resolution (width, height), crop (x0, y0, x1, y1), clamp, color ('rgb' or\n"
-      "'spectral'), photons (light paths per pass), max_depth, memory (bytes), pass_range (first, end). Other "
-      "keywords\n"
-      "are parameters of the method (see `methods`). Raises Error for unknown options and invalid values.\n\n"
-      "Rendering does not hold the GIL. Ctrl-C raises KeyboardInterrupt after the current pass; the session keeps all\n"
-      "passes and can continue.")
+  py::class_<PythonSession, SharedSession>(module, "Session", session_help().c_str())
       .def(py::init([](const SeenScene& scene, const py::kwargs& options) {
              const RenderOptions read = options_of(options);
              const py::gil_scoped_release release;

@@ -51,7 +51,7 @@ void bind_state(py::module_& module) {
       .def_property_readonly(
           "integrator", [](const SavedState& s) { return summarize(*s.state).integrator; }, "str: the method.")
       .def_property_readonly(
-          "settings", [](const SavedState& s) { return summarize(*s.state).settings; },
+          "settings", [](const SavedState& s) { return settings_text(summarize(*s.state).record); },
           "str: a JSON object; its member 'identity' must be equal to resume or to merge.")
       .def("__repr__", [](const SavedState& s) {
         const StateSummary summary = summarize(*s.state);

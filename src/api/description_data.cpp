@@ -3,6 +3,8 @@
 #include "lanthorn/description_data.h"
 
 #include <map>
+#include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -19,8 +21,6 @@ using namespace plain;
 using description::Index;
 
 namespace {
-
-using NameTable = std::map<std::string, Index>;
 
 bool is_table(const Member& member) { return member.type->kind == Kind::list; }
 
@@ -54,6 +54,14 @@ std::vector<TableEntry> entries_of(Reader& reader, const std::string& table, con
   return entries;
 }
 
+template <class T>
+std::shared_ptr<const NameTable> names_of(const std::vector<T>& items) {
+  NameTable names;
+  for (std::size_t i = 0; i < items.size(); ++i)
+    if (!items[i].name.empty()) names.emplace(items[i].name, static_cast<Index>(i));
+  return std::make_shared<const NameTable>(std::move(names));
+}
+
 using Tables = std::map<std::string, std::vector<TableEntry>>;
 
 Tables tables_of(Reader& reader, const Dict& data) {
@@ -61,11 +69,7 @@ Tables tables_of(Reader& reader, const Dict& data) {
   for (const Member& member : type_of<SceneDescription>().members)
     if (const Value* table = is_table(member) ? data.find(member.name) : nullptr)
       reader.at(member.name, [&] { tables.emplace(member.name, entries_of(reader, member.name, *table)); });
-  for (const auto& [table, entries] : tables) {
-    NameTable& names = reader.names[table];
-    for (std::size_t i = 0; i < entries.size(); ++i)
-      if (!entries[i].name.empty()) names.emplace(entries[i].name, static_cast<Index>(i));
-  }
+  for (const auto& [table, entries] : tables) reader.names[table] = names_of(entries);
   return tables;
 }
 
@@ -86,23 +90,18 @@ void read_table(Reader& reader, const std::vector<TableEntry>& entries, const Ty
     });
 }
 
-template <class T>
-NameTable names_of(const std::vector<T>& items) {
-  NameTable names;
-  for (std::size_t i = 0; i < items.size(); ++i)
-    if (!items[i].name.empty()) names.emplace(items[i].name, static_cast<Index>(i));
-  return names;
-}
-
 Reader reader_for(const SceneDescription& scene) {
   Reader reader;
-  reader.names["materials"] = names_of(scene.materials);
-  reader.names["media"] = names_of(scene.media);
-  reader.names["objects"] = names_of(scene.objects);
-  for (std::size_t i = 0; i < scene.lights.size(); ++i)
-    reader.names["lights"].emplace(name_of_light(static_cast<Index>(i)), static_cast<Index>(i));
-  for (std::size_t i = 0; i < scene.area_lights.size(); ++i)
-    reader.names["area_lights"].emplace(name_of_area_light(static_cast<Index>(i)), static_cast<Index>(i));
+  reader.names["materials"] = names_of(scene.materials.entries());
+  reader.names["media"] = names_of(scene.media.entries());
+  reader.names["objects"] = names_of(scene.objects.entries());
+  const auto number = [&](const char* table, std::size_t count, auto&& name_of) {
+    NameTable names;
+    for (Index i = 0; i < count; ++i) names.emplace(name_of(i), i);
+    reader.names[table] = std::make_shared<const NameTable>(std::move(names));
+  };
+  number("lights", scene.lights.size(), name_of_light);
+  number("area_lights", scene.area_lights.size(), name_of_area_light);
   return reader;
 }
 
@@ -128,17 +127,17 @@ bool is_whole_number(const std::string& text) {
 // The entry of a table that an edit refers to: by name if one matches, or else by index.
 Index edited_entry(Reader& reader, const std::string& key, const char* table) {
   Index index = 0;
-  const bool is_index = is_whole_number(key) && !reader.names[table].contains(key);
+  const bool is_index = is_whole_number(key) && !reader.names_in(table).contains(key);
   read_reference(reader, is_index ? Value(static_cast<std::int64_t>(std::stol(key))) : Value(key), table, index);
   return index;
 }
 
-// Each edit starts from the existing entry: missing keys keep their values.
+// The edited entries of a table. Each edit starts from the existing entry: missing keys keep their values.
 template <class T>
-void read_edits(Reader& reader, const Dict& edits, const char* table, const std::vector<T>& old,
-                std::map<Index, T>& out) {
+std::map<Index, T> read_edits(Reader& reader, const Dict& edits, const char* table, const std::vector<T>& old) {
+  std::map<Index, T> entries;
   const Value* data = edits.find(table);
-  if (data == nullptr) return;
+  if (data == nullptr) return entries;
   reader.at(table, [&] {
     for (const auto& edit : dict_of(reader, *data).entries()) {  // no structured binding: Clang 14 cannot capture it
       const std::string& key = edit.first;
@@ -148,10 +147,16 @@ void read_edits(Reader& reader, const Dict& edits, const char* table, const std:
           reader.fail("expected an index below " + std::to_string(old.size()) + ", got " + std::to_string(index));
         T entry = old[index];
         read(reader, edit.second, entry);
-        out.emplace(index, std::move(entry));
+        entries.emplace(index, std::move(entry));
       });
     }
   });
+  return entries;
+}
+
+template <class T>
+void replace(description::Table<T>& table, const std::map<Index, T>& by) {
+  for (const auto& [index, entry] : by) table[index] = entry;
 }
 
 void mix_environment(Reader& reader, const EnvironmentChoice& choice) {
@@ -160,13 +165,19 @@ void mix_environment(Reader& reader, const EnvironmentChoice& choice) {
   reader.mix(&choice.scale, sizeof(choice.scale));
 }
 
-}  // namespace
+// Gives those members that `data` has their default values.
+void reset_members(const Dict& data, const Type& type, void* out, void* defaults) {
+  for (const Member& member : type.members)
+    if (member.name == nullptr)
+      reset_members(data, *member.type, member.of(out), member.of(defaults));
+    else if (data.contains(member.name))
+      member.type->assign(member.of(out), member.of(defaults));
+}
 
-SceneDescription description_of_data(const Value& value) {
-  Reader reader;
-  const Dict& data = dict_of(reader, value);
-  const Tables tables = tables_of(reader, data);
-  SceneDescription scene;
+// Reads those members of the description that `data` has, all but the environment. `tables`: those in `data`.
+void read_present(Reader& reader, const Dict& data, const Tables& tables, SceneDescription& scene) {
+  SceneDescription defaults;
+  reset_members(data, type_of<SceneDescription>(), &scene, &defaults);
   Keys known{"environment"};
   for (const Member& member : type_of<SceneDescription>().members)
     if (is_table(member))
@@ -178,11 +189,58 @@ SceneDescription description_of_data(const Value& value) {
     if (is_table(member) && tables.contains(member.name))
       reader.at(member.name, [&] { read_table(reader, tables.at(member.name), *member.type, member.of(&scene)); });
   if (scene.materials.empty()) scene.materials.emplace_back();
-  mix_files(reader, scene);
+}
+
+SceneDescription read_all(Reader& reader, const Value& value) {
+  const Dict& data = dict_of(reader, value);
+  SceneDescription scene;
+  const Tables tables = tables_of(reader, data);
+  read_present(reader, data, tables, scene);
+  if (reader.is_hashing) mix_files(reader, scene);
   scene.hash = reader.hash;
   if (const Value* environment = data.find("environment"))
     replace_environment(scene, environment_of_data(*environment));
   return scene;
+}
+
+// Entries of these tables are not referred to.
+bool is_leaf(const std::string& table) { return table == "shapes" || table == "instances" || table == "lights"; }
+
+}  // namespace
+
+SceneDescription description_of_data(const Value& data) {
+  Reader reader;
+  return read_all(reader, data);
+}
+
+PartialDescription::PartialDescription(const Value& data) {
+  Reader reader;
+  reader.is_hashing = false;
+  description_ = read_all(reader, data);
+  names_ = std::move(reader.names);
+}
+
+bool PartialDescription::read_again(const Value& value) {
+  Reader reader;
+  reader.is_hashing = false;
+  reader.names = names_;
+  const Dict& data = dict_of(reader, value);
+  const Tables tables = tables_of(reader, data);
+  for (const auto& [table, entries] : tables) {
+    const auto before = names_.find(table);
+    if (!is_leaf(table) && (before == names_.end() || *before->second != reader.names_in(table))) return false;
+  }
+  const bool has_environment = !description_.environment.source.empty();
+  if (data.contains("environment") || (has_environment && data.contains("lights"))) return false;
+  SceneDescription scene = description_;
+  read_present(reader, data, tables, scene);
+  const auto is_mirrored = [](const SceneDescription& s) {
+    return s.view.camera.camera_to_world.start.swaps_handedness();
+  };
+  if (has_environment && is_mirrored(scene) != is_mirrored(description_)) return false;
+  description_ = std::move(scene);
+  names_ = std::move(reader.names);
+  return true;
 }
 
 Value data_of_description(const SceneDescription& description, const ViewDescription& view) {
@@ -209,23 +267,29 @@ DescriptionEdits edits_of_data(const Value& value, const SceneDescription& scene
   read_members(reader, data, type_of<ViewDescription>(), &result.view, known);
   refuse_other_keys(reader, data, known);
 
-  SceneEdits changes;
   // Excludes the members of the view, because they are part of the view's own identity.
   reader.hash = scene.hash;
-  read_edits(reader, data, "materials", scene.materials, changes.materials);
-  read_edits(reader, data, "lights", scene.lights, changes.lights);
-  read_edits(reader, data, "area_lights", scene.area_lights, changes.area_lights);
+  const auto materials = read_edits(reader, data, "materials", scene.materials.entries());
+  const auto lights = read_edits(reader, data, "lights", scene.lights.entries());
+  const auto area_lights = read_edits(reader, data, "area_lights", scene.area_lights.entries());
   std::vector<AnimatedTransform> places;
   for (const description::Instance& instance : scene.instances) places.push_back(instance.object_to_world);
-  read_edits(reader, data, "instances", places, changes.instances);
+  const auto instances = read_edits(reader, data, "instances", places);
+  std::optional<EnvironmentChoice> choice;
   if (const Value* environment = data.find("environment")) {
-    changes.environment = environment_of_data(*environment);
-    mix_environment(reader, *changes.environment);
+    choice = environment_of_data(*environment);
+    mix_environment(reader, *choice);
   }
-  changes.hash = reader.hash;
-  if (!changes.materials.empty() || !changes.lights.empty() || !changes.area_lights.empty() ||
-      !changes.instances.empty() || changes.environment)
-    result.scene = std::move(changes);
+  if (materials.empty() && lights.empty() && area_lights.empty() && instances.empty() && !choice) return result;
+  SceneDescription& edited = result.scene.emplace(scene);
+  edited.hash = reader.hash;
+  replace(edited.materials, materials);
+  replace(edited.area_lights, area_lights);
+  if (choice) replace_environment(edited, *choice);
+  if (!lights.empty() && lights.rbegin()->first >= edited.lights.size())
+    throw Error("the scene has no light with index " + std::to_string(lights.rbegin()->first));
+  replace(edited.lights, lights);
+  for (const auto& [index, place] : instances) edited.instances[index].object_to_world = place;
   return result;
 }
 

@@ -104,10 +104,10 @@ struct SurfaceBsdf::At {
 SurfaceBsdf::SurfaceBsdf(std::shared_ptr<const At> at) : at_(std::move(at)) {}
 
 Rgb SurfaceBsdf::eval(const Direction& wi, const Direction& wo) const {
-  return middle_wavelength.to_rgb(lanthorn::eval(at_->point.bsdf, wi, wo, Transport::radiance));
+  return middle_wavelength.to_rgb(lanthorn::evaluate(at_->point.bsdf, wi, wo, Transport::radiance, {.f = true}).f);
 }
 float SurfaceBsdf::pdf(const Direction& wi, const Direction& wo) const {
-  return lanthorn::pdf(at_->point.bsdf, wi, wo, Transport::radiance);
+  return lanthorn::evaluate(at_->point.bsdf, wi, wo, Transport::radiance, {.pdf = true}).pdf;
 }
 SurfaceBsdf::Sample SurfaceBsdf::sample(const Direction& wi, const Vec3& u) const {
   const std::optional<BsdfSample> sample =

@@ -184,8 +184,8 @@ const RenderState& Session::state() const { return impl_->plan.state; }
 void Session::resume(const std::shared_ptr<RenderState>& state, const std::string& name) {
   RenderPlan& plan = impl_->plan;
   remove_stand_in(plan);
-  require_same_identity(*state, plan.state.settings, name);
-  // The settings are text in the file and need not match its film.
+  require_same_identity(*state, plan.state.record.identity, name);
+  // A file may hold anything.
   const Film &film = state->film, &expected = plan.state.film;
   if (state->integrator != plan.state.integrator || state->shardable != plan.state.shardable ||
       film.width() != expected.width() || film.height() != expected.height() || film.contents() != expected.contents())

@@ -1,14 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The only file besides threads.cpp that includes TBB. Every parallel computation in Lanthorn is a loop over chunks
-// whose bounds do not depend on the number of threads, so results do not either.
+// Every parallel computation in Lanthorn is a loop over chunks whose bounds do not depend on the number of threads, so
+// results do not either. TBB's headers are kept out of this one, which is included nearly everywhere.
 #pragma once
-
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-#include <tbb/parallel_invoke.h>
-#include <tbb/parallel_sort.h>
-#include <tbb/task_group.h>
 
 #include <algorithm>
 #include <atomic>
@@ -24,13 +18,6 @@ struct Stopped {};
 
 namespace detail {
 inline thread_local const std::atomic<bool>* stop_flag = nullptr;
-
-/// Makes a loop's tasks treat denormal numbers as its caller does. Without its own context, a loop would treat them as
-/// its thread did on first using TBB; if that was inside Embree, which flushes them to zero, results would differ.
-struct LoopContext {
-  tbb::task_group_context of_tasks;
-  LoopContext() { of_tasks.capture_fp_settings(); }
-};
 }  // namespace detail
 
 /// During its lifetime, the parallel loops that its thread starts, and all loops nested in them, throw `Stopped`
@@ -51,64 +38,42 @@ inline void stop_point() {
   if (detail::stop_flag && detail::stop_flag->load(std::memory_order_relaxed)) throw Stopped{};
 }
 
+namespace detail {
+/// Calls `call(body, begin, end)` for parts of [0, count), in any order and on any thread. Every thread has the
+/// caller's stop flag, and treats denormal numbers as the caller does.
+void for_parts(std::size_t count, const void* body, void (*call)(const void* body, std::size_t begin, std::size_t end));
+/// Calls `body(i)` for all i < count, between points where the loop may stop.
+template <class Body>
+void for_all(std::size_t count, const Body& body) {
+  for_parts(count, &body, [](const void* b, std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      stop_point();
+      (*static_cast<const Body*>(b))(i);
+    }
+  });
+}
+}  // namespace detail
+
 /// Calls `body(i)` for every i in [begin, end), in any order and on any thread.
 template <class Index, class Body>
 void parallel_for(Index begin, Index end, Body&& body) {
-  const auto* const flag = detail::stop_flag;
-  detail::LoopContext context;
-  if (!flag) return tbb::parallel_for(begin, end, body, context.of_tasks);
-  tbb::parallel_for(
-      begin, end,
-      [&](Index i) {
-        const StopScope scope(flag);
-        stop_point();
-        body(i);
-      },
-      context.of_tasks);
+  if (begin < end)
+    detail::for_all(static_cast<std::size_t>(end - begin),
+                    [&](std::size_t i) { body(static_cast<Index>(begin + static_cast<Index>(i))); });
 }
 
 /// Splits [0, count) into chunks of `chunk` items (the last may be shorter) and calls `body(chunk_index, begin, end)`
 /// for each, in any order and on any thread. Chunk bounds depend only on `count` and `chunk`.
 template <class Body>
 void parallel_chunks(std::size_t count, std::size_t chunk, Body&& body) {
-  const std::size_t chunks = (count + chunk - 1) / chunk;
-  const auto* const flag = detail::stop_flag;
-  detail::LoopContext context;
-  tbb::parallel_for(
-      tbb::blocked_range<std::size_t>(0, chunks, 1),
-      [&](const tbb::blocked_range<std::size_t>& range) {
-        const StopScope scope(flag);
-        for (std::size_t c = range.begin(); c != range.end(); ++c) {
-          stop_point();
-          body(c, c * chunk, std::min(count, (c + 1) * chunk));
-        }
-      },
-      context.of_tasks);
-}
-
-/// Sorts values in parallel. They must be distinct, so that the result does not depend on the threads.
-template <class Values>
-void parallel_sort(Values& values) {
-  tbb::parallel_sort(values.begin(), values.end());
+  detail::for_all((count + chunk - 1) / chunk,
+                  [&](std::size_t c) { body(c, c * chunk, std::min(count, (c + 1) * chunk)); });
 }
 
 /// Runs both callables, possibly concurrently; returns when both are done.
 template <class A, class B>
 void parallel_invoke(A&& a, B&& b) {
-  const auto* const flag = detail::stop_flag;
-  detail::LoopContext context;
-  tbb::parallel_invoke(
-      [&] {
-        const StopScope scope(flag);
-        stop_point();
-        a();
-      },
-      [&] {
-        const StopScope scope(flag);
-        stop_point();
-        b();
-      },
-      context.of_tasks);
+  detail::for_all(2, [&](std::size_t i) { i == 0 ? a() : b(); });
 }
 
 }  // namespace lanthorn

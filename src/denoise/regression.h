@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "denoise/plane.h"
+#include "film/plane.h"
 #include "math/vec.h"
 
 namespace lanthorn::denoising {

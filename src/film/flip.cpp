@@ -9,37 +9,18 @@
 #include <cstddef>
 #include <string>
 
-#include "base/parallel.h"
 #include "film/display.h"
+#include "film/plane.h"
 #include "lanthorn/error.h"
 #include "math/vec.h"
 
 namespace lanthorn {
 namespace {
 
-constexpr std::size_t chunk_values = 4096;
-
-template <class T>
-struct Plane {
-  int width = 0;
-  int height = 0;
-  std::vector<T> values;
-
-  const T& clamped(int x, int y) const {
-    return values[static_cast<std::size_t>(std::clamp(y, 0, height - 1)) * static_cast<std::size_t>(width) +
-                  static_cast<std::size_t>(std::clamp(x, 0, width - 1))];
-  }
-};
-
 /// Applies f to each element of a plane.
 template <class T, class F>
-auto mapped(const Plane<T>& in, F&& f) {
-  Plane<decltype(f(in.values[0]))> out{in.width, in.height, {}};
-  out.values.resize(in.values.size());
-  parallel_chunks(in.values.size(), chunk_values, [&](std::size_t, std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) out.values[i] = f(in.values[i]);
-  });
-  return out;
+auto mapped(const PixelPlane<T>& in, F&& f) {
+  return PixelPlane<decltype(f(in[0]))>::of(in.width(), in.height(), [&](std::size_t i) { return f(in[i]); });
 }
 
 // Linear Rec.709 to XYZ (columns), exact for the primaries and D65 of IEC 61966-2-1.
@@ -85,14 +66,15 @@ Kernel make_kernel(int radius, F&& f) {
   return kernel;
 }
 
-Plane<float> convolved_along(const Plane<float>& in, const Kernel& kernel, int dx, int dy) {
-  Plane<float> out{in.width, in.height, std::vector<float>(in.values.size())};
+Plane convolved_along(const Plane& in, const Kernel& kernel, int dx, int dy) {
+  Plane out(in.width(), in.height());
   const int radius = static_cast<int>(kernel.size() / 2);
-  parallel_for(0, in.height, [&](int y) {
-    float* row = &out.values[static_cast<std::size_t>(y) * static_cast<std::size_t>(in.width)];
-    for (int x = 0; x < in.width; ++x)
+  in.for_each_row([&](int y) {
+    for (int x = 0; x < in.width(); ++x)
       for (int i = -radius; const float weight : kernel) {
-        row[x] += weight * in.clamped(x + i * dx, y + i * dy);
+        const int from_x = std::clamp(x + i * dx, 0, in.width() - 1),
+                  from_y = std::clamp(y + i * dy, 0, in.height() - 1);
+        out.row(y)[x] += weight * in.row(from_y)[from_x];
         ++i;
       }
   });
@@ -100,7 +82,7 @@ Plane<float> convolved_along(const Plane<float>& in, const Kernel& kernel, int d
 }
 
 /// Convolution with a separable filter; edge pixels are repeated beyond the edge.
-Plane<float> convolved(const Plane<float>& in, const Kernel& horizontal, const Kernel& vertical) {
+Plane convolved(const Plane& in, const Kernel& horizontal, const Kernel& vertical) {
   return convolved_along(convolved_along(in, horizontal, 1, 0), vertical, 0, 1);
 }
 
@@ -131,17 +113,16 @@ std::vector<SensitivityTerm> sensitivity(std::vector<SensitivityTerm> terms, dou
 }
 
 /// Filters a picture in the opponent space by contrast sensitivity; the result is Hunt-adjusted L*a*b*.
-Plane<Vec3> perceived(const Plane<Vec3>& ycxcz, double pixels_per_degree) {
+PixelPlane<Vec3> perceived(const PixelPlane<Vec3>& ycxcz, double pixels_per_degree) {
   const std::array<std::vector<SensitivityTerm>, 3> channels{
       sensitivity({{1, 0.0047, 0, {}}}, pixels_per_degree), sensitivity({{1, 0.0053, 0, {}}}, pixels_per_degree),
       sensitivity({{34.1, 0.04, 0, {}}, {13.5, 0.025, 0, {}}}, pixels_per_degree)};
-  Plane<Vec3> filtered{ycxcz.width, ycxcz.height, std::vector<Vec3>(ycxcz.values.size(), Vec3(0))};
+  PixelPlane<Vec3> filtered(ycxcz.width(), ycxcz.height());
   for (int c = 0; c < 3; ++c) {
-    const Plane<float> channel = mapped(ycxcz, [c](const Vec3& v) { return v[c]; });
+    const Plane channel = mapped(ycxcz, [c](const Vec3& v) { return v[c]; });
     for (const SensitivityTerm& term : channels[static_cast<std::size_t>(c)]) {
-      const Plane<float> part = convolved(channel, term.kernel, term.kernel);
-      for (std::size_t i = 0; i < part.values.size(); ++i)
-        filtered.values[i][c] += static_cast<float>(term.volume) * part.values[i];
+      const Plane part = convolved(channel, term.kernel, term.kernel);
+      for (std::size_t i = 0; i < part.size(); ++i) filtered[i][c] += static_cast<float>(term.volume) * part[i];
     }
   }
   return mapped(filtered, [](const Vec3& c) { return hunt_lab_from_rgb(glm::clamp(rgb_from_ycxcz(c), 0.0f, 1.0f)); });
@@ -149,7 +130,7 @@ Plane<Vec3> perceived(const Plane<Vec3>& ycxcz, double pixels_per_degree) {
 
 /// Strength of edges and points in the achromatic channel (section 4.2).
 struct Features {
-  Plane<float> edges, points;
+  Plane edges, points;
 };
 
 /// Scales the positive weights to sum to 1 and the negative ones to -1.
@@ -160,15 +141,14 @@ Kernel balanced(Kernel kernel) {
   return kernel;
 }
 
-Plane<float> feature_strength(const Plane<float>& y, const Kernel& derivative, const Kernel& smooth) {
-  Plane<float> across = convolved(y, derivative, smooth);
-  const Plane<float> down = convolved(y, smooth, derivative);
-  for (std::size_t i = 0; i < across.values.size(); ++i)
-    across.values[i] = std::hypot(across.values[i], down.values[i]);
+Plane feature_strength(const Plane& y, const Kernel& derivative, const Kernel& smooth) {
+  Plane across = convolved(y, derivative, smooth);
+  const Plane down = convolved(y, smooth, derivative);
+  for (std::size_t i = 0; i < across.size(); ++i) across[i] = std::hypot(across[i], down[i]);
   return across;
 }
 
-Features features(const Plane<Vec3>& ycxcz, double pixels_per_degree) {
+Features features(const PixelPlane<Vec3>& ycxcz, double pixels_per_degree) {
   constexpr double edge_width = 0.082;  // degrees from peak to trough
   const double sigma = 0.5 * edge_width * pixels_per_degree;
   const int radius = static_cast<int>(std::ceil(3 * sigma));
@@ -177,7 +157,7 @@ Features features(const Plane<Vec3>& ycxcz, double pixels_per_degree) {
   const Kernel first = balanced(make_kernel(radius, [&](double x) { return -x * gaussian(x); }));
   const Kernel second =
       balanced(make_kernel(radius, [&](double x) { return (x * x / (sigma * sigma) - 1) * gaussian(x); }));
-  const Plane<float> y = mapped(ycxcz, [](const Vec3& c) { return (c.x + 16) / 116; });
+  const Plane y = mapped(ycxcz, [](const Vec3& c) { return (c.x + 16) / 116; });
   return {feature_strength(y, first, smooth), feature_strength(y, second, smooth)};
 }
 
@@ -189,35 +169,37 @@ float redistributed(float distance, float largest) {
 }
 
 /// LDR-FLIP of colours in [0,1].
-std::vector<float> flip_map(const Plane<Vec3>& image, const Plane<Vec3>& reference, double pixels_per_degree) {
+std::vector<float> flip_map(const PixelPlane<Vec3>& image, const PixelPlane<Vec3>& reference,
+                            double pixels_per_degree) {
   const float largest = hyab(hunt_lab_from_rgb({0, 1, 0}), hunt_lab_from_rgb({0, 0, 1}));
-  const Plane<Vec3> a = mapped(image, ycxcz_from_rgb), b = mapped(reference, ycxcz_from_rgb);
-  const Plane<Vec3> seen_a = perceived(a, pixels_per_degree), seen_b = perceived(b, pixels_per_degree);
+  const PixelPlane<Vec3> a = mapped(image, ycxcz_from_rgb), b = mapped(reference, ycxcz_from_rgb);
+  const PixelPlane<Vec3> seen_a = perceived(a, pixels_per_degree), seen_b = perceived(b, pixels_per_degree);
   const Features in_a = features(a, pixels_per_degree), in_b = features(b, pixels_per_degree);
-  std::vector<float> map(a.values.size());
+  std::vector<float> map(a.size());
   for (std::size_t i = 0; i < map.size(); ++i) {
-    const float color = redistributed(hyab(seen_a.values[i], seen_b.values[i]), largest);
-    const float edges = std::fabs(in_a.edges.values[i] - in_b.edges.values[i]);
-    const float points = std::fabs(in_a.points.values[i] - in_b.points.values[i]);
+    const float color = redistributed(hyab(seen_a[i], seen_b[i]), largest);
+    const float edges = std::fabs(in_a.edges[i] - in_b.edges[i]);
+    const float points = std::fabs(in_a.points[i] - in_b.points[i]);
     const float feature = std::sqrt(std::fmax(edges, points) / std::numbers::sqrt2_v<float>);  // q_f = 1/2
     map[i] = std::pow(std::clamp(color, 0.0f, 1.0f), 1 - std::fmin(feature, 1.0f));
   }
   return map;
 }
 
-Plane<Vec3> color_plane(const Image& image) {
+PixelPlane<Vec3> color_plane(const Image& image) {
   const auto color = select_layer(image, "color");
   if (!color) throw Error("FLIP needs pictures with channels R, G, B");
   if (color->width < 1 || color->height < 1) throw Error("FLIP needs pictures of at least one pixel");
-  Plane<Vec3> plane{color->width, color->height, {}};
-  const auto finite = [](float x) { return std::isfinite(x) ? std::fmax(x, 0.0f) : 0.0f; };
-  for (std::size_t i = 0; i < color->pixels.size(); i += 3)
-    plane.values.emplace_back(finite(color->pixels[i]), finite(color->pixels[i + 1]), finite(color->pixels[i + 2]));
-  return plane;
+  const auto finite = [&](std::size_t i) {
+    const float x = color->pixels[i];
+    return std::isfinite(x) ? std::fmax(x, 0.0f) : 0.0f;
+  };
+  return PixelPlane<Vec3>::of(color->width, color->height,
+                              [&](std::size_t i) { return Vec3(finite(3 * i), finite(3 * i + 1), finite(3 * i + 2)); });
 }
 
 struct PlanePair {
-  Plane<Vec3> image, reference;
+  PixelPlane<Vec3> image, reference;
 };
 PlanePair color_planes(const Image& image, const Image& reference) {
   if (image.width != reference.width || image.height != reference.height)
@@ -245,18 +227,18 @@ double shoulder() {
   return (-b + std::sqrt(b * b - 4 * a * c)) / (2 * a);
 }
 
-Exposures exposures(const Plane<Vec3>& reference) {
+Exposures exposures(const PixelPlane<Vec3>& reference) {
   std::vector<float> luminances;
-  for (const Vec3& c : reference.values)
-    if (const float y = luminance({c.x, c.y, c.z}); y > 0) luminances.push_back(y);
+  for (std::size_t i = 0; i < reference.size(); ++i)
+    if (const float y = luminance({reference[i].x, reference[i].y, reference[i].z}); y > 0) luminances.push_back(y);
   if (luminances.empty()) return {};
   // Black pixels would require infinite exposure. If most pixels are black, the median is taken over the other pixels.
-  const std::size_t black = reference.values.size() - luminances.size();
+  const std::size_t black = reference.size() - luminances.size();
   std::sort(luminances.begin(), luminances.end());
   const auto at_rank = [&](std::size_t rank) {
     return static_cast<double>(luminances[rank >= black ? rank - black : luminances.size() / 2]);
   };
-  const std::size_t count = reference.values.size();
+  const std::size_t count = reference.size();
   const double median = 0.5 * (at_rank((count - 1) / 2) + at_rank(count / 2));
   const double first = std::log2(shoulder() / static_cast<double>(luminances.back()));
   const double last = std::log2(shoulder() / median);
@@ -275,7 +257,7 @@ FlipResult ldr_flip(const Image& image, const Image& reference, const FlipOption
 FlipResult hdr_flip(const Image& image, const Image& reference, const FlipOptions& options) {
   const PlanePair planes = color_planes(image, reference);
   const Exposures range = exposures(planes.reference);
-  std::vector<float> worst(planes.reference.values.size());
+  std::vector<float> worst(planes.reference.size());
   for (int i = 0; i < range.count; ++i) {
     const auto gain = static_cast<float>(std::exp2(range.first + i * range.step));
     const auto tone_map = [gain](const Vec3& c) {

@@ -8,6 +8,7 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -15,6 +16,7 @@
 
 #include "base/parameters.h"
 #include "film/film_pass.h"
+#include "lanthorn/effort_report.h"
 #include "lanthorn/methods.h"
 #include "lanthorn/statistics.h"
 #include "path/path_class.h"
@@ -100,9 +102,8 @@ class Integrator {
   virtual std::string limitation(const Scene& /*scene*/) const { return {}; }
   /// Message for the user about the results of the preparation for this job. Empty if there is nothing to say.
   virtual std::string remark() const { return {}; }
-  /// Measurements of the preparation for this job: the text of a JSON object, for reports. Empty if there is nothing to
-  /// report.
-  virtual std::string findings() const { return {}; }
+  /// Measurements of the preparation for this job, for reports.
+  virtual std::optional<EffortReport> findings() const { return std::nullopt; }
   /// The film's layers for this scene and whether the method splats. Default: the layers of the path classes.
   virtual FilmContents film_contents(const Scene& scene) const { return path_layers(scene); }
   /// False if the method has an error that does not vanish with more passes and that its film does not estimate

@@ -111,7 +111,7 @@ struct GatherVisitor : PathVisitor {
   }
   NarrowContinuation operator()(const SurfaceVertex& vertex) {
     layers.see(vertex);
-    if (adds_all) layers.add_hit(vertex, hit_emitter(path, vertex));
+    if (adds_all) layers.add_hit(vertex, hit_lights(path, vertex));
     if (!vertex.may_scatter) return {Continuation::stop()};
     if (!has_non_delta(vertex.at.bsdf)) return {Continuation::go_on()};
 
@@ -164,7 +164,7 @@ struct VolumeGatherVisitor : GatherVisitor<Gather> {
   NarrowContinuation operator()(const SurfaceVertex& vertex) {
     if (!walk.is_gathered()) return GatherVisitor<Gather>::operator()(vertex);
     this->layers.see(vertex);
-    if (this->adds_all && walk.finds_hits()) this->layers.add_hit(vertex, hit_emitter(this->path, vertex));
+    if (this->adds_all && walk.finds_hits()) this->layers.add_hit(vertex, hit_lights(this->path, vertex));
     return {walk.follow_emission(this->path)};
   }
   Continuation operator()(const MediumVertex& vertex) {

@@ -50,16 +50,16 @@ struct SplitSumVisitor {
   LightLayers& layers;
 
   Continuation operator()(const MediumVertex&) { return Continuation::stop(); }
-  void operator()(const EmissionVertex& vertex) { layers.add_hit(vertex, hit_volume_emission(path, vertex)); }
+  void operator()(const EmissionVertex& vertex) { layers.add_hit(vertex, hit_lights(path, vertex)); }
   Continuation operator()(const SurfaceVertex& vertex) {
     layers.see(vertex);
-    layers.add_hit(vertex, hit_emitter(path, vertex));
+    layers.add_hit(vertex, hit_lights(path, vertex));
     if (maps && vertex.may_scatter)
       layers.add(PathClass::direct, vertex.state.beta * shade(*maps, vertex, multiple_scattering, path.w),
                  vertex.state.dispersed);
     return Continuation::stop();
   }
-  void operator()(const EscapeVertex& vertex) { layers.add_hit(vertex, hit_environment(path, vertex)); }
+  void operator()(const EscapeVertex& vertex) { layers.add_hit(vertex, hit_lights(path, vertex)); }
 };
 
 /// Collects the parts of the first surfaces' closures that the split terms leave out.

@@ -111,14 +111,14 @@ Grounds::Grounds(SceneDescription& scene) {
   side_ = found.side;
   std::vector<std::size_t> shapes, instances;
   for (std::size_t i = 0; i < found.count; ++i) (parts[i].is_instance ? instances : shapes).push_back(parts[i].place);
-  shapes_ = take(scene.shapes, std::move(shapes));
-  instances_ = take(scene.instances, std::move(instances));
+  shapes_ = take(scene.shapes.edit(), std::move(shapes));
+  instances_ = take(scene.instances.edit(), std::move(instances));
 }
 
 void Grounds::put_back(SceneDescription& scene) {
   if (!side_) return;
-  insert(scene.shapes, std::exchange(shapes_, {}));
-  insert(scene.instances, std::exchange(instances_, {}));
+  insert(scene.shapes.edit(), std::exchange(shapes_, {}));
+  insert(scene.instances.edit(), std::exchange(instances_, {}));
 }
 
 }  // namespace lanthorn

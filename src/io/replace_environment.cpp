@@ -182,7 +182,7 @@ void replace_environment(SceneDescription& scene, const EnvironmentChoice& choic
   InfiniteLight& environment = light.node.emplace<InfiniteLight>();
   environment.texels = picture.texels;
   environment.radiance.scale = choice.scale;
-  replace_lights(scene.lights, std::move(light));
+  replace_lights(scene.lights.edit(), std::move(light));
   scene.environment = choice;
 }
 

@@ -32,8 +32,10 @@ Arrival in_medium(const FlightDensity& flight, const Direction& wi, const Direct
 }
 Arrival arrival(const Bidirectional& pass, const SurfaceVertex& v, const Direction& direction, const FlightDensity& f,
                 Transport transport) {
-  return {arrival_cosine(v.at, v.wi, direction),
-          pdf_reverse(v.at.bsdf, v.wi_local, v.at.shading.to_local(direction), transport), pass.merging_at(v.at), f};
+  return {
+      arrival_cosine(v.at, v.wi, direction),
+      evaluate(v.at.bsdf, v.wi_local, v.at.shading.to_local(direction), transport, {.pdf_reverse = true}).pdf_reverse,
+      pass.merging_at(v.at), f};
 }
 Arrival arrival(const Bidirectional&, const MediumVertex& v, const Direction& direction, const FlightDensity& f,
                 Transport) {
@@ -50,7 +52,7 @@ struct End : Arrival {
 End eye_end(const Bidirectional& pass, const SurfaceVertex& v, const Direction& direction,
             const FlightDensity& flight) {
   const Vec3 wo = v.at.shading.to_local(direction);
-  const BsdfValues value = eval_and_pdfs(v.at.bsdf, v.wi_local, wo, Transport::radiance);
+  const BsdfValue value = evaluate(v.at.bsdf, v.wi_local, wo, Transport::radiance);
   if (value.f.is_black()) return {};
   return {{arrival_cosine(v.at, v.wi, direction), value.pdf_reverse, pass.merging_at(v.at), flight},
           value.f * cosine(v.at.bsdf, wo),
@@ -67,7 +69,7 @@ End light_end(const Bidirectional& pass, const LightVertex& v, const Direction& 
     return {in_medium(v.flight, v.wi, direction, p), Spectrum(p), p, false};
   }
   const Vec3 wo = v.at.shading.to_local(direction);
-  const BsdfValues value = eval_and_pdfs(v.at.bsdf, v.wi_local, wo, Transport::importance);
+  const BsdfValue value = evaluate(v.at.bsdf, v.wi_local, wo, Transport::importance);
   if (value.f.is_black()) return {};
   return {{area_cosine(v.at, direction), value.pdf_reverse, v.depth > 1 ? pass.merging_at(v.at) : 0.0f, v.flight},
           value.f * (geometric_cosine(v.at, direction) * shading_flux_ratio(v.at, v.wi, v.wi_local)),
@@ -75,27 +77,18 @@ End light_end(const Bidirectional& pass, const LightVertex& v, const Direction& 
           is_dispersive(v.at.bsdf) && !v.has_own_dispersion};
 }
 
-LightVertex keep_at(const SurfacePoint& at, const Direction& wi, const Vec3& wi_local,
-                    const std::optional<HenyeyGreenstein>& phase, const WalkState& state, const Subpath& subpath) {
-  return {at,
-          wi,
-          wi_local,
-          phase,
-          distance(at.position, state.previous),
-          state.beta,
-          subpath.densities(),
-          subpath.flight(),
-          subpath.coherence_beyond(),
-          state.medium,
-          state.depth,
-          state.scatterings(),
-          state.non_delta == 0,
-          state.dispersed};
+// The members of a LightVertex that differ between surfaces and media.
+const SurfacePoint& place_of(const SurfaceVertex& v) { return v.at; }
+SurfacePoint place_of(const MediumVertex& v) {
+  SurfacePoint at;
+  at.position = v.position;
+  at.time = v.time;
+  return at;
 }
-
-// Normal by which next-event estimation chooses a light for the vertex; 0 in media and on hair.
-Normal receiving_normal(const SurfaceVertex& v) { return receiver_normal(v.at); }
-Normal receiving_normal(const MediumVertex&) { return Normal(0); }
+Vec3 wi_local_of(const SurfaceVertex& v) { return v.wi_local; }
+Vec3 wi_local_of(const MediumVertex&) { return Vec3(0); }
+std::optional<HenyeyGreenstein> phase_of(const SurfaceVertex&) { return {}; }
+std::optional<HenyeyGreenstein> phase_of(const MediumVertex& v) { return v.phase; }
 
 // True for direct light on surfaces, which `EmissionDensities` treats separately: one scattering, at a receiver with a
 // normal.
@@ -118,8 +111,8 @@ float density_of_start(const PathContext& path, const Bidirectional& pass, const
 }
 
 template <class Vertex>
-float weight_of(const PathContext& path, const Bidirectional& pass, const Vertex& v, const NextEvent& event,
-                const Subpath& subpath) {
+TechniqueSum densities_of(const PathContext& path, const Bidirectional& pass, const Vertex& v, const NextEvent& event,
+                          const Subpath& subpath) {
   const Light& light = path.scene.lights()[event.light];
   const LightSample& l = event.sample;
   const Arrival at = arrival(pass, v, l.wi, subpath.flight(), Transport::radiance);
@@ -134,45 +127,15 @@ float weight_of(const PathContext& path, const Bidirectional& pass, const Vertex
   if (at_eye.has_other_techniques(pass.techniques)) {
     // Samples of far lights have no position: any point of the ray gives its densities.
     const EmittedRay ray{event.light, {far ? position_of(v) : l.position, l.normal, Vec2(0)}, -l.wi};
-    const bool direct = is_direct(v.state.depth, receiving_normal(v));
+    const bool direct = is_direct(v.state.depth, receiver_normal(v));
     at_eye.arrival = density_of_start(path, pass, ray, direct) * at.density(passes) / (pdf * cos_light);
   }
-  return pass.weigh(sum_of_next_event(at_eye, event.pmf * l.pdf, pdf_walk, pass.techniques));
-}
-
-// A light that an eye walk has hit.
-struct LightHit {
-  std::uint32_t index;
-  EmitterHit at;     // of lights without surface any point of the ray
-  Direction to_eye;  // back along the walk's ray
-  int scatterings;   // of the walk before
-};
-
-float weight_of_hit(const PathContext& path, const Bidirectional& pass, const WalkState& state, const Subpath& subpath,
-                    const LightHit& hit) {
-  const Light& light = path.scene.lights()[hit.index];
-  float direct = next_event_density(path.scene, hit.index, state.previous, state.previous_normal, hit.at, -hit.to_eye);
-  if (has_surface(light))
-    direct = direct * std::fabs(dot(hit.at.normal, hit.to_eye)) / distance_squared(hit.at.position, state.previous);
-  const bool is_of_direct_light = !state.last_delta && is_direct(hit.scatterings, state.previous_normal);
-  const float emission = has_light_paths(subpath.densities(), pass.techniques)
-                             ? density_of_start(path, pass, {hit.index, hit.at, hit.to_eye}, is_of_direct_light)
-                             : 0.0f;
-  return pass.weigh(sum_of_hit(subpath.densities(), direct, emission, state.non_delta, pass.techniques));
-}
-
-template <class Vertex>
-DirectLight estimate_next_event(const PathContext& path, const Bidirectional& pass, const Vertex& v,
-                                const Subpath& subpath) {
-  path.sampler.seek(visitor_dimensions(v.state.depth));
-  const auto event = sample_next_event(path, v);
-  if (!event) return {};
-  return {event->radiance * weight_of(path, pass, v, *event, subpath), event->dispersed};
+  return sum_of_next_event(at_eye, event.pmf * l.pdf, pdf_walk, pass.techniques);
 }
 
 // `passes`: probability that a walk passes the way between both ends.
-float weight_of_connection(const Bidirectional& pass, const WalkState& state, const Subpath& subpath, const End& eye,
-                           const LightVertex& other, const End& light, float distance2, float passes) {
+TechniqueSum densities_of(const Bidirectional& pass, const WalkState& state, const Subpath& subpath, const End& eye,
+                          const LightVertex& other, const End& light, float distance2, float passes) {
   const Techniques& t = pass.techniques;
   const float to_light = eye.forward * light.density(passes) / distance2;
   const float to_eye = light.forward * eye.density(passes) / distance2;
@@ -182,57 +145,28 @@ float weight_of_connection(const Bidirectional& pass, const WalkState& state, co
   const ConnectedEnd at_light{
       end_of_light_path(other.densities, light.reverse, !other.caustic, coherence * other.coherence), to_light,
       light.merging, light.volume_merging(t.volume.reversed(), passes, coherence)};
-  return pass.weigh(sum_of_connection(at_eye, at_light, t));
-}
-
-template <class Vertex>
-DirectLight connect_ends(const PathContext& path, const Bidirectional& pass, const Vertex& v, const Subpath& subpath,
-                         const LightVertex& other) {
-  const Vec3 to_other = other.at.position - position_of(v);
-  const float distance2 = length_squared(to_other);
-  if (!(distance2 > 0)) return {};
-  const float distance = std::sqrt(distance2);
-  const Direction direction = to_other / distance;
-  const End eye = eye_end(pass, v, direction, subpath.flight());
-  if (eye.f.is_black()) return {};
-  const End light = light_end(pass, other, -direction);
-  if (light.f.is_black()) return {};
-  const Spectrum value = v.state.beta * eye.f * light.f * other.beta * (pass.techniques.light_paths / distance2);
-  const SegmentEnd end = other.phase ? SegmentEnd{other.at.position} : end_at(other.at, position_of(v));
-  if (value.is_black() || !may_leave(path, v, direction, end)) return {};
-  const Passage way =
-      passage(path, ray_to(v, direction, end), medium_towards(v, direction), visitor_dimensions(v.state.depth));
-  if (way.transmittance.is_black()) return {};
-  const float weight = weight_of_connection(pass, v.state, subpath, eye, other, light, distance2,
-                                            FlightDensity::passing(way.optical_depth));
-  return {value * way.transmittance * weight, v.state.dispersed || other.dispersed || eye.dispersed || light.dispersed};
-}
-
-template <class Vertex>
-float weight_of_lens(const Bidirectional& pass, const Vertex& v, const Subpath& subpath, const LensLight& seen) {
-  const Techniques& t = pass.techniques;
-  const Arrival at = arrival(pass, v, -seen.from_lens.direction, subpath.flight(), Transport::importance);
-  const float passes = FlightDensity::passing(seen.optical_depth);
-  const float density = pass.view.camera.density_at(seen.from_lens, seen.distance) * at.density(passes);
-  const SubpathDensities densities =
-      is_direct(v.state.depth, receiving_normal(v)) ? subpath.densities_of_direct_light() : subpath.densities();
-  return pass.weigh(
-      sum_of_lens({end_of_light_path(densities, at.reverse, v.state.non_delta > 0, subpath.coherence_beyond()), density,
-                   v.state.depth == 1 ? 0.0f : at.merging, at.volume_merging(t.volume.reversed(), passes, 1)},
-                  t));
+  return sum_of_connection(at_eye, at_light, t);
 }
 
 }  // namespace
 
-LightVertex keep_vertex(const SurfaceVertex& v, const Subpath& subpath) {
-  return keep_at(v.at, v.wi, v.wi_local, {}, v.state, subpath);
-}
-
-LightVertex keep_vertex(const MediumVertex& v, const Subpath& subpath) {
-  SurfacePoint at;
-  at.position = v.position;
-  at.time = v.time;
-  return keep_at(at, v.wi, Vec3(0), v.phase, v.state, subpath);
+template <class Vertex>
+LightVertex keep_vertex(const Vertex& v, const Subpath& subpath) {
+  const SurfacePoint& at = place_of(v);
+  return {at,
+          v.wi,
+          wi_local_of(v),
+          phase_of(v),
+          distance(at.position, v.state.previous),
+          v.state.beta,
+          subpath.densities(),
+          subpath.flight(),
+          subpath.coherence_beyond(),
+          v.state.medium,
+          v.state.depth,
+          v.state.scatterings(),
+          v.state.non_delta == 0,
+          v.state.dispersed};
 }
 
 std::optional<LightBeam> keep_beam(const PathContext& path, const FlownSegment& flight, float time, float share,
@@ -258,69 +192,79 @@ std::optional<LightBeam> keep_beam(const PathContext& path, const FlownSegment& 
                    dispersed};
 }
 
-Spectrum hit_emitter(const PathContext& path, const Bidirectional& pass, const SurfaceVertex& v,
-                     const Subpath& subpath) {
-  if (!v.at.light) return {};
-  const Light& light = path.scene.lights()[*v.at.light];
-  const EmitterHit at{v.at.position, v.at.normal, v.at.uv};
-  const Spectrum radiance = emitted(light, at, v.wi, path.w);
-  if (radiance.is_black()) return {};
-  if (v.state.depth == 1) return v.state.beta * radiance;
-  return v.state.beta * radiance *
-         weight_of_hit(path, pass, v.state, subpath, {*v.at.light, at, v.wi, v.state.depth - 1});
+TechniqueSum densities_of_hit(const PathContext& path, const Bidirectional& pass, const WalkState& state,
+                              const Subpath& subpath, const LightHit& hit) {
+  if (hit.scatterings == 0 || !hit.light) return {.within = {.walk = 1}};  // no other technique finds it
+  const Direction to_eye = -hit.direction;
+  float direct =
+      next_event_density(path.scene, *hit.light, state.previous, state.previous_normal, hit.at, hit.direction);
+  if (has_surface(path.scene.lights()[*hit.light]))
+    direct = direct * std::fabs(dot(hit.at.normal, to_eye)) / distance_squared(hit.at.position, state.previous);
+  const bool is_of_direct_light = !state.last_delta && is_direct(hit.scatterings, state.previous_normal);
+  const float emission = has_light_paths(subpath.densities(), pass.techniques)
+                             ? density_of_start(path, pass, {*hit.light, hit.at, to_eye}, is_of_direct_light)
+                             : 0.0f;
+  return sum_of_hit(subpath.densities(), direct, emission, state.non_delta, pass.techniques);
 }
 
-Spectrum hit_environment(const PathContext& path, const Bidirectional& pass, const EscapeVertex& v,
-                         const Subpath& subpath) {
-  Spectrum sum;
-  for (const std::uint32_t index : path.scene.infinite_lights()) {
-    const Light& light = path.scene.lights()[index];
-    if (v.state.depth == 0 && is_hidden_from_camera(light)) continue;
-    const Spectrum radiance = emitted_infinite(light, v.state.previous, v.direction, path.w);
-    if (radiance.is_black()) continue;
-    const LightHit hit{index, {v.state.previous, Normal(0), Vec2(0)}, -v.direction, v.state.depth};
-    const float weight = v.state.depth > 0 ? weight_of_hit(path, pass, v.state, subpath, hit) : 1.0f;
-    sum += v.state.beta * radiance * weight;
-  }
-  return sum;
+template <class Vertex>
+std::optional<Contribution> next_event(const PathContext& path, const Bidirectional& pass, const Vertex& v,
+                                       const Subpath& subpath) {
+  path.sampler.seek(visitor_dimensions(v.state.depth));
+  const std::optional<NextEvent> event = sample_next_event(path, v);
+  if (!event) return {};
+  return Contribution{event->radiance, event->dispersed, densities_of(path, pass, v, *event, subpath)};
 }
 
-Spectrum hit_volume_emission(const PathContext& path, const Bidirectional& pass, const EmissionVertex& v,
-                             Subpath subpath) {
-  const WalkState& state = v.state;
-  const std::optional<std::uint32_t> index = path.scene.volume_light(state.medium);
-  if (!index || state.depth == 0) return state.beta * v.radiance;
-  subpath.escape(state, v.direction, false);
-  const LightHit hit{*index, {state.previous, Normal(0), Vec2(0)}, -v.direction, state.depth};
-  return state.beta * v.radiance * weight_of_hit(path, pass, state, subpath, hit);
+template <class Vertex>
+std::optional<Contribution> connect(const PathContext& path, const Bidirectional& pass, const Vertex& v,
+                                    const Subpath& subpath, const LightVertex& other) {
+  const Vec3 to_other = other.at.position - position_of(v);
+  const float distance2 = length_squared(to_other);
+  if (!(distance2 > 0)) return {};
+  const float distance = std::sqrt(distance2);
+  const Direction direction = to_other / distance;
+  const End eye = eye_end(pass, v, direction, subpath.flight());
+  if (eye.f.is_black()) return {};
+  const End light = light_end(pass, other, -direction);
+  if (light.f.is_black()) return {};
+  const Spectrum value = v.state.beta * eye.f * light.f * other.beta * (pass.techniques.light_paths / distance2);
+  const SegmentEnd end = other.phase ? SegmentEnd{other.at.position} : end_at(other.at, position_of(v));
+  if (value.is_black() || !may_leave(path, v, direction, end)) return {};
+  const Passage way =
+      passage(path, ray_to(v, direction, end), medium_towards(v, direction), visitor_dimensions(v.state.depth));
+  if (way.transmittance.is_black()) return {};
+  const float passes = FlightDensity::passing(way.optical_depth);
+  return Contribution{value * way.transmittance,
+                      v.state.dispersed || other.dispersed || eye.dispersed || light.dispersed,
+                      densities_of(pass, v.state, subpath, eye, other, light, distance2, passes)};
 }
 
-DirectLight next_event(const PathContext& path, const Bidirectional& pass, const SurfaceVertex& v,
-                       const Subpath& subpath) {
-  return estimate_next_event(path, pass, v, subpath);
+template <class Vertex>
+TechniqueSum densities_of_seen(const Bidirectional& pass, const Vertex& v, const Subpath& subpath,
+                               const LensLight& seen) {
+  const Techniques& t = pass.techniques;
+  const Arrival at = arrival(pass, v, -seen.from_lens.direction, subpath.flight(), Transport::importance);
+  const float passes = FlightDensity::passing(seen.optical_depth);
+  const float density = pass.view.camera.density_at(seen.from_lens, seen.distance) * at.density(passes);
+  const SubpathDensities densities =
+      is_direct(v.state.depth, receiver_normal(v)) ? subpath.densities_of_direct_light() : subpath.densities();
+  return sum_of_lens(
+      {end_of_light_path(densities, at.reverse, v.state.non_delta > 0, subpath.coherence_beyond()), density,
+       v.state.depth == 1 ? 0.0f : at.merging, at.volume_merging(t.volume.reversed(), passes, 1)},
+      t);
 }
 
-DirectLight next_event(const PathContext& path, const Bidirectional& pass, const MediumVertex& v,
-                       const Subpath& subpath) {
-  return estimate_next_event(path, pass, v, subpath);
-}
-
-DirectLight connect(const PathContext& path, const Bidirectional& pass, const SurfaceVertex& v, const Subpath& subpath,
-                    const LightVertex& other) {
-  return connect_ends(path, pass, v, subpath, other);
-}
-
-DirectLight connect(const PathContext& path, const Bidirectional& pass, const MediumVertex& v, const Subpath& subpath,
-                    const LightVertex& other) {
-  return connect_ends(path, pass, v, subpath, other);
-}
-
-float weight_of_seen(const Bidirectional& pass, const SurfaceVertex& v, const Subpath& subpath, const LensLight& seen) {
-  return weight_of_lens(pass, v, subpath, seen);
-}
-
-float weight_of_seen(const Bidirectional& pass, const MediumVertex& v, const Subpath& subpath, const LensLight& seen) {
-  return weight_of_lens(pass, v, subpath, seen);
-}
+// Both kinds of vertices.
+#define LANTHORN_TECHNIQUES_AT(Vertex)                                                                     \
+  template LightVertex keep_vertex(const Vertex&, const Subpath&);                                         \
+  template std::optional<Contribution> next_event(const PathContext&, const Bidirectional&, const Vertex&, \
+                                                  const Subpath&);                                         \
+  template std::optional<Contribution> connect(const PathContext&, const Bidirectional&, const Vertex&,    \
+                                               const Subpath&, const LightVertex&);                        \
+  template TechniqueSum densities_of_seen(const Bidirectional&, const Vertex&, const Subpath&, const LensLight&)
+LANTHORN_TECHNIQUES_AT(SurfaceVertex);
+LANTHORN_TECHNIQUES_AT(MediumVertex);
+#undef LANTHORN_TECHNIQUES_AT
 
 }  // namespace lanthorn

@@ -12,14 +12,6 @@ namespace lanthorn {
 
 namespace {
 
-// MIS weight of the walk's hit against next-event estimation, divided by the walk's share of light. `pdf_direction`
-// contains the probability with which the walk continued, and beta contains the share. The share concerns indirect
-// light only, hence the division.
-float hit_weight(const WalkState& state, float pdf_next_event) {
-  if (state.last_delta) return 1;
-  return power_heuristic(state.pdf_direction, pdf_next_event) / state.share;
-}
-
 // Scattering at a vertex of light from a given direction.
 struct Scattering {
   Spectrum f;          // 1/sr, times the cosine on surfaces
@@ -30,7 +22,7 @@ struct Scattering {
 Scattering scatter_towards(const SurfaceVertex& vertex, const Direction& wi) {
   const Bsdf& bsdf = vertex.at.bsdf;
   const Vec3 wo = vertex.at.shading.to_local(wi);
-  const BsdfValue value = eval_and_pdf(bsdf, vertex.wi_local, wo, Transport::radiance);
+  const BsdfValue value = evaluate(bsdf, vertex.wi_local, wo, Transport::radiance, {.f = true, .pdf = true});
   if (value.f.is_black()) return {};
   return {value.f * cosine(bsdf, wo), value.pdf, is_dispersive(bsdf)};
 }
@@ -39,13 +31,6 @@ Scattering scatter_towards(const MediumVertex& vertex, const Direction& wi) {
   const float p = phase(vertex.phase, vertex.wi, wi);
   return {Spectrum(p), p, false};
 }
-
-struct Receiver {
-  Point position;
-  Normal normal;  // 0 in media
-};
-Receiver receiver(const SurfaceVertex& vertex) { return {vertex.at.position, receiver_normal(vertex.at)}; }
-Receiver receiver(const MediumVertex& vertex) { return {vertex.position, Normal(0)}; }
 
 template <class Vertex>
 std::optional<NextEvent> sample_chosen(const PathContext& path, const Vertex& vertex, const SampledLight& chosen,
@@ -70,8 +55,8 @@ std::optional<NextEvent> sample_chosen(const PathContext& path, const Vertex& ve
 
 template <class Vertex>
 std::optional<NextEvent> sample_light(const PathContext& path, const Vertex& vertex) {
-  const Receiver at = receiver(vertex);
-  const std::optional<SampledLight> chosen = path.scene.light_bvh().sample(at.position, at.normal, path.sampler.next());
+  const std::optional<SampledLight> chosen =
+      path.scene.light_bvh().sample(position_of(vertex), receiver_normal(vertex), path.sampler.next());
   if (!chosen) return {};
   return sample_chosen(path, vertex, *chosen, path.sampler.next2());
 }
@@ -99,13 +84,6 @@ void see_light(const PathContext& path, const Vertex& vertex, std::optional<Next
   if (e->radiance.is_black()) e.reset();
 }
 
-template <class Vertex>
-std::optional<NextEvent> sample_visible(const PathContext& path, const Vertex& vertex) {
-  std::optional<NextEvent> e = sample_light(path, vertex);
-  see_light(path, vertex, e);
-  return e;
-}
-
 }  // namespace
 
 std::optional<NextEvent> sample_unshadowed(const PathContext& path, const SurfaceVertex& vertex) {
@@ -123,13 +101,14 @@ DirectLight weighted(const NextEvent& event, float pdf_walk) {
           event.dispersed};
 }
 
-std::optional<NextEvent> sample_next_event(const PathContext& path, const SurfaceVertex& vertex) {
-  return sample_visible(path, vertex);
+template <class Vertex>
+std::optional<NextEvent> sample_next_event(const PathContext& path, const Vertex& vertex) {
+  std::optional<NextEvent> e = sample_light(path, vertex);
+  see_light(path, vertex, e);
+  return e;
 }
-
-std::optional<NextEvent> sample_next_event(const PathContext& path, const MediumVertex& vertex) {
-  return sample_visible(path, vertex);
-}
+template std::optional<NextEvent> sample_next_event(const PathContext&, const SurfaceVertex&);
+template std::optional<NextEvent> sample_next_event(const PathContext&, const MediumVertex&);
 
 std::optional<NextEvent> sample_next_event_of(const PathContext& path, const MediumVertex& vertex,
                                               const SampledLight& light) {
@@ -138,45 +117,20 @@ std::optional<NextEvent> sample_next_event_of(const PathContext& path, const Med
   return e;
 }
 
-Spectrum detail::hit_light(const PathContext& path, const SurfaceVertex& vertex, std::uint32_t index) {
-  const Light& light = path.scene.lights()[index];
-  const EmitterHit hit{vertex.at.position, vertex.at.normal, vertex.at.uv};
-  const Spectrum radiance = emitted(light, hit, vertex.wi, path.w);
-  if (radiance.is_black()) return {};
-  const WalkState& state = vertex.state;
-  float pdf_light = 0;
-  if (!state.last_delta)
-    pdf_light = path.scene.light_bvh().pmf(state.previous, state.previous_normal, index) *
-                pdf_direct(light, state.previous, hit);
-  return state.beta * radiance * hit_weight(state, pdf_light);
+float next_event_density(const Scene& scene, std::uint32_t index, const Point& from, const Normal& normal,
+                         const EmitterHit& hit, const Direction& direction) {
+  const Light& light = scene.lights()[index];
+  const float chosen = scene.light_bvh().pmf(from, normal, index);
+  if (has_surface(light)) return chosen * pdf_direct(light, from, hit);
+  return is_infinite(light) || is_volume(light) ? chosen * pdf_direct_towards(light, from, direction) : chosen;
 }
 
-Spectrum hit_volume_emission(const PathContext& path, const EmissionVertex& vertex) {
-  const WalkState& state = vertex.state;
-  const std::optional<std::uint32_t> index = path.scene.volume_light(state.medium);
-  if (!index) return state.beta * vertex.radiance;
-  float pdf_light = 0;
-  if (!state.last_delta)
-    pdf_light = path.scene.light_bvh().pmf(state.previous, state.previous_normal, *index) *
-                pdf_direct_towards(path.scene.lights()[*index], state.previous, vertex.direction);
-  return state.beta * vertex.radiance * hit_weight(state, pdf_light);
-}
-
-Spectrum hit_environment(const PathContext& path, const EscapeVertex& vertex) {
-  Spectrum sum;
-  const WalkState& state = vertex.state;
-  if (state.sky_is_found) return sum;
-  for (const std::uint32_t index : path.scene.infinite_lights()) {
-    const Light& light = path.scene.lights()[index];
-    if (state.depth == 0 && is_hidden_from_camera(light)) continue;
-    float pdf_light = 0;
-    if (!state.last_delta)
-      pdf_light = path.scene.light_bvh().pmf(state.previous, state.previous_normal, index) *
-                  pdf_direct_towards(light, state.previous, vertex.direction);
-    sum +=
-        state.beta * emitted_infinite(light, state.previous, vertex.direction, path.w) * hit_weight(state, pdf_light);
-  }
-  return sum;
+// `pdf_direction` contains the probability with which the walk continued, and beta contains the share.
+float weight_of_hit(const Scene& scene, const WalkState& state, const LightHit& hit) {
+  if (state.last_delta || !hit.light) return 1;
+  const float next_event =
+      next_event_density(scene, *hit.light, state.previous, state.previous_normal, hit.at, hit.direction);
+  return power_heuristic(state.pdf_direction, next_event) / state.share;
 }
 
 }  // namespace lanthorn

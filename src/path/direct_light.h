@@ -21,7 +21,7 @@ struct DirectLight {
   bool dispersed = false;
 };
 
-/// One sample of one light, without MIS weight, for methods with more than two techniques.
+/// One sample of one light, without MIS weight.
 struct NextEvent {
   std::uint32_t light = 0;
   float pmf = 0;  ///< probability with which that light was chosen
@@ -34,8 +34,8 @@ struct NextEvent {
   float optical_depth = 0;  ///< of the way to the light (`Passage`), once its transmittance has been computed
 };
 /// Chooses a light by the light BVH and samples it. Empty if there is no light or it is occluded.
-std::optional<NextEvent> sample_next_event(const PathContext& path, const SurfaceVertex& vertex);
-std::optional<NextEvent> sample_next_event(const PathContext& path, const MediumVertex& vertex);
+template <class Vertex>
+std::optional<NextEvent> sample_next_event(const PathContext& path, const Vertex& vertex);
 /// The same for a given point-like light, whose sample needs no random numbers.
 std::optional<NextEvent> sample_next_event_of(const PathContext& path, const MediumVertex& vertex,
                                               const SampledLight& light);
@@ -73,20 +73,59 @@ DirectLight next_event(const PathContext& path, const Vertex& vertex, const Answ
   return event ? weighted(*event, walk_density(*event, answer)) : DirectLight{};
 }
 
-namespace detail {
-Spectrum hit_light(const PathContext& path, const SurfaceVertex& vertex, std::uint32_t light);
+/// Emission that the walk has hit, without MIS weight.
+struct LightHit {
+  /// Index of the light. Empty for the emission of a medium that is not a light: no other technique finds it. Methods
+  /// that estimate the light of non-delta lobes otherwise follow a branch for it (`add_unlit_emission`).
+  std::optional<std::uint32_t> light;
+  EmitterHit at;        ///< of lights without surface any point of the ray
+  Direction direction;  ///< of the walk's ray
+  int scatterings;      ///< of the walk before
+  Spectrum radiance;    ///< times state.beta
+};
+/// Calls `found(LightHit)` for the emitter that the walk has hit, for the medium that its ray crosses, or for each
+/// infinite light when it has left the scene.
+template <class Found>
+void for_each_hit(const PathContext& path, const SurfaceVertex& v, Found&& found) {
+  if (!v.at.light) return;
+  const EmitterHit at{v.at.position, v.at.normal, v.at.uv};
+  const Spectrum radiance = emitted(path.scene.lights()[*v.at.light], at, v.wi, path.w);
+  if (!radiance.is_black()) found(LightHit{v.at.light, at, -v.wi, v.state.depth - 1, v.state.beta * radiance});
+}
+template <class Found>
+void for_each_hit(const PathContext& path, const EmissionVertex& v, Found&& found) {
+  found(LightHit{path.scene.volume_light(v.state.medium), EmitterHit{v.state.previous, Normal(0), Vec2(0)}, v.direction,
+                 v.state.depth, v.state.beta * v.radiance});
+}
+template <class Found>
+void for_each_hit(const PathContext& path, const EscapeVertex& v, Found&& found) {
+  if (v.state.sky_is_found) return;
+  for (const std::uint32_t index : path.scene.infinite_lights()) {
+    const Light& light = path.scene.lights()[index];
+    if (v.state.depth == 0 && is_hidden_from_camera(light)) continue;
+    const Spectrum radiance = emitted_infinite(light, v.state.previous, v.direction, path.w);
+    if (radiance.is_black()) continue;
+    found(LightHit{index, EmitterHit{v.state.previous, Normal(0), Vec2(0)}, v.direction, v.state.depth,
+                   v.state.beta * radiance});
+  }
 }
 
-/// Emission of the surface that the walk has hit, times state.beta and the MIS weight. Divides by `state.share`,
-/// because the previous visitor's part contained indirect light only.
-inline Spectrum hit_emitter(const PathContext& path, const SurfaceVertex& vertex) {
-  return vertex.at.light ? detail::hit_light(path, vertex, *vertex.at.light) : Spectrum();
+/// Density, per solid angle at `from`, with which next-event estimation chooses `direction` towards the point `hit` of
+/// the light. For point, spot and distant lights it is the probability of choosing the light. Used by MIS weights.
+float next_event_density(const Scene& scene, std::uint32_t light, const Point& from, const Normal& normal,
+                         const EmitterHit& hit, const Direction& direction);
+
+/// MIS weight of a hit against next-event estimation. Divides by `state.share`, because the previous visitor's part
+/// contained indirect light only.
+float weight_of_hit(const Scene& scene, const WalkState& state, const LightHit& hit);
+
+/// Light of all hits at the vertex, times their weights.
+template <class Vertex>
+Spectrum hit_lights(const PathContext& path, const Vertex& vertex) {
+  Spectrum sum;
+  for_each_hit(path, vertex,
+               [&](const LightHit& hit) { sum += hit.radiance * weight_of_hit(path.scene, vertex.state, hit); });
+  return sum;
 }
-/// The same for a medium that the walk's ray crosses. No other technique samples emission from media that are not
-/// lights, so its weight is 1. Methods that estimate the light of non-delta lobes otherwise follow a branch for it
-/// (`add_unlit_emission`).
-Spectrum hit_volume_emission(const PathContext& path, const EmissionVertex& vertex);
-/// The same for infinite lights when the walk has left the scene.
-Spectrum hit_environment(const PathContext& path, const EscapeVertex& vertex);
 
 }  // namespace lanthorn

@@ -21,17 +21,17 @@ struct EmissionVisitor {
   }
   void operator()(const EmissionVertex& vertex) {
     const bool is_unlit = share.unlit_emission && !path.scene.volume_light(vertex.state.medium);
-    if (is_unlit || is_seen(vertex.state)) layers.add_hit(vertex, hit_volume_emission(path, vertex));
+    if (is_unlit || is_seen(vertex.state)) layers.add_hit(vertex, hit_lights(path, vertex));
   }
   // Emission is not added if a surface with delta and other lobes has scattered the walk by a non-delta lobe.
   Continuation operator()(const SurfaceVertex& vertex) {
     if (vertex.state.non_delta > 0 || vertex.state.scatterings() > share.scatterings + 1) return rest();
     layers.see(vertex);
-    layers.add_hit(vertex, hit_emitter(path, vertex));
+    layers.add_hit(vertex, hit_lights(path, vertex));
     return lobe_weights(vertex.at.bsdf, vertex.wi_local).delta > 0 ? Continuation::go_on() : rest();
   }
   void operator()(const EscapeVertex& vertex) {
-    if (is_seen(vertex.state)) layers.add_hit(vertex, hit_environment(path, vertex));
+    if (is_seen(vertex.state)) layers.add_hit(vertex, hit_lights(path, vertex));
   }
 
  private:

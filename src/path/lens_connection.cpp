@@ -11,64 +11,69 @@ namespace lanthorn {
 
 namespace {
 
-// `start(u_lens)`: the point from which light leaves for that point of the lens.
-template <class Start>
-std::optional<CameraConnection> find_lens_from(const PathContext& path, const View& view, const WalkState& state,
-                                               float time, Start&& start) {
-  path.sampler.seek(visitor_dimensions(state.depth));
-  const Vec2 u_lens = path.sampler.next2();
-  const std::optional<Point> from = start(u_lens);
-  return from ? view.camera.connect(*from, u_lens, time) : std::nullopt;
+float time_of(const SurfaceVertex& v) { return v.at.time; }
+float time_of(const MediumVertex& v) { return v.time; }
+
+bool is_hidden(const SurfaceVertex& v) { return v.at.is_hidden; }
+bool is_hidden(const MediumVertex&) { return false; }
+
+// The point from which light leaves for a point of the lens.
+std::optional<Point> leaving_point(const View& view, const SurfaceVertex& v, const Vec2& u_lens) {
+  if (!v.at.is_flat_curve) return v.at.position;
+  const std::optional<Point> lens = view.camera.lens_point_for(axis_of(v.at), u_lens, v.at.time);
+  return lens ? std::optional(leaving_point_towards(v.at, *lens)) : std::nullopt;
+}
+std::optional<Point> leaving_point(const View&, const MediumVertex& v, const Vec2&) { return v.position; }
+
+// state.beta times the scattering towards the lens, with the cosine of light walks on surfaces.
+Spectrum sent_towards(const SurfaceVertex& v, const Direction& lens) {
+  const Vec3 wo = v.at.shading.to_local(lens);
+  return v.state.beta * evaluate(v.at.bsdf, v.wi_local, wo, Transport::importance, {.f = true}).f *
+         (geometric_cosine(v.at, lens) * shading_flux_ratio(v.at, v.wi, v.wi_local));
+}
+Spectrum sent_towards(const MediumVertex& v, const Direction& lens) {
+  return v.state.beta * phase(v.phase, v.wi, lens);
 }
 
-// `value`: flux times scattering towards the lens.
-std::optional<LensLight> finish(const PathContext& path, const View& view, const WalkState& state,
-                                const CameraConnection& lens, const Ray& ray, MediumId medium, const Spectrum& value,
-                                bool dispersive) {
-  const Passage way = passage_to_lens(path, ray, medium, visitor_dimensions(state.depth));
-  const Spectrum light = value * way.transmittance * (lens.importance * view.imaging_ratio);
-  if (light.is_black()) return {};
-  return LensLight{lens.raster,
-                   light,
-                   state.dispersed || dispersive,
-                   Ray{lens.lens_point, -lens.towards, infinity, ray.time},
-                   lens.distance,
-                   way.optical_depth};
+Ray ray_to(const SurfaceVertex& v, const CameraConnection& lens) {
+  return spawn_ray_to(v.at, lens.towards, {lens.lens_point});
 }
+Ray ray_to(const MediumVertex& v, const CameraConnection& lens) {
+  return {v.position, lens.towards, lens.distance, v.time};
+}
+
+bool disperses(const SurfaceVertex& v) { return v.state.dispersed || is_dispersive(v.at.bsdf); }
+bool disperses(const MediumVertex& v) { return v.state.dispersed; }
 
 }  // namespace
 
-std::optional<CameraConnection> find_lens(const PathContext& path, const View& view, const SurfaceVertex& vertex) {
-  const SurfacePoint& at = vertex.at;
-  if (at.is_hidden) return {};
-  return find_lens_from(path, view, vertex.state, at.time, [&](const Vec2& u_lens) -> std::optional<Point> {
-    if (!at.is_flat_curve) return at.position;
-    const std::optional<Point> lens = view.camera.lens_point_for(axis_of(at), u_lens, at.time);
-    return lens ? std::optional(leaving_point_towards(at, *lens)) : std::nullopt;
-  });
+template <class Vertex>
+std::optional<CameraConnection> find_lens(const PathContext& path, const View& view, const Vertex& v) {
+  if (is_hidden(v)) return {};
+  path.sampler.seek(visitor_dimensions(v.state.depth));
+  const Vec2 u_lens = path.sampler.next2();
+  const std::optional<Point> from = leaving_point(view, v, u_lens);
+  return from ? view.camera.connect(*from, u_lens, time_of(v)) : std::nullopt;
 }
+template std::optional<CameraConnection> find_lens(const PathContext&, const View&, const SurfaceVertex&);
+template std::optional<CameraConnection> find_lens(const PathContext&, const View&, const MediumVertex&);
 
-std::optional<CameraConnection> find_lens(const PathContext& path, const View& view, const MediumVertex& vertex) {
-  return find_lens_from(path, view, vertex.state, vertex.time,
-                        [&](const Vec2&) { return std::optional(vertex.position); });
-}
-
-std::optional<LensLight> connect_to_lens(const PathContext& path, const View& view, const SurfaceVertex& vertex,
+template <class Vertex>
+std::optional<LensLight> connect_to_lens(const PathContext& path, const View& view, const Vertex& v,
                                          const CameraConnection& lens) {
-  const SurfacePoint& at = vertex.at;
-  const Vec3 wo = at.shading.to_local(lens.towards);
-  Spectrum value = vertex.state.beta * eval(at.bsdf, vertex.wi_local, wo, Transport::importance);
-  value *= geometric_cosine(at, lens.towards) * shading_flux_ratio(at, vertex.wi, vertex.wi_local);
-  if (value.is_black()) return {};
-  return finish(path, view, vertex.state, lens, spawn_ray_to(at, lens.towards, {lens.lens_point}),
-                medium_towards(vertex, lens.towards), value, is_dispersive(at.bsdf));
+  const Spectrum sent = sent_towards(v, lens.towards);
+  if (sent.is_black()) return {};
+  const Ray ray = ray_to(v, lens);
+  const Passage way = passage_to_lens(path, ray, medium_towards(v, lens.towards), visitor_dimensions(v.state.depth));
+  const Spectrum light = sent * way.transmittance * (lens.importance * view.imaging_ratio);
+  if (light.is_black()) return {};
+  return LensLight{lens.raster,   light,
+                   disperses(v),  Ray{lens.lens_point, -lens.towards, infinity, ray.time},
+                   lens.distance, way.optical_depth};
 }
-
-std::optional<LensLight> connect_to_lens(const PathContext& path, const View& view, const MediumVertex& vertex,
-                                         const CameraConnection& lens) {
-  const Spectrum value = vertex.state.beta * phase(vertex.phase, vertex.wi, lens.towards);
-  return finish(path, view, vertex.state, lens, {vertex.position, lens.towards, lens.distance, vertex.time},
-                vertex.state.medium, value, false);
-}
+template std::optional<LensLight> connect_to_lens(const PathContext&, const View&, const SurfaceVertex&,
+                                                  const CameraConnection&);
+template std::optional<LensLight> connect_to_lens(const PathContext&, const View&, const MediumVertex&,
+                                                  const CameraConnection&);
 
 }  // namespace lanthorn

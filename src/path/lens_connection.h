@@ -23,13 +23,12 @@ struct LensLight {
 
 /// Film position at which the lens would see a light vertex, ignoring occlusion; empty on shapes that are hidden from
 /// the camera. Draws from the visitor's dimensions.
-std::optional<CameraConnection> find_lens(const PathContext& path, const View& view, const SurfaceVertex& vertex);
-std::optional<CameraConnection> find_lens(const PathContext& path, const View& view, const MediumVertex& vertex);
+template <class Vertex>
+std::optional<CameraConnection> find_lens(const PathContext& path, const View& view, const Vertex& vertex);
 
 /// Connects the vertex to the lens. Empty if no light arrives. Draws after `find_lens`.
-std::optional<LensLight> connect_to_lens(const PathContext& path, const View& view, const SurfaceVertex& vertex,
-                                         const CameraConnection& lens);
-std::optional<LensLight> connect_to_lens(const PathContext& path, const View& view, const MediumVertex& vertex,
+template <class Vertex>
+std::optional<LensLight> connect_to_lens(const PathContext& path, const View& view, const Vertex& vertex,
                                          const CameraConnection& lens);
 
 }  // namespace lanthorn

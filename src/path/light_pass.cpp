@@ -4,6 +4,8 @@
 
 #include <limits>
 
+#include "base/parallel_sort.h"
+
 namespace lanthorn {
 
 namespace {

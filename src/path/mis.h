@@ -11,6 +11,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace lanthorn {
@@ -255,6 +256,11 @@ struct TechniqueDensities {
 
   float all() const { return walk + lens + connections + merging + media; }
 };
+/// One of them.
+using Technique = float TechniqueDensities::*;
+inline constexpr std::array all_techniques{&TechniqueDensities::walk, &TechniqueDensities::lens,
+                                           &TechniqueDensities::connections, &TechniqueDensities::merging,
+                                           &TechniqueDensities::media};
 
 /// The densities of all techniques that can make a path, relative to a common unit.
 struct TechniqueSum {
@@ -276,10 +282,10 @@ struct TechniqueSum {
 /// The last vertex of a subpath that a technique joins to the other one.
 struct SubpathEnd {
   const VertexDensities& densities;
-  float reverse = 0;       ///< with which the other walk goes on from here to the vertex before, per solid angle
-  bool scattered = false;  ///< the subpath has scattered before by a lobe that is not delta
-  float coherence = 1;     ///< at a light path: of the eye path up to and including this vertex
-  float TechniqueDensities::*end = nullptr;  ///< end of the subpath: `lens` of an eye path, `walk` of a light path
+  float reverse = 0;        ///< with which the other walk goes on from here to the vertex before, per solid angle
+  bool scattered = false;   ///< the subpath has scattered before by a lobe that is not delta
+  float coherence = 1;      ///< at a light path: of the eye path up to and including this vertex
+  Technique end = nullptr;  ///< end of the subpath: `lens` of an eye path, `walk` of a light path
 
   /// Adds `factor` times r d_VC: all techniques that begin at earlier vertices, except the connection to this one.
   void add_earlier(float factor, const Techniques& t, TechniqueDensities& sum) const {

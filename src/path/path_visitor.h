@@ -37,14 +37,14 @@ struct PathVisitor {
     layers.see(ray);
     layers.add(class_of_next_event(ray.state), direct.radiance, direct.dispersed);
   }
-  void operator()(const EmissionVertex& vertex) { layers.add_hit(vertex, hit_volume_emission(path, vertex)); }
-  void operator()(const EscapeVertex& vertex) { layers.add_hit(vertex, hit_environment(path, vertex)); }
+  void operator()(const EmissionVertex& vertex) { layers.add_hit(vertex, hit_lights(path, vertex)); }
+  void operator()(const EscapeVertex& vertex) { layers.add_hit(vertex, hit_lights(path, vertex)); }
 
   /// Adds the light of both techniques at a vertex that the walk leaves with this answer.
   template <class Answer>
   void find_light(const SurfaceVertex& vertex, const Answer& answer) {
     layers.see(vertex);
-    layers.add_hit(vertex, hit_emitter(path, vertex));
+    layers.add_hit(vertex, hit_lights(path, vertex));
     if (!vertex.may_scatter || !has_non_delta(vertex.at.bsdf)) return;
     path.sampler.seek(visitor_dimensions(vertex.state.depth));
     const DirectLight direct = next_event(path, vertex, answer);
@@ -61,7 +61,7 @@ struct UnlitEmissionVisitor {
   Continuation operator()(const SurfaceVertex&) const { return Continuation::go_on(); }
   Continuation operator()(const MediumVertex&) const { return Continuation::go_on(); }
   void operator()(const EmissionVertex& vertex) const {
-    if (!path.scene.volume_light(vertex.state.medium)) layers.add_hit(vertex, hit_volume_emission(path, vertex));
+    if (!path.scene.volume_light(vertex.state.medium)) layers.add_hit(vertex, hit_lights(path, vertex));
   }
   void operator()(const EscapeVertex&) const {}
 };
@@ -78,7 +78,7 @@ inline void add_sky(const PathContext& path, const SurfaceVertex& vertex, LightL
   state.beta *= passage(path.with(own), *ray, state.medium, dimensions).transmittance * factor;
   if (state.beta.is_black()) return;
   const EscapeVertex sky{state, ray->direction};
-  layers.add_hit(sky, hit_environment(path, sky));
+  layers.add_hit(sky, hit_lights(path, sky));
 }
 
 /// Adds the emission of media that are not lights, as far as a vertex's wide lobes scatter it to the eye. `path`: the

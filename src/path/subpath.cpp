@@ -5,15 +5,9 @@
 #include <algorithm>
 #include <utility>
 
-namespace lanthorn {
+#include "path/direct_light.h"
 
-float next_event_density(const Scene& scene, std::uint32_t index, const Point& from, const Normal& normal,
-                         const EmitterHit& hit, const Direction& direction) {
-  const Light& light = scene.lights()[index];
-  const float chosen = scene.light_bvh().pmf(from, normal, index);
-  if (has_surface(light)) return chosen * pdf_direct(light, from, hit);
-  return is_infinite(light) || is_volume(light) ? chosen * pdf_direct_towards(light, from, direction) : chosen;
-}
+namespace lanthorn {
 
 namespace {
 
@@ -130,8 +124,9 @@ void Subpath::depart(const WalkState& state, const Direction& direction) {
 float Subpath::reverse_density(const WalkState& state, const Direction& direction) const {
   if (!previous_.surface) return state.pdf_direction;  // phase functions have the same density in both directions
   const SurfacePoint& at = *previous_.surface;
-  return pdf_reverse(at.bsdf, previous_.wi_local, at.shading.to_local(direction),
-                     start_.is_eye() ? Transport::radiance : Transport::importance);
+  const Transport transport = start_.is_eye() ? Transport::radiance : Transport::importance;
+  return evaluate(at.bsdf, previous_.wi_local, at.shading.to_local(direction), transport, {.pdf_reverse = true})
+      .pdf_reverse;
 }
 
 SubpathDensities Subpath::densities_of_direct_light() const {

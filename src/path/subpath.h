@@ -21,11 +21,6 @@ namespace lanthorn {
 /// do not lie in a disc, so that no area can be given.
 inline bool merges_at(const SurfacePoint& at) { return has_non_delta(at.bsdf) && !is_fibre(at.bsdf); }
 
-/// Density, per solid angle at `from`, with which next-event estimation chooses `direction` towards the point `hit` of
-/// the light. For point, spot and distant lights it is the probability of choosing the light. Used by MIS weights.
-float next_event_density(const Scene& scene, std::uint32_t light, const Point& from, const Normal& normal,
-                         const EmitterHit& hit, const Direction& direction);
-
 /// Where a subpath begins: at the lens, or on a light.
 struct PathStart {
   const Camera* camera = nullptr;  ///< null for light paths

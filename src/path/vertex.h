@@ -60,10 +60,13 @@ struct MediumVertex {
   bool may_scatter;  ///< the depth limit allows one more scattering here
 };
 
-// Rays from a vertex to a point that it is connected to.
+// What techniques ask of a vertex, on a surface or in a medium.
 
 inline Point position_of(const SurfaceVertex& v) { return v.at.position; }
 inline Point position_of(const MediumVertex& v) { return v.position; }
+/// Normal by which next-event estimation chooses a light for the vertex; 0 in media and on hair.
+inline Normal receiver_normal(const SurfaceVertex& v) { return receiver_normal(v.at); }
+inline Normal receiver_normal(const MediumVertex&) { return Normal(0); }
 /// Shadow ray to the end, which lies in `direction`.
 inline Ray ray_to(const SurfaceVertex& v, const Direction& direction, const SegmentEnd& end) {
   return spawn_ray_to(v.at, direction, end);

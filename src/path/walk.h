@@ -46,10 +46,11 @@ inline float adjoint_correction(const SurfaceVertex& v, const Direction& wo, con
   return shading > 0 ? shading_flux_ratio(v.at, v.wi, v.wi_local) * geometric_cosine(v.at, wo) / shading : 0.0f;
 }
 
-/// Density of a sampled direction as `pdf` would give it, so that both sides of a MIS weight use the same function.
+/// Density of a sampled direction as `evaluate` would give it, so that both sides of a MIS weight use the same
+/// function.
 template <Transport transport>
 float pdf_of_sample(const SurfaceVertex& v, const BsdfSample& s) {
-  return s.pdf_is_exact ? s.pdf : pdf(v.at.bsdf, v.wi_local, s.wo, transport);
+  return s.pdf_is_exact ? s.pdf : evaluate(v.at.bsdf, v.wi_local, s.wo, transport, {.pdf = true}).pdf;
 }
 
 /// A direction drawn from the mixture of closure and guide: `weight` and `pdf` are the mixture's.
@@ -87,11 +88,11 @@ std::optional<GuidedSample> draw(const SurfaceVertex& v, const GuidedContinuatio
     const std::optional<Direction> wo = guidance.sample(u);
     if (!wo) return std::nullopt;
     const Vec3 local = v.at.shading.to_local(*wo);
-    const auto [f, own] = eval_and_pdf(bsdf, v.wi_local, local, transport);
-    if (f.is_black()) return std::nullopt;
-    const float mixed = guidance.pdf(own, *wo);
+    const BsdfValue own = evaluate(bsdf, v.wi_local, local, transport, {.f = true, .pdf = true});
+    if (own.f.is_black()) return std::nullopt;
+    const float mixed = guidance.pdf(own.pdf, *wo);
     if (!(mixed > 0)) return std::nullopt;
-    return GuidedSample{{local, f * (cosine(bsdf, local) / mixed), mixed}, mixed / own};
+    return GuidedSample{{local, own.f * (cosine(bsdf, local) / mixed), mixed}, mixed / own.pdf};
   }
   const float rest = std::min(one_minus_epsilon, (u_lobe - share) / (1 - share));
   const std::optional<BsdfSample> s = sample(bsdf, v.wi_local, rest, u, transport);

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "lanthorn/render_options.h"
+#include "lanthorn/table.h"
 #include "plain/special.h"
 #include "plain/type.h"
 
@@ -57,11 +58,12 @@ struct Pointed<M T::*> {
   using Owner = T;
   using Part = M;
 };
-/// A member whose key is `name`. `T` is its struct, or one derived from it.
-template <auto member, class T = typename Pointed<decltype(member)>::Owner>
+/// A member whose key is `name`.
+template <auto member>
 constexpr Member field(const char* name) {
-  const auto of = [](void* owner) -> void* { return &(static_cast<T*>(owner)->*member); };
-  return {name, &TypeOf<typename Pointed<decltype(member)>::Part>::value, of};
+  using Of = Pointed<decltype(member)>;
+  const auto of = [](void* owner) -> void* { return &(static_cast<typename Of::Owner*>(owner)->*member); };
+  return {name, &TypeOf<typename Of::Part>::value, of};
 }
 /// An index into a vector of the description or the name of an entry of `table`; or a fixed-size array of these.
 template <auto member>
@@ -163,8 +165,21 @@ constexpr Type describe(std::type_identity<std::vector<T>>) {
   Type type{.kind = Kind::list, .items = item_types<T>};
   if constexpr (Row<T>) type = numbers<T>(Kind::rows);
   type.size = [](const void* value) { return static_cast<const Vector*>(value)->size(); };
-  type.resize = [](void* value, std::size_t size) { static_cast<Vector*>(value)->resize(size); };
+  type.resize = [](void* value, std::size_t size) { *static_cast<Vector*>(value) = Vector(size); };
   type.item = [](void* value, std::size_t i) -> void* { return static_cast<Vector*>(value)->data() + i; };
+  return type;
+}
+
+// Looks at the table as a constant, because other access counts as a change. Only items that `resize` made may change.
+template <class T>
+constexpr Type describe(std::type_identity<description::Table<T>>) {
+  using Table = description::Table<T>;
+  Type type{.kind = Kind::list, .items = item_types<T>};
+  type.size = [](const void* value) { return static_cast<const Table*>(value)->size(); };
+  type.resize = [](void* value, std::size_t size) { *static_cast<Table*>(value) = std::vector<T>(size); };
+  type.item = [](void* value, std::size_t i) -> void* {
+    return const_cast<T*>(&static_cast<const Table*>(value)->entries()[i]);
+  };
   return type;
 }
 
@@ -203,10 +218,13 @@ constexpr Type special() {
 
 template <class T>
 constexpr Type TypeOf<T>::value = [] {
+  Type type;
   if constexpr (Special<T>)
-    return describe_detail::special<T>();
+    type = describe_detail::special<T>();
   else
-    return describe_detail::describe(std::type_identity<T>());
+    type = describe_detail::describe(std::type_identity<T>());
+  type.assign = [](void* value, const void* other) { *static_cast<T*>(value) = *static_cast<const T*>(other); };
+  return type;
 }();
 
 }  // namespace lanthorn::plain

@@ -2,6 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The members of a scene description, of edits and of options, under their names in include/lanthorn.
 // Excluded: locations in files (plain data have none) and measured BRDFs, which only files provide.
+#include <cstddef>
+#include <tuple>
+#include <type_traits>
+#include <utility>
+
 #include "lanthorn/image_file.h"
 #include "lanthorn/render_options.h"
 #include "lanthorn/scene_description.h"
@@ -418,15 +423,23 @@ constexpr auto members_of<EnvironmentChoice> = structure(field<&EnvironmentChoic
                                                          field<&EnvironmentChoice::rotation>("rotation"),
                                                          field<&EnvironmentChoice::scale>("scale"),
                                                          field<&EnvironmentChoice::up>("up"));
+template <std::size_t i>
+constexpr Member listed_option() {
+  using Part = std::decay_t<decltype(std::declval<RenderOptions&>().*std::get<i>(render_option_list).value)>;
+  const auto of = [](void* owner) -> void* {
+    return &(static_cast<RenderOptions*>(owner)->*std::get<i>(render_option_list).value);
+  };
+  return {std::get<i>(render_option_list).name, &TypeOf<Part>::value, of};
+}
+template <std::size_t... i>
+constexpr auto option_members(std::index_sequence<i...>) {
+  return structure(field<&RenderOptions::pass_range>("pass_range"), listed_option<i>()...,
+                   field<&RenderOptions::passes>("passes"), field<&RenderOptions::seconds>("seconds"),
+                   field<&RenderOptions::noise>("noise"));
+}
 template <>
-constexpr auto members_of<RenderOptions> = structure(
-    field<&RenderOptions::pass_range>("pass_range"), field<&RenderOptions::resolution, RenderOptions>("resolution"),
-    field<&RenderOptions::crop, RenderOptions>("crop"), field<&RenderOptions::clamp, RenderOptions>("clamp"),
-    field<&RenderOptions::integrator>("integrator"), field<&RenderOptions::passes>("passes"),
-    field<&RenderOptions::seconds>("seconds"), field<&RenderOptions::noise>("noise"),
-    field<&RenderOptions::seed>("seed"), field<&RenderOptions::color>("color"),
-    field<&RenderOptions::photons>("photons"), field<&RenderOptions::max_depth>("max_depth"),
-    field<&RenderOptions::memory>("memory"));
+constexpr auto members_of<RenderOptions> =
+    option_members(std::make_index_sequence<std::tuple_size_v<decltype(render_option_list)>>());
 
 template <class T>
 const Type& type_of() {
@@ -447,6 +460,7 @@ template const Type& type_of<std::vector<Rgb>>();
 template const Type& type_of<Transform>();
 template const Type& type_of<AnimatedTransform>();
 template const Type& type_of<ToneCurve>();
+template const Type& type_of<ColorMode>();
 template const Type& type_of<FilterKind>();
 template const Type& type_of<SpectrumValue>();
 template const Type& type_of<RgbSpectrum>();

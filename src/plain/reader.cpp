@@ -112,7 +112,6 @@ void read_optional(Reader& reader, const Value& data, const Type& type, void* ou
 void read_list(Reader& reader, const Value& data, const Type& type, void* out) {
   const auto* list = data.as<List>();
   if (list == nullptr) reader.fail("a list", data);
-  type.resize(out, 0);
   type.resize(out, list->size());
   for (std::size_t i = 0; i < list->size(); ++i)
     reader.at("[" + std::to_string(i) + "]", [&] { read(reader, (*list)[i], *type.items[0], type.item(out, i)); });
@@ -166,8 +165,14 @@ void read_references(Reader& reader, const Value& data, const Member& member, vo
 
 }  // namespace
 
+const NameTable& Reader::names_in(const std::string& table) const {
+  static const NameTable none;
+  const auto found = names.find(table);
+  return found != names.end() ? *found->second : none;
+}
+
 void Reader::mix(const void* bytes, std::size_t count) {
-  hash = hash_words({hash, hash_bytes({static_cast<const std::byte*>(bytes), count})});
+  if (is_hashing) hash = hash_words({hash, hash_bytes({static_cast<const std::byte*>(bytes), count})});
 }
 
 void Reader::fail(const std::string& expected, const Value& got) const {
@@ -240,7 +245,7 @@ void read_reference(Reader& reader, const Value& data, const char* table, std::u
     return read_number(reader, data, Scalar::uint32, &out);
   }
   const std::string& name = *data.as<std::string>();
-  const std::map<std::string, std::uint32_t>& known = reader.names[table];
+  const NameTable& known = reader.names_in(table);
   if (const auto found = known.find(name); found != known.end()) {
     out = found->second;
     return reader.mix(&out, sizeof(out));

@@ -46,10 +46,12 @@ struct Type {
 
   /// Number of items or rows; variant: the index of the alternative that it holds.
   std::size_t (*size)(const void* value) = nullptr;
-  /// New items are as their type initialises them. Null for a fixed number of rows.
+  /// Replaces all items by new ones, which are as their type initialises them. Null for a fixed number of rows.
   void (*resize)(void* value, std::size_t size) = nullptr;
   /// An item; rows: the first one.
   void* (*item)(void* value, std::size_t index) = nullptr;
+
+  void (*assign)(void* value, const void* other) = nullptr;
 
   void (*read)(Reader& reader, const Value& data, void* out) = nullptr;  ///< special
   Value (*write)(const void* value) = nullptr;                           ///< special

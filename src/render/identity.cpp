@@ -10,7 +10,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
 #include <span>
@@ -19,23 +18,15 @@
 #include <variant>
 #include <vector>
 
-#include "lanthorn/plain_data.h"
 #include "lanthorn/version.h"
 #include "math/hash.h"
+#include "render/record.h"
 
 namespace lanthorn {
 
 namespace {
 
 namespace fs = std::filesystem;
-
-nlohmann::json describe_filter(const description::Filter& f) {
-  nlohmann::json result{{"kind", *plain::write(f.kind).as<std::string>()}, {"radius", {f.radius.x, f.radius.y}}};
-  if (f.kind == description::FilterKind::gaussian) result["sigma"] = f.sigma;
-  if (f.kind == description::FilterKind::mitchell) result.update({{"b", f.b}, {"c", f.c}});
-  if (f.kind == description::FilterKind::sinc) result["tau"] = f.tau;
-  return result;
-}
 
 std::string hash_text(std::uint64_t hash) { return fmt::format("{:016x}", hash); }
 
@@ -50,20 +41,14 @@ std::string portable_name(const std::string& name, const fs::path& scene_folder)
   return inside.empty() || inside.native().starts_with("..") ? path.filename().string() : inside.generic_string();
 }
 
-// The hash of each file by name. Files of different folders may share a name here: their hashes are sorted.
-nlohmann::json describe_files(const SceneDescription& scene) {
+// Files of different folders may share a name here.
+std::map<std::string, std::set<std::string>> hashes_of_files(const SceneDescription& scene) {
   std::map<std::string, std::set<std::string>> hashes;
   const fs::path parent = fs::path(scene.filename).parent_path();
   const fs::path folder = parent.empty() ? fs::path(".") : parent;
   for (const auto& [name, file] : scene.files)
     if (file.hash) hashes[portable_name(name, folder)].insert(hash_text(*file.hash));
-  nlohmann::json result = nlohmann::json::object();
-  for (const auto& [name, of_name] : hashes)
-    if (of_name.size() == 1)
-      result[name] = *of_name.begin();
-    else
-      result[name] = of_name;
-  return result;
+  return hashes;
 }
 
 // All numbers of a view that the identity does not name one by one.
@@ -125,51 +110,50 @@ std::uint64_t hash_of(const SceneDescription& scene) {
                      std::bit_cast<std::uint32_t>(e.scale), up, hash_bytes(std::as_bytes(std::span(name)))});
 }
 
-// The values that must be equal for two states to belong together.
-nlohmann::json identity(const Scene& scene, const ViewDescription& view, const RenderPlan& plan) {
+RenderIdentity identity_of(const Scene& scene, const ViewDescription& view, const RenderOptions& options,
+                           const RenderPlan& plan) {
   const SceneDescription& description = scene.description();
   const RenderSettings& s = plan.settings;
-  const Camera& camera = plan.view.camera;
   const PixelWindow &crop = plan.view.crop, &window = plan.view.window;
-  nlohmann::json result{
-      {"version", version},
-      {"scene_hash", hash_text(hash_of(description))},
-      {"files", describe_files(description)},
-      {"integrator", plan.info->name},
-      {"parameters", plan.parameters.all()},
-      {"seed", s.seed},
-      {"color", s.color == ColorMode::rgb ? "rgb" : "spectral"},
-      {"max_depth", s.max_depth},
-      {"photons", s.photons * s.parts},
-      {"resolution", {camera.width(), camera.height()}},
-      {"crop", {crop.x0, crop.y0, crop.x1, crop.y1}},
-      {"filter", describe_filter(view.filter)},
-  };
-  // Named after the density of wavelengths: passes drawn with another density have another colour balance.
-  if (plan.integrator->passes_share_wavelengths() && s.color == ColorMode::spectral) {
-    result["plateau_wavelength_sets"] = s.parts;
-    if (scene.has_dispersion()) result["heroes_of_paths"] = true;  // by `wavelengths_in_order` and `PassDraw`
-  }
-  if (plan.view.filter.negative_share() != 0) result["filter_lobes_apart"] = true;  // `FilterPart`
+  RenderIdentity identity{.version = version,
+                          .scene_hash = hash_text(hash_of(description)),
+                          .files = hashes_of_files(description),
+                          .integrator = plan.info->name,
+                          .parameters = plan.parameters.all(),
+                          .seed = s.seed,
+                          .color = s.color,
+                          .max_depth = s.max_depth,
+                          .photons = s.photons * s.parts,
+                          .resolution = {plan.view.camera.width(), plan.view.camera.height()},
+                          .crop = {crop.x0, crop.y0, crop.x1, crop.y1},
+                          .filter = view.filter,
+                          .filter_lobes_apart = plan.view.filter.negative_share() != 0};
+  for_each_render_option([&](const auto& option) {
+    if (option.is_recorded) identity.options.*option.value = options.*option.value;
+  });
   if (window != crop)
-    result["margin"] = {crop.x0 - window.x0, crop.y0 - window.y0, window.x1 - crop.x1, window.y1 - crop.y1};
-  if (plan.view.sensor.path_limit) result["clamp"] = *plan.view.sensor.path_limit;
+    identity.margin = {crop.x0 - window.x0, crop.y0 - window.y0, window.x1 - crop.x1, window.y1 - crop.y1};
+  if (plan.integrator->passes_share_wavelengths() && s.color == ColorMode::spectral) {
+    identity.wavelength_sets = s.parts;
+    identity.heroes_of_paths = scene.has_dispersion();
+  }
   // The scene file's own view is part of the file, whose hash stands for it.
   const std::uint64_t hash = ViewNumbers(view).hash();
-  if (hash != ViewNumbers(description.view).hash()) result["view"] = hash_text(hash);
-  return result;
+  if (hash != ViewNumbers(description.view).hash()) identity.view = hash_text(hash);
+  return identity;
 }
 
 }  // namespace
 
-std::string describe_render(const Scene& scene, const ViewDescription& view, const RenderPlan& plan) {
-  nlohmann::json settings{{"identity", identity(scene, view, plan)},
-                          {"measures_exposure", view.film.measures_exposure},
-                          {"scene", fs::path(scene.description().filename).filename().string()}};
-  if (view.film.display_emission) settings["display_emission"] = true;
-  if (!plan.integrator->knows_bias()) settings["bias_not_measured"] = true;
-  // File names need not be UTF-8.
-  return settings.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+RenderRecord record_of(const Scene& scene, const ViewDescription& view, const RenderOptions& options,
+                       const RenderPlan& plan) {
+  const RenderRecord record{.identity = identity_of(scene, view, options, plan),
+                            .scene = fs::path(scene.description().filename).filename().string(),
+                            .measures_exposure = view.film.measures_exposure,
+                            .display_emission = view.film.display_emission,
+                            .bias_not_measured = !plan.integrator->knows_bias()};
+  // As it will be read from a file: names need not be UTF-8.
+  return read_record(settings_text(record), scene.description().filename);
 }
 
 }  // namespace lanthorn

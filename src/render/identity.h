@@ -2,14 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <string>
-
+#include "lanthorn/render_record.h"
 #include "lanthorn/scene_description.h"
 #include "render/plan.h"
 
 namespace lanthorn {
 
-/// `RenderState::settings` for this render: its identity, and information for readers of the file.
-std::string describe_render(const Scene& scene, const ViewDescription& view, const RenderPlan& plan);
+/// `RenderState::record` of this render before its preparation.
+RenderRecord record_of(const Scene& scene, const ViewDescription& view, const RenderOptions& options,
+                       const RenderPlan& plan);
 
 }  // namespace lanthorn

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
 
@@ -70,7 +69,7 @@ MeasuredError measure_error(const RenderState& state, const Film& film, const Sh
     pictures.halves[h] = {shown(part, std::move(resolved.color)), shown(part, std::move(resolved.bias))};
   }
   MeasuredError measured = lanthorn::measure_error(pictures);
-  if (nlohmann::json::parse(state.settings).contains("bias_not_measured"))
+  if (state.record.bias_not_measured)
     measured.estimate.doubt = fmt::format("the bias of {} is not measured", state.integrator);
   return measured;
 }

@@ -149,7 +149,7 @@ RenderPlan plan_render(const Scene& scene, const ViewDescription& view, const Re
   state.film = Film(window.width(), window.height(), scene.largest_radiance(), contents);
   state.integrator = info.name;
   state.shardable = plan.integrator->passes_are_independent();
-  state.settings = describe_render(scene, view, plan);
+  state.record = record_of(scene, view, options, plan);
   const auto photons = static_cast<double>(plan.settings.photons * plan.settings.parts);
   RenderOptions exact = options;  // whose height may have been left open
   exact.resolution = {plan.view.camera.width(), plan.view.camera.height()};

@@ -28,11 +28,10 @@ struct RenderPlan {
   RenderSettings settings{};
   std::size_t passes_that_fit = 1;  ///< into memory, at once
   StopRule stop{};
-  RenderState state{};  ///< empty film, no passes, settings filled in
+  RenderState state{};  ///< empty film, no passes, record filled in
   /// Plans the same render with `share` times the width and height, for a stand-in (`StandIn`).
   std::function<RenderPlan(const Scene& scene, double share)> coarse{};
-  std::optional<std::string> settings_of_passes{};  ///< set while the state holds a stand-in
-  std::string resumed_from{};                       ///< the file of the state, for messages
+  std::string resumed_from{};  ///< the file of the state, for messages
 
   RenderJob job(const Scene& scene) const { return {scene, view, settings}; }
   /// Replaces the integrator, which may hold the state of half a pass after a pass was given up.

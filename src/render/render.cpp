@@ -9,7 +9,6 @@
 #include <cstdint>
 #include <limits>
 #include <new>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <utility>
@@ -141,14 +140,6 @@ bool run_pass(const std::atomic<bool>* flag, bool can_undo, bool& out_of_memory,
   return false;
 }
 
-void keep_findings(const Integrator& integrator, RenderState& state) {
-  const std::string findings = integrator.findings();
-  if (findings.empty()) return;
-  nlohmann::json settings = nlohmann::json::parse(state.settings);
-  settings["findings"] = nlohmann::json::parse(findings);
-  state.settings = settings.dump();
-}
-
 void load_integrator_state(RenderPlan& plan) try {
   if (!plan.state.integrator_state.empty()) plan.integrator->load(plan.state.integrator_state);
 } catch (const Error& problem) {
@@ -168,7 +159,7 @@ bool prepare(const Call& call, const RenderJob& job, const std::atomic<bool>* fl
   job.scene.require_textures();
   load_integrator_state(plan);
   plan.is_prepared = true;
-  keep_findings(*plan.integrator, state);
+  state.record.findings = plan.integrator->findings();
   if (const std::string remark = plan.integrator->remark(); !remark.empty()) observer.remark(remark);
   observer.prepared(state);
   return true;

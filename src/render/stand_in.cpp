@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <nlohmann/json.hpp>
 #include <utility>
 #include <vector>
 
@@ -110,11 +109,8 @@ void StandIn::put_into(RenderPlan& plan, RenderStatistics& statistics) {
   state.seconds += coarse.seconds;
   state.eye += coarse.eye;
   state.light += coarse.light;
-  plan.settings_of_passes = state.settings;
   const PixelWindow& crop = coarse_->view.crop;
-  nlohmann::json settings = nlohmann::json::parse(state.settings);
-  settings["identity"]["coarse"] = {crop.width(), crop.height()};
-  state.settings = settings.dump();
+  state.record.identity.coarse = {crop.width(), crop.height()};
   const double seconds = statistics.seconds;
   statistics = statistics_;
   statistics.seconds = seconds;
@@ -122,11 +118,11 @@ void StandIn::put_into(RenderPlan& plan, RenderStatistics& statistics) {
 }
 
 void remove_stand_in(RenderPlan& plan) {
-  if (!plan.settings_of_passes) return;
+  if (!plan.state.record.identity.coarse) return;
   const double seconds = plan.state.seconds;
   plan.state = empty_like(plan.state);
   plan.state.seconds = seconds;
-  plan.state.settings = *std::exchange(plan.settings_of_passes, std::nullopt);
+  plan.state.record.identity.coarse.reset();
 }
 
 }  // namespace lanthorn

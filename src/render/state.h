@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "film/film.h"
+#include "lanthorn/render_record.h"
 #include "lanthorn/state.h"
 #include "lanthorn/statistics.h"
 
@@ -22,10 +23,7 @@ struct RenderState {
   std::vector<PassRange> passes;            ///< done; sorted, disjoint, not touching, none empty
   std::string integrator;                   ///< its name in `lanthorn list`
   std::vector<std::byte> integrator_state;  ///< what the integrator saves
-  /// The text of a JSON object. Its member `identity` is an object with everything that decides the picture: hashes of
-  /// the scene and its files, seed, integrator and its parameters, colour mode, resolution, crop and so on. States can
-  /// be resumed or merged only if their identities are equal. The other members are information.
-  std::string settings = "{}";
+  RenderRecord record;
   bool shardable = true;  ///< passes do not depend on earlier ones
   double seconds = 0;     ///< spent rendering, over all processes
   PathEnds eye, light;    ///< of the paths of all passes (RayCounts)
@@ -43,12 +41,10 @@ struct ShownPart {
   ImageWindow window;
   bool has_margin(const Film& film) const { return width != film.width() || height != film.height(); }
 };
-/// A state without these settings shows its whole film.
 ShownPart shown_part(const RenderState& state);
 
-/// Throws `lanthorn::Error` if the state's identity differs from the identity of these settings; the message names the
-/// first difference and `file`.
-void require_same_identity(const RenderState& state, const std::string& settings, const std::string& file);
+/// Throws `lanthorn::Error` if the state's identity differs; the message names the first difference and `file`.
+void require_same_identity(const RenderState& state, const RenderIdentity& identity, const std::string& file);
 
 /// The inverse of `encode_state`. Throws `lanthorn::Error` at `file` unless the bytes are a complete, undamaged state
 /// of this version.

@@ -29,6 +29,7 @@
 #include "base/parallel.h"
 #include "lanthorn/error.h"
 #include "lanthorn/file.h"
+#include "render/record.h"
 
 namespace lanthorn {
 
@@ -146,7 +147,7 @@ json header_of(const RenderState& state, const SaveOptions& options) {
           {"passes", passes},
           {"integrator", state.integrator},
           {"integrator_state_bytes", state.integrator_state.size()},
-          {"settings", json::parse(state.settings)},
+          {"settings", json_of(state.record)},
           {"shardable", state.shardable},
           {"eye_paths", ends_json(state.eye)},
           {"light_paths", ends_json(state.light)},
@@ -297,10 +298,9 @@ class HeaderDecoder {
     RenderState& state = header.state;
     state.passes = decode_passes(parsed.at("passes"));
     state.integrator = parsed.at("integrator").get<std::string>();
-    const json& settings = parsed.at("settings");
-    if (!settings.is_object() || !settings.value("identity", json::object()).is_object())
-      fail("damaged: its settings are not an object");
-    state.settings = settings.dump();
+    state.record = read_record(parsed.at("settings"), file_);
+    if (rendered_size(state.record.identity) != std::array{header.width, header.height})
+      fail("damaged: its film is not that of its settings");
     state.shardable = parsed.at("shardable").get<bool>();
     state.seconds = parsed.at("seconds").get<double>();
     if (!(state.seconds >= 0 && state.seconds <= max_seconds)) fail("damaged: its time is not valid");

@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstddef>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <vector>
 
@@ -14,46 +12,11 @@
 
 namespace lanthorn {
 
-namespace {
-
-using nlohmann::json;
-
-// An array of `count` numbers in the identity. Empty if there is none: a file may hold anything.
-std::optional<std::vector<int>> integers(const json& identity, const char* name, std::size_t count) {
-  const auto found = identity.find(name);
-  if (found == identity.end() || !found->is_array() || found->size() != count) return std::nullopt;
-  std::vector<int> values;
-  for (const json& value : *found) {
-    if (!value.is_number_unsigned() || value.get<std::uint64_t>() > 1u << 20) return std::nullopt;
-    values.push_back(value.get<int>());
-  }
-  return values;
-}
-
-bool is_set(const RenderState& state, const char* setting) {
-  const json settings = json::parse(state.settings);
-  const auto found = settings.find(setting);
-  return found != settings.end() && found->is_boolean() && found->get<bool>();
-}
-
-}  // namespace
-
 ShownPart shown_part(const RenderState& state) {
-  const json identity = json::parse(state.settings).value("identity", json::object());
-  const auto resolution = integers(identity, "resolution", 2), crop = integers(identity, "crop", 4),
-             margin = integers(identity, "margin", 4);
-  ShownPart part{0, 0, state.film.width(), state.film.height(), {}};
-  if (!resolution || !crop) return part;
-  part.window = {(*crop)[0], (*crop)[1], (*resolution)[0], (*resolution)[1]};
-  if (!margin) return part;
-  const auto& [left, top, right, bottom] = std::array{(*margin)[0], (*margin)[1], (*margin)[2], (*margin)[3]};
-  // A file may hold anything.
-  if (left + right >= part.width || top + bottom >= part.height) return part;
-  part.x = left;
-  part.y = top;
-  part.width -= left + right;
-  part.height -= top + bottom;
-  return part;
+  const RenderIdentity& identity = state.record.identity;
+  const auto& [x0, y0, x1, y1] = identity.crop;
+  const auto& [left, top, right, bottom] = identity.margin.value_or(std::array<int, 4>{});
+  return {left, top, x1 - x0, y1 - y0, {x0, y0, identity.resolution[0], identity.resolution[1]}};
 }
 
 StateSummary summarize(const RenderState& state) {
@@ -63,9 +26,7 @@ StateSummary summarize(const RenderState& state) {
           .pass_count = state.pass_count(),
           .seconds = state.seconds,
           .mergeable = state.shardable,
-          .settings = state.settings,
-          .measures_exposure = is_set(state, "measures_exposure"),
-          .display_emission = is_set(state, "display_emission"),
+          .record = state.record,
           .width = shown.width,
           .height = shown.height,
           .window = shown.window,

@@ -127,8 +127,8 @@ SurfaceGeometry surface_at(const ShapeStore& shape, std::uint32_t i, const Point
 // Emission of a shape, modulated by its textures and alpha.
 class Emission {
  public:
-  Emission(const ShapeStore& shape, const SpectrumInput& radiance, float scale)
-      : shape_(&shape), radiance_(radiance), opacity_(shape.alpha), scale_(scale) {
+  Emission(const ShapeStore& shape, const TextureGraph& textures, const SpectrumInput& radiance, float scale)
+      : shape_(&shape), textures_(&textures), radiance_(radiance), opacity_(shape.alpha), scale_(scale) {
     // pbrt-v4's convention for an invisible lamp.
     if (is_invisible()) opacity_ = {1, {}};
   }
@@ -137,7 +137,7 @@ class Emission {
   bool varies() const { return radiance_.node || opacity_.node || opacity_.value < 1; }
 
   Spectrum seen(const TexturePoint& at, const Wavelengths& w) const {
-    return shape_->textures->evaluate(radiance_, at, w) * scale_;
+    return textures_->evaluate(radiance_, at, w) * scale_;
   }
   Spectrum drawn(std::uint32_t primitive, const Point& point, const Normal& normal, const Wavelengths& w) const {
     const SurfaceGeometry s = surface_at(*shape_, primitive, point);
@@ -159,6 +159,7 @@ class Emission {
 
  private:
   const ShapeStore* shape_;
+  const TextureGraph* textures_;
   SpectrumInput radiance_;
   FloatInput opacity_;
   float scale_;
@@ -245,16 +246,20 @@ void set_power(std::vector<AreaLight>& lights, float power) {
 
 }  // namespace
 
+std::size_t light_count(const ShapeStore& shape) {
+  return shape.record.lit_in_pairs ? shape.primitives() / 2 : shape.primitives();
+}
+
 std::vector<Light> make_area_lights(const EmittingShape& emitter, const description::AreaLight& light,
-                                    const SpectrumInput& radiance, LightStore& store) {
+                                    const TextureGraph& textures, const SpectrumInput& radiance, LightStore& store) {
   const ShapeStore& shape = *emitter.shape;
-  const Emission emission(shape, radiance, light.scale);
+  const Emission emission(shape, textures, radiance, light.scale);
   const EmissionPattern* pattern = emission.varies() ? &store.patterns.emplace_back(emission.pattern()) : nullptr;
   if (!(light.spread > 0 && light.spread <= 180))
     throw Error(light.location,
                 fmt::format("expected a spread of more than 0 and at most 180 degrees, got {}", light.spread));
   const Spread spread(static_cast<double>(light.spread) / 360 * std::numbers::pi);
-  const std::size_t count = shape.record.lit_in_pairs ? shape.primitives() / 2 : shape.primitives();
+  const std::size_t count = light_count(shape);
   const std::size_t side = table_side(count);
   const std::uint32_t sampled = sampled_side(count);
   std::vector<AreaLight> lights(count);

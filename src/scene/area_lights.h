@@ -3,6 +3,7 @@
 // Emitting shapes.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -22,12 +23,16 @@ struct EmittingShape {
   std::uint32_t first_light = 0;  ///< its lights have consecutive indices
 };
 
+/// The number of the shape's lights.
+std::size_t light_count(const ShapeStore& shape);
+
 /// The lights of the shape: one per triangle, patch or quadric, in the order of its primitives (the two halves of a
-/// patch share one). `radiance`: the light's radiance, compiled, with its images loaded. All of them together emit the
-/// power `light.power`, if given, whatever the number of primitives; textures and alpha are taken into account as
-/// sampled at some points. An alpha of 0 everywhere makes lights that no ray can hit. If textures are involved
+/// patch share one). `radiance`: the light's radiance, compiled in `textures`, with its images loaded. All of them
+/// together emit the power `light.power`, if given, whatever the number of primitives; textures and alpha are taken
+/// into account as sampled at some points. An alpha of 0 everywhere makes lights that no ray can hit. If textures are
+/// involved
 /// (`varies`), `emitter.shape` must outlive the lights.
 std::vector<Light> make_area_lights(const EmittingShape& emitter, const description::AreaLight& light,
-                                    const SpectrumInput& radiance, LightStore& store);
+                                    const TextureGraph& textures, const SpectrumInput& radiance, LightStore& store);
 
 }  // namespace lanthorn

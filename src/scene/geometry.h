@@ -142,6 +142,8 @@ class Geometry {
   void update_records(Update&& update) {
     for (GeometryRecord& record : records_) update(record);
   }
+  /// Of each shape.
+  const std::vector<GeometryRecord>& records() const { return records_; }
   /// Replaces all placements. Takes time for each placement; the first such call on a geometry or a copy of it also
   /// builds an acceleration structure of the shapes in world space by themselves.
   void place_again(const std::vector<PlacedGroup>& placed);

@@ -74,13 +74,14 @@ Described area_light(const Scene& scene, const Places& places, description::Inde
   const std::size_t end = data.first_described_light();
   std::string kind;
   Bounds box;
-  for (std::size_t i = 0; i < data.emitters.size(); ++i) {
-    const EmittingShape& emitter = data.emitters[i];
+  const std::vector<EmittingShape>& emitters = data.shapes->emitters;
+  for (std::size_t i = 0; i < emitters.size(); ++i) {
+    const EmittingShape& emitter = emitters[i];
     if (emitter.source->area_light != index) continue;
     if (kind.empty()) kind = data.description.materials[emitter.source->material].name;
-    const std::size_t last = i + 1 < data.emitters.size() ? data.emitters[i + 1].first_light : end;
+    const std::size_t last = i + 1 < emitters.size() ? emitters[i + 1].first_light : end;
     for (std::size_t l = emitter.first_light; l < last; ++l)
-      if (const auto bounds = emission_bounds(data.lights[l])) box.extend(bounds->box);
+      if (const auto bounds = emission_bounds(data.lights->all[l])) box.extend(bounds->box);
   }
   return {name_of_area_light(index), kind.empty() ? "Lamp" : kind, places.of(box)};
 }
@@ -102,10 +103,13 @@ Described light(const Scene& scene, const Places& places, description::Index ind
 
 }  // namespace
 
+std::string name_of_light(description::Index index) { return "light" + std::to_string(index + 1); }
+std::string name_of_area_light(description::Index index) { return "area" + std::to_string(index + 1); }
+
 std::vector<NamedLight> lights_of(const Scene& scene) {
   const Places places(scene);
   std::vector<bool> has_shape(scene.description().area_lights.size());
-  for (const EmittingShape& emitter : scene.data()->emitters) has_shape[*emitter.source->area_light] = true;
+  for (const EmittingShape& emitter : scene.data()->shapes->emitters) has_shape[*emitter.source->area_light] = true;
   std::vector<Described> all;
   for (description::Index i = 0; i < has_shape.size(); ++i)
     if (has_shape[i]) all.push_back(area_light(scene, places, i));

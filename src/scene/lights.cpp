@@ -11,6 +11,7 @@
 
 #include "base/memory.h"
 #include "image/image_file.h"
+#include "lanthorn/scene.h"
 #include "lanthorn/text.h"
 
 namespace lanthorn {
@@ -76,16 +77,14 @@ double upward_illuminance(const SphericalImage& image) {
 struct LightMaker {
   const Transform& to_world;
   const BoundingSphere& scene;
-  SpectrumStore& spectra;
   ColorSpace space;
   LightStore& store;
-  std::vector<description::Warning>& warnings;
   const SourceLocation& location;
   const FileAccess& access;
 
   const SphericalImage& keep_spherical(const std::string& filename, ColorSpace image_space) {
     return store.spherical_images.emplace_back(
-        spherical_image(load_pixels(filename, access, image_space, location), filename, location, warnings));
+        spherical_image(load_pixels(filename, access, image_space, location), filename, location, store.warnings));
   }
   DirectionMap direction_map() const {
     if (to_world.is_singular()) throw Error(location, "the light's transformation is singular");
@@ -93,7 +92,7 @@ struct LightMaker {
   }
 
   SpectrumCurve emission(const description::Emission& e) {
-    return spectra.curve(e.spectrum, SpectrumRole::illuminant, space, location).scaled(e.scale);
+    return store.spectra.curve(e.spectrum, SpectrumRole::illuminant, space, location).scaled(e.scale);
   }
 
   Light operator()(const description::PointLight& l) {
@@ -162,7 +161,7 @@ struct LightMaker {
       grey[i] = {mean, mean, mean};
     }
     const SphericalImage& image = store.spherical_images.emplace_back(
-        spherical_image({pixels.width, pixels.height, std::move(grey)}, l.image, location, warnings));
+        spherical_image({pixels.width, pixels.height, std::move(grey)}, l.image, location, store.warnings));
     GoniometricProfile profile{{&image, direction_map()}, emission(l.intensity)};
     const float at_unit_intensity = 4 * pi * image.mean_luminance;
     if (l.power)
@@ -179,12 +178,26 @@ struct LightMaker {
   }
 };
 
+// The one value that scales a light: its power or illuminance if given, otherwise the scale of its emission.
+template <class L>
+float& magnitude_of(L& light) {
+  if constexpr (requires { light.power; })
+    if (light.power) return *light.power;
+  if constexpr (requires { light.illuminance; })
+    if (light.illuminance) return *light.illuminance;
+  if constexpr (requires { light.intensity; })
+    return light.intensity.scale;
+  else if constexpr (requires { light.radiance.scale; })
+    return light.radiance.scale;
+  else
+    return light.scale;
+}
+
 }  // namespace
 
 Light make_light(const description::Light& light, const FileAccess& access, const BoundingSphere& scene,
-                 SpectrumStore& spectra, ColorSpace space, LightStore& store,
-                 std::vector<description::Warning>& warnings) {
-  LightMaker maker{light.light_to_world, scene, spectra, space, store, warnings, light.location, access};
+                 ColorSpace space, LightStore& store) {
+  LightMaker maker{light.light_to_world, scene, space, store, light.location, access};
   return std::visit(maker, light.node);
 }
 
@@ -200,5 +213,10 @@ std::optional<Light> make_from(const MadeLight& before, const description::Light
   const PlacedImage image{made->profile.image, DirectionMap(light.light_to_world)};
   return ImageSky{{image, now->radiance.scale}, scene};
 }
+
+void scale_light(description::Light& light, float factor) {
+  std::visit([factor](auto& l) { magnitude_of(l) *= factor; }, light.node);
+}
+void scale_light(description::AreaLight& light, float factor) { magnitude_of(light) *= factor; }
 
 }  // namespace lanthorn

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <deque>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -14,19 +15,23 @@
 
 namespace lanthorn {
 
+struct MaterialPart;
+
 /// Data that lights point to; a deque keeps addresses stable.
 struct LightStore {
+  std::shared_ptr<const MaterialPart> materials;  ///< whose textures the lights read
+  SpectrumStore spectra;
   std::deque<SphericalImage> spherical_images;
   std::deque<ProjectionImage> projection_images;
   std::deque<Portal> portals;
   std::deque<EmissionPattern> patterns;
   std::deque<PiecewiseConstant2d> brightnesses;
+  std::vector<description::Warning> warnings;
 };
 
-/// Makes a light without surface. Throws Error for unreadable or unsuitable images; appends to `warnings`.
+/// Makes a light without surface. Throws Error for unreadable or unsuitable images.
 Light make_light(const description::Light& light, const FileAccess& access, const BoundingSphere& scene,
-                 SpectrumStore& spectra, ColorSpace space, LightStore& store,
-                 std::vector<description::Warning>& warnings);
+                 ColorSpace space, LightStore& store);
 
 /// A light that was made from a description.
 struct MadeLight {

@@ -49,7 +49,7 @@ bool lets_through(const SurfacePoint& at) { return at.is_interface || transmits(
 
 MediumFinder::MediumFinder(const Scene& scene) : scene_(scene) {
   std::vector<Bounds> boxes;
-  for_each_bounding_box(scene.data()->geometry,
+  for_each_bounding_box(*scene.data()->geometry,
                         [&](const MediumInterface&, const Bounds& box) { boxes.push_back(box); });
   const std::size_t step = 1 + boxes.size() / most_targets;
   for (std::size_t i = 0; i < boxes.size(); i += step) targets_.push_back(boxes[i]);
@@ -74,25 +74,23 @@ std::string name_of_medium(const Scene& scene, MediumId id) {
   return "medium \"" + scene.description().media[static_cast<std::size_t>(id) - 1].name + '"';
 }
 
-void settle_light_media(const std::shared_ptr<SceneData>& data, std::span<const description::Index> lights) {
-  if (lights.empty()) return;
-  const Scene scene(data);
+void settle_light_media(const Scene& scene, LightPart& lights) {
+  const description::Table<description::Light>& described = scene.description().lights;
+  if (described.empty()) return;
   const MediumFinder media(scene);
-  const float time = shutter_middle(data->description);
-  const std::size_t first = data->first_described_light();
-  const std::vector<description::Light>& described = data->description.lights;
-  parallel_for(std::size_t{0}, lights.size(), [&](std::size_t n) {
-    const std::size_t i = lights[n];
-    const Light& light = data->lights[first + i];
+  const float time = shutter_middle(scene.description());
+  const std::size_t first = scene.data()->first_described_light();
+  parallel_for(std::size_t{0}, described.size(), [&](std::size_t i) {
+    const Light& light = lights.all[first + i];
     // Light from infinitely far away has travelled through vacuum.
     MediumId medium = is_infinite(light) ? MediumId::vacuum : medium_id(described[i].medium);
     if (is_point(light)) medium = media.around(emission_bounds(light)->box.min, time).value_or(medium);
-    data->light_media[first + i] = {medium, medium};
+    lights.media[first + i] = {medium, medium};
   });
-  for (const description::Index i : lights) {
-    const MediumId around = data->light_media[first + i].outside, claimed = medium_id(described[i].medium);
-    if (around != claimed && is_point(data->lights[first + i]))
-      warn_once(data->description, described[i].location,
+  for (std::size_t i = 0; i < described.size(); ++i) {
+    const MediumId around = lights.media[first + i].outside, claimed = medium_id(described[i].medium);
+    if (around != claimed && is_point(lights.all[first + i]))
+      warn_once(lights.warnings, described[i].location,
                 "the light is declared to be in " + name_of_medium(scene, claimed) +
                     ", but the shapes around it put it in " + name_of_medium(scene, around) + ", which is used");
   }

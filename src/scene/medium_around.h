@@ -4,9 +4,7 @@
 // says, so that light paths, eye paths and connections pass through the same media.
 #pragma once
 
-#include <memory>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -14,6 +12,8 @@
 #include "scene/scene.h"
 
 namespace lanthorn {
+
+struct LightPart;
 
 /// True for interfaces of media and for closures that transmit: behind them, rays are in the medium declared there.
 bool lets_through(const SurfacePoint& at);
@@ -36,9 +36,9 @@ class MediumFinder {
   std::vector<Bounds> targets_;
 };
 
-/// Sets the media of the described lights with these indices: for point-like lights the medium around them, otherwise
-/// the declared one. Warns where a declaration is wrong.
-void settle_light_media(const std::shared_ptr<SceneData>& data, std::span<const description::Index> lights);
+/// Sets the media of the described lights: for point-like lights the medium around them, otherwise the declared one.
+/// Warns where a declaration is wrong. `lights`: of the scene, while it is built.
+void settle_light_media(const Scene& scene, LightPart& lights);
 
 /// The view in this scene. Its medium is the one around the camera if that is known, otherwise the declared one. Throws
 /// Error like `make_view`.

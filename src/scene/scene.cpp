@@ -70,9 +70,9 @@ Scene::Scene(SceneDescription description) : data_(build(std::move(description))
 
 std::optional<SurfacePoint> Scene::intersect(const Ray& ray, const Wavelengths& w) const {
   std::optional<SurfacePoint> result;
-  const std::optional<GeometryHit> hit = data_->geometry.intersect(ray);
+  const std::optional<GeometryHit> hit = data_->geometry->intersect(ray);
   if (!hit) return result;
-  const SurfaceGeometry surface = data_->geometry.evaluate(*hit, ray);
+  const SurfaceGeometry surface = data_->geometry->evaluate(*hit, ray);
   if (!is_finite(surface)) return result;
   const GeometryRecord& record = *hit->record;
   SurfacePoint& p = result.emplace();
@@ -86,14 +86,14 @@ std::optional<SurfacePoint> Scene::intersect(const Ray& ray, const Wavelengths& 
   if (!record.is_interface) {
     TexturePoint at{surface.position, surface.normal, surface.uv, surface.color};
     if (record.wants_footprint) at.footprint = footprint_of(surface, ray.width + ray.spread * hit->t);
-    const std::uint32_t material = data_->materials.resolve(record.material, at, -ray.direction);
-    const Frame shading =
-        record.wants_tangents ? data_->materials.shading_frame(material, surface, at) : Frame(surface.shading_normal);
+    const std::uint32_t material = data_->materials->table.resolve(record.material, at, -ray.direction);
+    const Frame shading = record.wants_tangents ? data_->materials->table.shading_frame(material, surface, at)
+                                                : Frame(surface.shading_normal);
     const bool tilted = shading.n != surface.normal;
     p.shading = shading;
-    p.bsdf = data_->materials.evaluate(material, at, w);
+    p.bsdf = data_->materials->table.evaluate(material, at, w);
     if (tilted && is_bendable(p.bsdf))
-      bend_to_facet(p, surface.shading_normal, data_->geometry.rise(*hit, surface, ray));
+      bend_to_facet(p, surface.shading_normal, data_->geometry->rise(*hit, surface, ray));
     if (is_flat(record)) settle_flat_curve(p, surface, ray);
   }
   if (record.emits) p.light = hit->light();
@@ -101,40 +101,40 @@ std::optional<SurfacePoint> Scene::intersect(const Ray& ray, const Wavelengths& 
   return result;
 }
 
-bool Scene::visible(const Ray& ray) const { return !data_->geometry.occluded(ray); }
+bool Scene::visible(const Ray& ray) const { return !data_->geometry->occluded(ray); }
 
-const std::vector<Light>& Scene::lights() const { return data_->lights; }
-const LightBvh& Scene::light_bvh() const { return data_->light_bvh; }
-const RayLights& Scene::ray_lights() const { return data_->ray_lights; }
-const std::vector<std::uint32_t>& Scene::infinite_lights() const { return data_->infinite_lights; }
-std::vector<Obstacle> Scene::obstacles() const { return find_obstacles(data_->geometry, data_->materials); }
-const Bounds& Scene::bounds() const { return data_->geometry.bounds(); }
+const std::vector<Light>& Scene::lights() const { return data_->lights->all; }
+const LightBvh& Scene::light_bvh() const { return data_->lights->bvh; }
+const RayLights& Scene::ray_lights() const { return data_->lights->ray_lights; }
+const std::vector<std::uint32_t>& Scene::infinite_lights() const { return data_->lights->infinite; }
+std::vector<Obstacle> Scene::obstacles() const { return find_obstacles(*data_->geometry, data_->materials->table); }
+const Bounds& Scene::bounds() const { return data_->geometry->bounds(); }
 BoundingSphere Scene::bounding_sphere() const { return data_->sphere; }
-float Scene::largest_radiance() const { return data_->largest_radiance; }
+float Scene::largest_radiance() const { return data_->lights->largest_radiance; }
 bool Scene::has_measured_spectra() const { return data_->has_measured_spectra; }
 bool Scene::has_dispersion() const { return data_->has_dispersion; }
-bool Scene::has_motion() const { return data_->geometry.moves(); }
-bool Scene::may_be_specular() const { return data_->materials.may_be_specular(); }
-bool Scene::has_fibres() const { return data_->materials.has_fibres(); }
-bool Scene::has_media() const { return !data_->media->empty(); }
-bool Scene::has_interfaces() const { return data_->has_interfaces; }
-bool Scene::has_hidden_shapes() const { return data_->has_hidden_shapes; }
+bool Scene::has_motion() const { return data_->geometry->moves(); }
+bool Scene::may_be_specular() const { return data_->materials->table.may_be_specular(); }
+bool Scene::has_fibres() const { return data_->materials->table.has_fibres(); }
+bool Scene::has_media() const { return !data_->media->all.empty(); }
+bool Scene::has_interfaces() const { return data_->shapes->has_interfaces; }
+bool Scene::has_hidden_shapes() const { return data_->shapes->has_hidden_shapes; }
 bool Scene::has_scattering_media() const {
   return has_media() &&
-         std::any_of(data_->media->begin(), data_->media->end(), [](const Medium& m) { return scatters(m); });
+         std::any_of(data_->media->all.begin(), data_->media->all.end(), [](const Medium& m) { return scatters(m); });
 }
 float Scene::largest_medium_albedo() const {
   float largest = 0;
-  for (std::size_t i = 0; i < data_->media->size(); ++i)
+  for (std::size_t i = 0; i < data_->media->all.size(); ++i)
     if (!is_under_surface(*this, static_cast<MediumId>(i + 1)))
-      largest = std::max(largest, largest_albedo((*data_->media)[i]));
+      largest = std::max(largest, largest_albedo(data_->media->all[i]));
   return largest;
 }
 bool Scene::has_emissive_media() const { return data_->has_emissive; }
 std::optional<std::vector<Bounds>> Scene::scattering_boxes() const {
   std::vector<Bounds> boxes;
-  for (std::size_t i = 0; i < data_->media->size(); ++i) {
-    if (!scatters((*data_->media)[i])) continue;
+  for (std::size_t i = 0; i < data_->media->all.size(); ++i) {
+    if (!scatters(data_->media->all[i])) continue;
     const auto id = static_cast<MediumId>(i + 1);
     if (const std::optional<MediumBox> place = place_of(*data_, id))
       boxes.push_back(place->to_medium.inverted().bounds(place->box));
@@ -144,20 +144,20 @@ std::optional<std::vector<Bounds>> Scene::scattering_boxes() const {
   return boxes;
 }
 std::optional<std::uint32_t> Scene::volume_light(MediumId medium) const {
-  const auto found = data_->volume_lights.find(medium);
-  return found != data_->volume_lights.end() ? std::optional(found->second) : std::nullopt;
+  const auto found = data_->lights->volume_lights.find(medium);
+  return found != data_->lights->volume_lights.end() ? std::optional(found->second) : std::nullopt;
 }
-bool Scene::has_unlit_emission() const { return data_->has_unlit_emission; }
+bool Scene::has_unlit_emission() const { return data_->lights->has_unlit_emission; }
 bool Scene::lies_in(MediumId medium, const Ray& ray) const { return lanthorn::lies_in(*data_, medium, ray); }
-const Medium& Scene::medium(MediumId id) const { return (*data_->media)[static_cast<std::size_t>(id) - 1]; }
-MediumInterface Scene::light_media(std::uint32_t light) const { return data_->light_media[light]; }
+const Medium& Scene::medium(MediumId id) const { return data_->media->all[static_cast<std::size_t>(id) - 1]; }
+MediumInterface Scene::light_media(std::uint32_t light) const { return data_->lights->media[light]; }
 std::optional<SourceLocation> Scene::locate(const Ray& ray) const {
-  const std::optional<GeometryHit> hit = data_->geometry.intersect(ray);
-  return hit ? std::optional(data_->geometry.location(*hit)) : std::nullopt;
+  const std::optional<GeometryHit> hit = data_->geometry->intersect(ray);
+  return hit ? std::optional(data_->geometry->location(*hit)) : std::nullopt;
 }
 const SourceLocation& Scene::light_location(std::uint32_t light) const { return data_->light_location(light); }
-void Scene::require_textures() const { data_->textures.require_readable(); }
-TileCacheCounts Scene::texture_reads() const { return data_->textures.reads(); }
+void Scene::require_textures() const { data_->materials->textures.require_readable(); }
+TileCacheCounts Scene::texture_reads() const { return data_->materials->textures.reads(); }
 const SceneStatistics& Scene::statistics() const { return data_->statistics; }
 const std::vector<description::Warning>& Scene::warnings() const { return data_->description.warnings; }
 const SceneDescription& Scene::description() const { return data_->description; }

@@ -140,14 +140,14 @@ SceneModel model_of(const Scene& scene) {
   const auto add = [&](const std::vector<std::unique_ptr<ShapeStore>>& shapes) {
     for (const auto& shape : shapes) model.meshes.push_back(mesh_of(*shape));
   };
-  add(data.geometry.shapes());
+  add(data.geometry->shapes());
   if (!model.meshes.empty()) model.instances.push_back({0, model.meshes.size(), {}, {}, {}});
   std::vector<std::pair<std::size_t, std::size_t>> groups;  // first mesh and number
-  for (const auto& group : data.geometry.groups()) {
+  for (const auto& group : data.geometry->groups()) {
     groups.emplace_back(model.meshes.size(), group.size());
     add(group);
   }
-  for (const PlacedInstance& p : data.placed) {
+  for (const PlacedInstance& p : *data.placed) {
     const auto& [first, count] = groups[p.placed.group];
     std::string object =
         p.instance ? data.description.objects[data.description.instances[*p.instance].object].name : "";

@@ -15,8 +15,8 @@
 
 namespace lanthorn {
 
-SharedScene build_scene(SceneDescription description, const SharedScene& like) {
-  return std::make_shared<const Scene>(build(std::move(description), like ? like->data().get() : nullptr));
+SharedScene build_scene(SceneDescription description, const SharedScene& previous) {
+  return std::make_shared<const Scene>(build(std::move(description), previous ? previous->data().get() : nullptr));
 }
 
 const SceneDescription& description_of(const Scene& scene) { return scene.description(); }

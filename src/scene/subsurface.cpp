@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "scene/scene_data.h"
 
@@ -24,11 +25,11 @@ int scatterings_until_dark(float albedo) {
 
 void find_media_under_surfaces(SceneData& data) {
   float albedo = 0;
-  for (const description::Material& material : data.description.materials) {
+  for (const description::Material& material : std::as_const(data.description).materials) {
     if (!material.interior) continue;
-    data.is_under_surface.resize(data.media->size());
+    data.is_under_surface.resize(data.media->all.size());
     data.is_under_surface[*material.interior] = true;
-    albedo = std::max(albedo, largest_albedo((*data.media)[*material.interior]));
+    albedo = std::max(albedo, largest_albedo(data.media->all[*material.interior]));
   }
   data.most_under_surface = data.is_under_surface.empty() ? 0 : scatterings_until_dark(albedo);
 }

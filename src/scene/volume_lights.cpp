@@ -18,7 +18,7 @@ namespace {
 
 // The surface at a hit, as far as media need it.
 SurfacePoint bounding_point(const SceneData& scene, const GeometryHit& hit, const Ray& ray) {
-  const SurfaceGeometry surface = scene.geometry.evaluate(hit, ray);
+  const SurfaceGeometry surface = scene.geometry->evaluate(hit, ray);
   SurfacePoint p;
   p.position = surface.position;
   p.position_error = surface.error;
@@ -32,7 +32,7 @@ SurfacePoint bounding_point(const SceneData& scene, const GeometryHit& hit, cons
 std::optional<MediumId> medium_at(const SceneData& scene, Ray ray) {
   constexpr int most_surfaces = 64;  // coincident surfaces could hold a ray for ever
   for (int i = 0; i < most_surfaces; ++i) {
-    const std::optional<GeometryHit> hit = scene.geometry.intersect(ray);
+    const std::optional<GeometryHit> hit = scene.geometry->intersect(ray);
     if (!hit) return {};
     const SurfacePoint at = bounding_point(scene, *hit, ray);
     if (at.media.is_transition()) return medium_towards(at, -ray.direction, MediumId::vacuum);
@@ -76,7 +76,7 @@ struct MeasuredEmission {
 };
 
 MeasuredEmission measure(const SceneData& scene, MediumId id, const MediumBox& place, int resolution, float time) {
-  const Medium& medium = (*scene.media)[static_cast<std::size_t>(id) - 1];
+  const Medium& medium = scene.media->all[static_cast<std::size_t>(id) - 1];
   const Transform to_world = place.to_medium.inverted();
   const Wavelengths white = Wavelengths::rgb(0.5f);
   constexpr int parts = 2;  // points along each axis of a block
@@ -109,7 +109,7 @@ MeasuredEmission measure(const SceneData& scene, MediumId id, const MediumBox& p
 }
 
 std::optional<VolumeLight> make_volume_light(const SceneData& scene, MediumId id, float time) {
-  const Medium& medium = (*scene.media)[static_cast<std::size_t>(id) - 1];
+  const Medium& medium = scene.media->all[static_cast<std::size_t>(id) - 1];
   const std::optional<MediumBox> place = place_of(scene, id);
   if (!place) return {};
   // If the emission is uniform, only the shape of the medium has to be found.
@@ -124,12 +124,13 @@ std::optional<VolumeLight> make_volume_light(const SceneData& scene, MediumId id
 }  // namespace
 
 bool is_endless(const SceneData& scene, MediumId medium) {
-  return std::find(scene.endless_media.begin(), scene.endless_media.end(), medium) != scene.endless_media.end();
+  const std::vector<MediumId>& endless = scene.lights->endless_media;
+  return std::find(endless.begin(), endless.end(), medium) != endless.end();
 }
 
 std::optional<MediumBox> place_of(const SceneData& scene, MediumId id) {
-  if (const auto box = box_of((*scene.media)[static_cast<std::size_t>(id) - 1])) return box;
-  const Bounds bounds = bounds_of_surfaces(scene.geometry, id);
+  if (const auto box = box_of(scene.media->all[static_cast<std::size_t>(id) - 1])) return box;
+  const Bounds bounds = bounds_of_surfaces(*scene.geometry, id);
   if (is_endless(scene, id) || bounds.empty()) return {};
   return MediumBox{bounds, {}};
 }
@@ -139,25 +140,24 @@ bool lies_in(const SceneData& scene, MediumId medium, const Ray& ray) {
   return found ? *found == medium : is_endless(scene, medium);
 }
 
-void make_volume_lights(SceneData& scene, float time) {
-  std::vector<Light>& lights = scene.lights;
-  lights.resize(lights.size() - scene.volume_lights.size(), Light(EvenPointLight{}));
-  scene.light_media.resize(lights.size());
-  scene.volume_lights.clear();
-  scene.has_unlit_emission = false;
-  if (!scene.media->empty()) scene.endless_media = find_endless_media(scene, time);
-  for (std::size_t i = 0; i < scene.media->size(); ++i) {
-    if (!is_emissive((*scene.media)[i])) continue;
+void add_volume_light(const SceneData& scene, LightPart& lights, MediumId medium, const Light& light) {
+  const auto index = static_cast<std::uint32_t>(lights.all.size());
+  lights.locations[index] = scene.description.media[static_cast<std::size_t>(medium) - 1].location;
+  lights.volume_lights[medium] = index;
+  lights.media.push_back({medium, medium});
+  lights.all.push_back(light);
+}
+
+void make_volume_lights(const SceneData& scene, LightPart& lights, float time) {
+  if (!scene.media->all.empty()) lights.endless_media = find_endless_media(scene, time);
+  for (std::size_t i = 0; i < scene.media->all.size(); ++i) {
+    if (!is_emissive(scene.media->all[i])) continue;
     const auto id = static_cast<MediumId>(i + 1);
     const std::optional<VolumeLight> light = make_volume_light(scene, id, time);
-    scene.has_unlit_emission = scene.has_unlit_emission || !light;
+    lights.has_unlit_emission = lights.has_unlit_emission || !light;
     if (!light) continue;
-    const auto index = static_cast<std::uint32_t>(lights.size());
     check_power(*light, scene.description.media[i].location);
-    scene.light_locations[index] = scene.description.media[i].location;
-    scene.volume_lights[id] = index;
-    scene.light_media.push_back({id, id});
-    lights.emplace_back(*light);
+    add_volume_light(scene, lights, id, *light);
   }
 }
 

@@ -27,9 +27,11 @@ std::optional<MediumBox> place_of(const SceneData& scene, MediumId medium);
 /// True if the medium is around the ray's origin: asks the first surface along the ray that bounds media.
 bool lies_in(const SceneData& scene, MediumId medium, const Ray& ray);
 
-/// Finds the unbounded media, makes a light of each emissive medium, and appends these lights to the list, replacing
-/// earlier ones. Unbounded media, and media that no surface bounds, do not become lights: only eye paths find their
-/// emission (`has_unlit_emission`). `time`: when moving surfaces bound the media.
-void make_volume_lights(SceneData& scene, float time);
+/// Appends the light of a medium to the lights.
+void add_volume_light(const SceneData& scene, LightPart& lights, MediumId medium, const Light& light);
+/// Finds the unbounded media, makes a light of each emissive medium, and appends these lights to the list. `lights`: of
+/// the scene, while it is built. Unbounded media, and media that no surface bounds, do not become lights: only eye
+/// paths find their emission (`has_unlit_emission`). `time`: when moving surfaces bound the media.
+void make_volume_lights(const SceneData& scene, LightPart& lights, float time);
 
 }  // namespace lanthorn

@@ -210,7 +210,7 @@ std::size_t replace_window_glass(SceneDescription& scene) {
       ++count;
     }
   };
-  replace(scene.shapes);
+  replace(scene.shapes.edit());
   for (description::Object& object : scene.objects) replace(object.shapes);
   left.warn(scene);
   if (count == 0) return 0;

@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "base/parallel.h"
+#include "base/parallel_sort.h"
 #include "math/affine.h"
 
 namespace lanthorn {

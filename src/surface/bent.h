@@ -24,12 +24,9 @@
 
 #include "math/frame.h"
 #include "math/sampling.h"
-#include "surface/clear_coated.h"
 #include "surface/closure.h"
-#include "surface/coated.h"
 #include "surface/conductor.h"
 #include "surface/diffuse.h"
-#include "surface/plastic.h"
 #include "surface/sample.h"
 #include "surface/split_terms.h"
 
@@ -52,18 +49,13 @@ namespace bent_detail {
 template <class C>
 inline constexpr bool mirrored = std::is_same_v<C, Conductor>;
 
-/// True if the closure has delta lobes beside others, which are not mirrored. Rough coats cannot tell which lobe light
-/// belongs to, and rough plastic as a whole scatters like a matte surface.
+/// True if the closure has delta lobes beside others, which are not mirrored; `is_smooth` says so. Rough coats cannot
+/// tell which lobe light belongs to, and rough plastic as a whole scatters like a matte surface.
 template <class C>
-bool has_delta_lobes(const C&) {
+bool has_delta_lobes(const C& closure) {
+  if constexpr (requires { is_smooth(closure); }) return is_smooth(closure);
   return false;
 }
-template <class Base>
-bool has_delta_lobes(const Coated<Base>& c) {
-  return is_smooth(c.coat);
-}
-inline bool has_delta_lobes(const Plastic& p) { return is_smooth(p); }
-inline bool has_delta_lobes(const ClearCoated& c) { return is_smooth(c.passage->coat()); }
 
 template <class C>
 Vec3 image(const Bent<C>& b, const Vec3& w) {
@@ -105,15 +97,30 @@ template <class C>
 bool is_seen_twice(const Bent<C>& b, const Vec3& e) {
   return is_above(b, e, turned(e));
 }
-/// Density of the closure's own sampling of `e` by a light walk from `l`.
+/// Density with which a light walk from `l` chooses the eye at `e`, above the facet; `own`: that of the closure itself.
 template <class C>
-float pdf_of_eye(const Bent<C>& b, const Vec3& l, const Vec3& e) {
-  const float own = pdf(b.closure, l, upright(b, e));
-  return is_seen_twice(b, e) ? 0.5f * own : own;
+float pdf_of_eye(const Bent<C>& b, const Vec3& l, const Vec3& e, float own) {
+  if (is_seen_twice(b, e)) own *= 0.5f;
+  return has_delta_lobes(b.closure) && has_image(b, l) ? 0.5f * own : own;
 }
 /// Diffuse surfaces send light to all eyes above the facet, by the geometric cosine.
-inline float pdf_of_eye(const Bent<Diffuse>& b, const Vec3& l, const Vec3& e) {
+inline float pdf_of_eye(const Bent<Diffuse>& b, const Vec3& l, const Vec3& e, float /*own*/) {
   return same_hemisphere(l, upright(b, e)) ? pdf_cosine_hemisphere(std::fabs(dot(e, b.plane))) : 0.0f;
+}
+
+/// The value for a walk from the eye: `pdf` is the density of the light, `pdf_reverse` of the eye. `own`: that of the
+/// closure itself.
+template <class C>
+BsdfValue with_image(const Bent<C>& b, const Vec3& e, const Vec3& l, BsdfValue own, const BsdfParts& parts) {
+  const Vec3 image_of_l = image(b, l);
+  const bool is_seen = has_image(b, l);
+  const BsdfValue mirrored_light = evaluate(b.closure, e, image_of_l, Transport::radiance,
+                                            {parts.f && is_seen, parts.pdf, parts.pdf_reverse && is_seen});
+  own.pdf += mirrored_light.pdf;
+  if (!is_seen) return own;
+  own.f += mirrored_light.f * cosine_ratio(image_of_l, l);
+  own.pdf_reverse = 0.5f * (own.pdf_reverse + mirrored_light.pdf_reverse);
+  return own;
 }
 
 }  // namespace bent_detail
@@ -121,46 +128,25 @@ inline float pdf_of_eye(const Bent<Diffuse>& b, const Vec3& l, const Vec3& e) {
 // Functions of every closure: meanings, units and conventions as for `Bsdf` (bsdf.h).
 
 template <class C>
-Spectrum eval(const Bent<C>& b, const Vec3& wi, const Vec3& wo, Transport transport) {
+BsdfValue evaluate(const Bent<C>& b, const Vec3& wi, const Vec3& wo, Transport transport, BsdfParts parts) {
   const bool from_eye = transport == Transport::radiance;
   const Vec3 &e = from_eye ? wi : wo, &l = from_eye ? wo : wi;
+  const bool is_above = bent_detail::is_above(b, e, l);
   if constexpr (bent_detail::mirrored<C>) {
-    if (!bent_detail::is_above(b, e, l)) return {};
-    Spectrum f = eval(b.closure, wi, wo, transport);
-    const Vec3 image = bent_detail::image(b, l);
-    if (same_hemisphere(e, image) && bent_detail::has_image(b, l))
-      f += eval(b.closure, e, image, Transport::radiance) * bent_detail::cosine_ratio(image, l);
-    return f;
+    if (!is_above) return {};
+    const BsdfValue own = evaluate(b.closure, wi, wo, transport, parts);
+    if (from_eye) return bent_detail::with_image(b, e, l, own, parts);
+    return reversed(bent_detail::with_image(b, e, l, reversed(own), reversed(parts)));
   } else {
-    if (!bent_detail::is_lit(b, e, l) || (!from_eye && !bent_detail::is_above(b, e, l))) return {};
+    if (!bent_detail::is_lit(b, e, l)) return {};
     const Vec3 eye = bent_detail::upright(b, e);
-    return from_eye ? eval(b.closure, eye, l, transport) : eval(b.closure, l, eye, transport);
+    BsdfValue value = evaluate(b.closure, from_eye ? eye : l, from_eye ? l : eye, transport, parts);
+    if (!from_eye && !is_above) value.f = {};
+    if (!(from_eye ? parts.pdf_reverse : parts.pdf)) return value;
+    float& of_eye = from_eye ? value.pdf_reverse : value.pdf;
+    of_eye = is_above ? bent_detail::pdf_of_eye(b, l, e, of_eye) : 0.0f;
+    return value;
   }
-}
-
-/// Density with which a walk of this kind chooses `wo`.
-template <class C>
-float pdf_of(const Bent<C>& b, const Vec3& wi, const Vec3& wo, Transport transport) {
-  const bool from_eye = transport == Transport::radiance;
-  if constexpr (bent_detail::mirrored<C>) {
-    if (!bent_detail::is_above(b, wi, wo)) return 0;
-    const float own = pdf(b.closure, wi, wo);
-    if (from_eye) return own + pdf(b.closure, wi, bent_detail::image(b, wo));
-    return bent_detail::has_image(b, wi) ? 0.5f * (own + pdf(b.closure, bent_detail::image(b, wi), wo)) : own;
-  } else {
-    if (from_eye) return bent_detail::is_lit(b, wi, wo) ? pdf(b.closure, bent_detail::upright(b, wi), wo) : 0.0f;
-    if (!bent_detail::is_above(b, wi, wo) || !bent_detail::is_lit(b, wo, wi)) return 0;
-    const float own = bent_detail::pdf_of_eye(b, wi, wo);
-    return bent_detail::has_delta_lobes(b.closure) && bent_detail::has_image(b, wi) ? 0.5f * own : own;
-  }
-}
-template <class C>
-float pdf(const Bent<C>& b, const Vec3& wi, const Vec3& wo) {
-  return pdf_of(b, wi, wo, Transport::radiance);
-}
-template <class C>
-float pdf_reverse(const Bent<C>& b, const Vec3& wi, const Vec3& wo) {
-  return pdf_of(b, wo, wi, Transport::importance);
 }
 
 namespace bent_detail {
@@ -168,9 +154,10 @@ namespace bent_detail {
 /// The sample with the weight of all ways in which its direction can be chosen.
 template <class C>
 std::optional<BsdfSample> weighted(const Bent<C>& b, const Vec3& wi, BsdfSample s, Transport transport) {
-  s.pdf = pdf_of(b, wi, s.wo, transport);
-  if (!(s.pdf > 0)) return {};
-  s.weight = eval(b, wi, s.wo, transport) * (std::fabs(s.wo.z) / s.pdf);
+  const BsdfValue value = evaluate(b, wi, s.wo, transport, {.f = true, .pdf = true});
+  if (!(value.pdf > 0)) return {};
+  s.pdf = value.pdf;
+  s.weight = value.f * (std::fabs(s.wo.z) / s.pdf);
   return s;
 }
 

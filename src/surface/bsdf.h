@@ -3,12 +3,13 @@
 // Scattering at a surface: a closed set of closures, each in its own file, joined into the variant `Bsdf`.
 //
 // All directions are local to the shading frame (z is the shading normal), have unit length and point away from the
-// surface. `wi` points to the previous vertex of the walk, `wo` to the next. `eval` never includes a cosine. Pdfs are
-// per solid angle of `wo`. Delta lobes are excluded from `eval` and `pdf` (both 0); only `sample` returns them.
+// surface. `wi` points to the previous vertex of the walk, `wo` to the next. f never includes a cosine. Pdfs are per
+// solid angle. Delta lobes are excluded from `evaluate`, which gives 0 for them; only `sample` returns them.
 #pragma once
 
 #include <array>
 #include <optional>
+#include <type_traits>
 #include <variant>
 
 #include "math/frame.h"
@@ -30,31 +31,38 @@
 
 namespace lanthorn {
 
-using Bsdf = ClosureVariant<Diffuse, DiffuseTransmission, Conductor, Dielectric, ThinDielectric, ClearCoated,
-                            CoatedDiffuse, CoatedConductor, CoatedPlastic, Hair, Plastic, Cloth, Measured,
-                            Bent<Diffuse>, Bent<Conductor>, Bent<Plastic>, Bent<ClearCoated>, Bent<CoatedDiffuse>,
-                            Bent<CoatedConductor>, Bent<CoatedPlastic>, Bent<Cloth>, Bent<Measured>>;
+namespace bsdf_detail {
+template <class...>
+struct List {};
+template <class... A, class... B>
+List<A..., B...> operator+(List<A...>, List<B...>);
+template <class... All>
+ClosureVariant<All...> variant_of(List<All...>);
 
-/// f(wi, wo), 1/sr, without the cosine (`cosine`) and without delta lobes. `transport` is the quantity that the walk
-/// carries: `radiance` from the eye (refraction scales f by the squared index ratio), `importance` from a light (no
-/// scaling). Reflection is the same for both and symmetric, except for hair and bent closures: their f depends on which
-/// end of the path is the light and which the eye, not on the walk that asks.
-Spectrum eval(const Bsdf& bsdf, const Vec3& wi, const Vec3& wo, Transport transport);
+template <Closure C>
+using Forms = std::conditional_t<C::traits.is_opaque(), List<C, Bent<C>>, List<C>>;
+/// The closures, and the bent forms of those that are opaque.
+template <Closure... Closures>
+using WithBentForms = decltype(variant_of((Forms<Closures>() + ...)));
+}  // namespace bsdf_detail
 
-/// Density with which `sample` chooses the non-delta direction `wo` from `wi`, per solid angle, including the
-/// probability of the lobe. For layered closures it may be an approximation: normalised, and positive wherever `eval`
-/// is (see `pdf_is_exact`). `transport`: of the walk that chooses; it matters only for bent closures.
-float pdf(const Bsdf& bsdf, const Vec3& wi, const Vec3& wo, Transport transport = Transport::radiance);
+using Bsdf =
+    bsdf_detail::WithBentForms<Diffuse, DiffuseTransmission, Conductor, Dielectric, ThinDielectric, ClearCoated,
+                               CoatedDiffuse, CoatedConductor, CoatedPlastic, Hair, Plastic, Cloth, Measured>;
 
-/// `eval` and `pdf` together: closures share the terms that both need. The pdf is not computed if f is black.
-BsdfValue eval_and_pdf(const Bsdf& bsdf, const Vec3& wi, const Vec3& wo, Transport transport);
-
-/// `pdf` in the reverse direction: the density with which a walk that arrives from `wo` along the same path chooses
-/// `wi`. `transport`: of the walk that has arrived from `wi`.
-float pdf_reverse(const Bsdf& bsdf, const Vec3& wi, const Vec3& wo, Transport transport);
-
-/// `eval_and_pdf` and `pdf_reverse` together, for weights of paths that walks from both ends could make.
-BsdfValues eval_and_pdfs(const Bsdf& bsdf, const Vec3& wi, const Vec3& wo, Transport transport);
+/// How the surface scatters between wi and wo: f and the densities of both walks along the path, which share most of
+/// their work. Gives the parts that are asked for. `transport` is the quantity that the walk from wi to wo carries:
+/// `radiance` from the eye, `importance` from a light.
+///
+/// f(wi, wo), 1/sr, is without the cosine (`cosine`) and without delta lobes. Refraction scales the f of radiance by
+/// the squared index ratio, not that of importance. Reflection is the same for both and symmetric, except for hair and
+/// bent closures: their f depends on which end of the path is the light and which the eye, not on the walk that asks.
+///
+/// `pdf` is the density with which `sample` chooses the non-delta direction wo from wi, per solid angle, including the
+/// probability of the lobe. For layered closures it may be an approximation: normalised, and positive wherever f is
+/// (see `pdf_is_exact`). `pdf_reverse` is the density with which a walk of the other kind, which arrives from wo along
+/// the same path, chooses wi.
+BsdfValue evaluate(const Bsdf& bsdf, const Vec3& wi, const Vec3& wo, Transport transport, BsdfParts parts = all_parts);
 
 namespace bsdf_detail {
 template <class... Closures>
@@ -69,7 +77,7 @@ inline bool is_fibre(const Bsdf& bsdf) { return bsdf_detail::all_traits[bsdf.ind
 /// True if light may continue behind the surface.
 inline bool transmits(const Bsdf& bsdf) { return bsdf_detail::all_traits[bsdf.index()].transmits; }
 /// True if all light leaves a surface on the side on which it arrives.
-inline bool is_opaque(const Bsdf& bsdf) { return !is_fibre(bsdf) && !transmits(bsdf); }
+inline bool is_opaque(const Bsdf& bsdf) { return bsdf_detail::all_traits[bsdf.index()].is_opaque(); }
 
 /// The cosine factor of f for light along `w`: |cos| to the normal; on a fibre |cos| to the plane perpendicular to it.
 inline float cosine(const Bsdf& bsdf, const Vec3& w) {
@@ -99,7 +107,7 @@ LobeWeights lobe_weights(const Bsdf& bsdf, const Vec3& wi);
 /// counts as diffuse or, over metal, as the metal's lobe.
 SplitTerms split_terms(const Bsdf& bsdf, const Vec3& wi);
 
-/// True if some lobe is not a delta function, so that `eval` can be positive.
+/// True if some lobe is not a delta function, so that f can be positive.
 inline bool has_non_delta(const Bsdf& bsdf) {
   return std::visit([](const auto& closure) { return has_non_delta(closure); }, bsdf);
 }

@@ -72,10 +72,19 @@ class CoatAndBase {
     return lobe_probability(coat_albedo(cos), coat_.alpha_x, max_component(base_albedo(cos)));
   }
 
+  BsdfValue evaluate(const Vec3& i, const Vec3& o, BsdfParts parts) const {
+    BsdfValue value;
+    if (parts.f) value.f = f(i, o);
+    if (parts.pdf) value.pdf = pdf(i, o);
+    if (parts.pdf_reverse) value.pdf_reverse = pdf(o, i);
+    return value;
+  }
+
+ private:
   Spectrum f(const Vec3& i, const Vec3& o) const {
     const float through = passage_.to_base(i.z) * passage_.to_base(o.z) / sqr(coat_.eta);
     const Spectrum below = base_ * (inv_pi * through);
-    return smooth_ ? below : below + eval(coat_, i, o, Transport::importance);
+    return smooth_ ? below : below + lanthorn::evaluate(coat_, i, o, Transport::importance, {.f = true}).f;
   }
   float pdf(const Vec3& i, const Vec3& o) const {
     const float coat = coat_probability(i.z);
@@ -85,7 +94,6 @@ class CoatAndBase {
     return below + coat * 0.25f * microfacets.visible_d_over_dot(i, normalize(i + o));
   }
 
- private:
   const CoatPassage& passage_;
   const Dielectric& coat_;
   bool smooth_;
@@ -127,12 +135,8 @@ CoatPassage::CoatPassage(const Dielectric& coat, float thickness) : coat_(coat) 
   back_ = static_cast<float>(back / points);
 }
 
-Spectrum eval(const ClearCoated& c, const Vec3& wi, const Vec3& wo, Transport /*symmetric*/) {
-  return same_hemisphere(wi, wo) ? CoatAndBase(c).f(above(wi), above(wo)) : Spectrum();
-}
-
-float pdf(const ClearCoated& c, const Vec3& wi, const Vec3& wo) {
-  return same_hemisphere(wi, wo) ? CoatAndBase(c).pdf(above(wi), above(wo)) : 0.0f;
+BsdfValue evaluate(const ClearCoated& c, const Vec3& wi, const Vec3& wo, Transport /*symmetric*/, BsdfParts parts) {
+  return same_hemisphere(wi, wo) ? CoatAndBase(c).evaluate(above(wi), above(wo), parts) : BsdfValue();
 }
 
 std::optional<BsdfSample> sample(const ClearCoated& c, const Vec3& wi, float u_lobe, const Vec2& u,
@@ -153,9 +157,8 @@ std::optional<BsdfSample> sample(const ClearCoated& c, const Vec3& wi, float u_l
           .wo = side * reflected->wo, .weight = Spectrum(reflected->weight / coat), .pdf = coat, .delta = true};
     o = reflected->wo;
   }
-  const float density = o.z > 0 ? lobes.pdf(i, o) : 0.0f;
-  if (!(density > 0)) return std::nullopt;
-  return BsdfSample{.wo = side * o, .weight = lobes.f(i, o) * (o.z / density), .pdf = density};
+  if (!(o.z > 0)) return std::nullopt;
+  return sample_of_all(side * o, o.z, lobes.evaluate(i, o, {.f = true, .pdf = true}));
 }
 
 Spectrum albedo(const ClearCoated& c, const Vec3& wi) {

@@ -55,11 +55,11 @@ struct ClearCoated {
   int arrivals = 5;                      ///< how often light may reach the base
 };
 
+inline bool is_smooth(const ClearCoated& c) { return is_smooth(c.passage->coat()); }
+
 // Functions of every closure: meanings, units and conventions as for `Bsdf` (bsdf.h).
 
-Spectrum eval(const ClearCoated& c, const Vec3& wi, const Vec3& wo, Transport transport);
-float pdf(const ClearCoated& c, const Vec3& wi, const Vec3& wo);
-inline float pdf_reverse(const ClearCoated& c, const Vec3& wi, const Vec3& wo) { return pdf(c, wo, wi); }
+BsdfValue evaluate(const ClearCoated& c, const Vec3& wi, const Vec3& wo, Transport transport, BsdfParts parts);
 std::optional<BsdfSample> sample(const ClearCoated& c, const Vec3& wi, float u_lobe, const Vec2& u,
                                  Transport transport);
 Spectrum albedo(const ClearCoated& c, const Vec3& wi);

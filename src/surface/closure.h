@@ -17,11 +17,9 @@ namespace lanthorn {
 /// one cannot be an alternative of `Bsdf`. Without this check, a call would find the function of `Bsdf` itself, to
 /// which closures convert, and never return.
 template <class C>
-concept Closure = requires(const C c, const Vec3 w, float u_lobe, const Vec2 u, Transport transport) {
+concept Closure = requires(const C c, const Vec3 w, float u_lobe, const Vec2 u, Transport transport, BsdfParts parts) {
   { C::traits } -> std::convertible_to<ClosureTraits>;
-  { eval(c, w, w, transport) } -> std::same_as<Spectrum>;
-  { pdf(c, w, w) } -> std::same_as<float>;
-  { pdf_reverse(c, w, w) } -> std::same_as<float>;
+  { evaluate(c, w, w, transport, parts) } -> std::same_as<BsdfValue>;
   { sample(c, w, u_lobe, u, transport) } -> std::same_as<std::optional<BsdfSample>>;
   { albedo(c, w) } -> std::same_as<Spectrum>;
   { lobe_weights(c, w) } -> std::same_as<LobeWeights>;

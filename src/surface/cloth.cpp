@@ -83,18 +83,23 @@ float fibre_probability(const Cloth& c, const Vec3& wi) {
 
 float sheen_albedo(float alpha, float cos) { return std::min(1.0f, raw_albedo(alpha, cos)); }
 
-Spectrum eval(const Cloth& c, const Vec3& wi, const Vec3& wo, Transport transport) {
-  if (!same_hemisphere(wi, wo)) return Spectrum();
-  const float side = std::copysign(1.0f, wi.z);
-  const Vec3 i = side * wi, o = side * wo;
-  const float excess = std::max({1.0f, raw_albedo(c.alpha, i.z), raw_albedo(c.alpha, o.z)});
-  return c.sheen * (fibres(c.alpha, i, o) / excess) + rest(c, i.z, o.z) * eval(c.base, wi, wo, transport);
-}
-
-float pdf(const Cloth& c, const Vec3& wi, const Vec3& wo) {
-  if (!same_hemisphere(wi, wo)) return 0;
-  const float choose = fibre_probability(c, wi);
-  return choose * 0.5f * inv_pi + (1 - choose) * pdf(c.base, wi, wo);
+BsdfValue evaluate(const Cloth& c, const Vec3& wi, const Vec3& wo, Transport transport, BsdfParts parts) {
+  if (!same_hemisphere(wi, wo)) return {};
+  const BsdfValue base = evaluate(c.base, wi, wo, transport, parts);
+  const auto density = [&](const Vec3& w, float below) {
+    const float choose = fibre_probability(c, w);
+    return choose * 0.5f * inv_pi + (1 - choose) * below;
+  };
+  BsdfValue value;
+  if (parts.f) {
+    const float side = std::copysign(1.0f, wi.z);
+    const Vec3 i = side * wi, o = side * wo;
+    const float excess = std::max({1.0f, raw_albedo(c.alpha, i.z), raw_albedo(c.alpha, o.z)});
+    value.f = c.sheen * (fibres(c.alpha, i, o) / excess) + rest(c, i.z, o.z) * base.f;
+  }
+  if (parts.pdf) value.pdf = density(wi, base.pdf);
+  if (parts.pdf_reverse) value.pdf_reverse = density(wo, base.pdf_reverse);
+  return value;
 }
 
 std::optional<BsdfSample> sample(const Cloth& c, const Vec3& wi, float u_lobe, const Vec2& u, Transport transport) {
@@ -115,9 +120,7 @@ std::optional<BsdfSample> sample(const Cloth& c, const Vec3& wi, float u_lobe, c
     }
     wo = below->wo;
   }
-  const float density = pdf(c, wi, wo);
-  if (!(density > 0)) return std::nullopt;
-  return BsdfSample{.wo = wo, .weight = eval(c, wi, wo, transport) * (abs_cos_theta(wo) / density), .pdf = density};
+  return sample_of_all(wo, abs_cos_theta(wo), evaluate(c, wi, wo, transport, {.f = true, .pdf = true}));
 }
 
 Spectrum albedo(const Cloth& c, const Vec3& wi) {

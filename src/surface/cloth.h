@@ -30,11 +30,8 @@ float sheen_albedo(float alpha, float cos);
 
 // Functions of every closure: meanings, units and conventions as for `Bsdf` (bsdf.h).
 
-Spectrum eval(const Cloth& c, const Vec3& wi, const Vec3& wo, Transport transport);
-float pdf(const Cloth& c, const Vec3& wi, const Vec3& wo);
+BsdfValue evaluate(const Cloth& c, const Vec3& wi, const Vec3& wo, Transport transport, BsdfParts parts);
 std::optional<BsdfSample> sample(const Cloth& c, const Vec3& wi, float u_lobe, const Vec2& u, Transport transport);
-
-inline float pdf_reverse(const Cloth& c, const Vec3& wi, const Vec3& wo) { return pdf(c, wo, wi); }
 Spectrum albedo(const Cloth& c, const Vec3& wi);
 LobeWeights lobe_weights(const Cloth& c, const Vec3& wi);
 inline bool has_non_delta(const Cloth& /*fibres*/) { return true; }

@@ -181,9 +181,10 @@ class WalkBelowCoat {
   bool meet_base() {
     const Vec3 back = -walk_.direction();
     if (has_non_delta(layers_.base) && walk_.may_leave()) {
-      Spectrum leaving = walk_.weight() * eval(layers_.base, back, up_, Transport::importance);
+      const BsdfValue base = evaluate(layers_.base, back, up_, Transport::importance, {.f = true, .pdf = rough_coat_});
+      Spectrum leaving = walk_.weight() * base.f;
       if (!rough_coat_ && is_smooth(layers_.base)) leaving *= mirrored_again(layers_, walk_, exit_);
-      sum_ += leaving * (exit_weight(pdf(layers_.base, back, up_)) * exit_.weight * walk_.transmittance_to_coat(up_));
+      sum_ += leaving * (exit_weight(base.pdf) * exit_.weight * walk_.transmittance_to_coat(up_));
     }
     const float u_lobe = rng_.next();
     const auto bounced = sample(layers_.base, back, u_lobe, rng_.next2(), Transport::importance);
@@ -213,7 +214,7 @@ class WalkBelowCoat {
   void add_hit(float density, bool competes) {
     const Vec3& w = walk_.direction();
     if (!rough_coat_ || w.z <= 0 || !walk_.may_leave()) return;
-    const float f = eval(layers_.coat, -w, wo_, Transport::importance)[0];
+    const float f = evaluate(layers_.coat, -w, wo_, Transport::importance, {.f = true}).f[0];
     if (f == 0) return;
     const float weight = competes ? power_heuristic(density, pdf_transmission(layers_.coat, wo_, -w)) : 1.0f;
     sum_ += walk_.weight() * (f * weight * walk_.transmittance_to_coat(w));
@@ -238,20 +239,15 @@ Spectrum estimate_below_coat(const Coated<Base>& c, const Vec3& wi, const Vec3& 
   return WalkBelowCoat<Base>(c, wo, *entry, *exit, rng).estimate();
 }
 
+/// f between two directions above the coat; `coat`: that of the coat's own reflection.
 template <class Base>
-Spectrum eval_coated(const Coated<Base>& c, Vec3 wi, Vec3 wo) {
-  if (!same_hemisphere(wi, wo) || !has_non_delta(c)) return Spectrum();
-  if (wi.z < 0) {
-    wi = -wi;
-    wo = -wo;
-  }
-  const Spectrum reflected = eval(c.coat, wi, wo, Transport::importance);
+Spectrum f_with_base(const Coated<Base>& c, Vec3 i, Vec3 o, const Spectrum& coat) {
   // Only the expected value is symmetric; ordering the two directions makes the estimate symmetric too.
-  if (std::tie(wi.z, wi.x, wi.y) < std::tie(wo.z, wo.x, wo.y)) std::swap(wi, wo);
-  HashRng rng(hash_vec(wo, hash_vec(wi)));
+  if (std::tie(i.z, i.x, i.y) < std::tie(o.z, o.x, o.y)) std::swap(i, o);
+  HashRng rng(hash_vec(o, hash_vec(i)));
   Spectrum below;
-  for (int s = 0; s < c.n_samples; ++s) below += estimate_below_coat(c, wi, wo, rng);
-  return reflected + below / static_cast<float>(c.n_samples);
+  for (int s = 0; s < c.n_samples; ++s) below += estimate_below_coat(c, i, o, rng);
+  return coat + below / static_cast<float>(c.n_samples);
 }
 
 /// The walk of `sample` inside the layer; nullopt if absorbed.
@@ -281,26 +277,6 @@ std::optional<BsdfSample> walk_through(const Coated<Base>& c, const BsdfSample& 
     if (next->transmission)
       return BsdfSample{.wo = next->wo, .weight = walk.weight(), .pdf = probability, .delta = delta};
   }
-}
-
-template <class Base>
-std::optional<BsdfSample> sample_coated(const Coated<Base>& c, const Vec3& wi, float u_lobe, const Vec2& u) {
-  const float side = std::copysign(1.0f, wi.z);
-  const Vec3 i = side * wi;
-  auto s = sample(c.coat, i, u_lobe, u, Transport::importance);
-  if (!s) return std::nullopt;
-  if (s->transmission) {
-    HashRng rng(hash_words({hash_vec(i), std::bit_cast<std::uint32_t>(u_lobe), std::bit_cast<std::uint32_t>(u.x),
-                            std::bit_cast<std::uint32_t>(u.y)}));
-    s = walk_through(c, *s, rng);
-    if (!s) return std::nullopt;
-  }
-  if (!s->delta) {
-    s->pdf = pdf(c, i, s->wo);
-    s->pdf_is_exact = false;
-  }
-  s->wo *= side;
-  return s;
 }
 
 /// GGX width of the base as seen through a rough coat. A facet of slope s turns a refracted ray by (1 - 1/eta) s
@@ -334,7 +310,7 @@ float pdf_one_mirror_bounce(const Coated<Base>& c, const Vec3& i, const Vec3& o)
   const Vec3 inside_o = refracted(c.coat, o);
   if (inside_o.z <= 0) return 0;
   const float jacobian = o.z / (sqr(c.coat.eta) * inside_o.z);  // d(inside_o) / d(o)
-  return pdf(seen_mirror(c), refracted(c.coat, i), inside_o) * jacobian;
+  return evaluate(seen_mirror(c), refracted(c.coat, i), inside_o, Transport::importance, {.pdf = true}).pdf * jacobian;
 }
 
 /// Density of leaving towards `o` after one reflection at the base, with both refractions as at a smooth coat.
@@ -358,16 +334,12 @@ float several_bounces(const Coated<Base>& c) {
   return lerp(std::exp(-2 * c.thickness), 1.0f, clear);
 }
 
+/// Density of leaving towards `o`, above the coat; `coat`: that of the coat's own reflection.
 template <class Base>
-float pdf_coated(const Coated<Base>& c, Vec3 wi, Vec3 wo) {
-  if (!same_hemisphere(wi, wo) || !has_non_delta(c)) return 0;
-  if (wi.z < 0) {
-    wi = -wi;
-    wo = -wo;
-  }
-  const float entering = c.coat.eta == 1.0f ? 1.0f : 1.0f - fresnel_dielectric(wi.z, c.coat.eta).reflectance;
+float pdf_with_base(const Coated<Base>& c, const Vec3& i, const Vec3& o, float coat) {
+  const float entering = c.coat.eta == 1.0f ? 1.0f : 1.0f - fresnel_dielectric(i.z, c.coat.eta).reflectance;
   const float rest = several_bounces(c);
-  return pdf(c.coat, wi, wo) + entering * ((1 - rest) * pdf_one_bounce(c, wi, wo) + rest * pdf_cosine_hemisphere(wo.z));
+  return coat + entering * ((1 - rest) * pdf_one_bounce(c, i, o) + rest * pdf_cosine_hemisphere(o.z));
 }
 
 /// Fraction of Lambertian light below a plane interface of index ratio `eta` >= 1 that is reflected back, within 0.002;
@@ -412,11 +384,6 @@ Spectrum albedo_below(const CoatedPlastic& c, const Vec3& wi) {
   const float back = lerp(diffuse, coat_reflectance(c.coat, wi), internal_diffuse_reflectance(c.coat.eta));
   return base_and_back(albedo(c.base, inside), round_trip(c), back);
 }
-template <class Base>
-Spectrum albedo_of_coated(const Coated<Base>& c, const Vec3& wi) {
-  const float r = coat_reflectance(c.coat, wi);
-  return Spectrum(r) + albedo_below(c, wi) * (1 - r);
-}
 
 /// The base's lobes as seen through the coat; a rough coat makes mirrors glossy.
 template <class Base>
@@ -427,8 +394,51 @@ LobeWeights lobes_below(const Coated<Base>& c) {
   lobes.alpha = std::max(lobes.alpha, geometric_alpha(c.coat.alpha_x, c.coat.alpha_y));
   return lobes;
 }
+
+}  // namespace
+
 template <class Base>
-LobeWeights lobes_of_coated(const Coated<Base>& c, const Vec3& wi) {
+BsdfValue evaluate(const Coated<Base>& c, const Vec3& wi, const Vec3& wo, Transport /*symmetric*/, BsdfParts parts) {
+  if (!same_hemisphere(wi, wo) || !has_non_delta(c)) return {};
+  const float side = std::copysign(1.0f, wi.z);
+  const Vec3 i = side * wi, o = side * wo;
+  const BsdfValue coat = evaluate(c.coat, i, o, Transport::importance, parts);
+  BsdfValue value;
+  if (parts.f) value.f = f_with_base(c, i, o, coat.f);
+  if (parts.pdf) value.pdf = pdf_with_base(c, i, o, coat.pdf);
+  if (parts.pdf_reverse) value.pdf_reverse = pdf_with_base(c, o, i, coat.pdf_reverse);
+  return value;
+}
+
+template <class Base>
+std::optional<BsdfSample> sample(const Coated<Base>& c, const Vec3& wi, float u_lobe, const Vec2& u,
+                                 Transport /*symmetric*/) {
+  const float side = std::copysign(1.0f, wi.z);
+  const Vec3 i = side * wi;
+  auto s = sample(c.coat, i, u_lobe, u, Transport::importance);
+  if (!s) return std::nullopt;
+  if (s->transmission) {
+    HashRng rng(hash_words({hash_vec(i), std::bit_cast<std::uint32_t>(u_lobe), std::bit_cast<std::uint32_t>(u.x),
+                            std::bit_cast<std::uint32_t>(u.y)}));
+    s = walk_through(c, *s, rng);
+    if (!s) return std::nullopt;
+  }
+  if (!s->delta) {
+    s->pdf = evaluate(c, i, s->wo, Transport::importance, {.pdf = true}).pdf;
+    s->pdf_is_exact = false;
+  }
+  s->wo *= side;
+  return s;
+}
+
+template <class Base>
+Spectrum albedo(const Coated<Base>& c, const Vec3& wi) {
+  const float r = coat_reflectance(c.coat, wi);
+  return Spectrum(r) + albedo_below(c, wi) * (1 - r);
+}
+
+template <class Base>
+LobeWeights lobe_weights(const Coated<Base>& c, const Vec3& wi) {
   const float r = coat_reflectance(c.coat, wi);
   const float below = (1 - r) * max_component(albedo_below(c, wi));
   if (r + below <= 0) return {};
@@ -448,42 +458,15 @@ LobeWeights lobes_of_coated(const Coated<Base>& c, const Vec3& wi) {
   return sum;
 }
 
-}  // namespace
-
-template <class Base>
-Spectrum eval(const Coated<Base>& c, const Vec3& wi, const Vec3& wo, Transport /*symmetric*/) {
-  return eval_coated(c, wi, wo);
-}
-template <class Base>
-float pdf(const Coated<Base>& c, const Vec3& wi, const Vec3& wo) {
-  return pdf_coated(c, wi, wo);
-}
-template <class Base>
-std::optional<BsdfSample> sample(const Coated<Base>& c, const Vec3& wi, float u_lobe, const Vec2& u,
-                                 Transport /*symmetric*/) {
-  return sample_coated(c, wi, u_lobe, u);
-}
-template <class Base>
-Spectrum albedo(const Coated<Base>& c, const Vec3& wi) {
-  return albedo_of_coated(c, wi);
-}
-template <class Base>
-LobeWeights lobe_weights(const Coated<Base>& c, const Vec3& wi) {
-  return lobes_of_coated(c, wi);
-}
-
-template Spectrum eval(const CoatedDiffuse&, const Vec3&, const Vec3&, Transport);
-template float pdf(const CoatedDiffuse&, const Vec3&, const Vec3&);
+template BsdfValue evaluate(const CoatedDiffuse&, const Vec3&, const Vec3&, Transport, BsdfParts);
 template std::optional<BsdfSample> sample(const CoatedDiffuse&, const Vec3&, float, const Vec2&, Transport);
 template Spectrum albedo(const CoatedDiffuse&, const Vec3&);
 template LobeWeights lobe_weights(const CoatedDiffuse&, const Vec3&);
-template Spectrum eval(const CoatedConductor&, const Vec3&, const Vec3&, Transport);
-template float pdf(const CoatedConductor&, const Vec3&, const Vec3&);
+template BsdfValue evaluate(const CoatedConductor&, const Vec3&, const Vec3&, Transport, BsdfParts);
 template std::optional<BsdfSample> sample(const CoatedConductor&, const Vec3&, float, const Vec2&, Transport);
 template Spectrum albedo(const CoatedConductor&, const Vec3&);
 template LobeWeights lobe_weights(const CoatedConductor&, const Vec3&);
-template Spectrum eval(const CoatedPlastic&, const Vec3&, const Vec3&, Transport);
-template float pdf(const CoatedPlastic&, const Vec3&, const Vec3&);
+template BsdfValue evaluate(const CoatedPlastic&, const Vec3&, const Vec3&, Transport, BsdfParts);
 template std::optional<BsdfSample> sample(const CoatedPlastic&, const Vec3&, float, const Vec2&, Transport);
 template Spectrum albedo(const CoatedPlastic&, const Vec3&);
 template LobeWeights lobe_weights(const CoatedPlastic&, const Vec3&);

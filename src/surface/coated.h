@@ -16,10 +16,11 @@
 
 namespace lanthorn {
 
-/// A coat over `Base`, the same from both sides (light always meets the coat first). `eval` is an unbiased estimate by
-/// `n_samples` walks, seeded by the two directions: a pure function, exactly symmetric in wi and wo. `sample` follows
-/// one walk. The pdf of its result comes from `pdf`, a deterministic approximation (`pdf_is_exact` is false for
-/// non-delta samples). The sample's weight is therefore not eval * cos / pdf, but has the same mean.
+/// A coat over `Base`, the same from both sides (light always meets the coat first). `evaluate` gives an unbiased
+/// estimate of f by `n_samples` walks, seeded by the two directions: a pure function, exactly symmetric in wi and wo.
+/// Its densities are deterministic approximations. `sample` follows one walk, and takes its pdf from `evaluate`
+/// (`pdf_is_exact` is false for non-delta samples). The sample's weight is therefore not f * cos / pdf, but has the
+/// same mean.
 template <class Base>
 struct Coated {
   static constexpr ClosureTraits traits{.is_fibre = false, .transmits = false};
@@ -32,11 +33,16 @@ struct Coated {
   Spectrum albedo{};        ///< scattering albedo of the medium in the layer
   float g = 0;              ///< its Henyey-Greenstein mean cosine, in (-1, 1)
   int max_depth = 10;       ///< walks of more segments than this inside the layer are cut off
-  int n_samples = 1;        ///< walks per `eval`
+  int n_samples = 1;        ///< walks for each f
 };
 using CoatedDiffuse = Coated<Diffuse>;
 using CoatedConductor = Coated<Conductor>;
 using CoatedPlastic = Coated<Plastic>;
+
+template <class Base>
+bool is_smooth(const Coated<Base>& c) {
+  return is_smooth(c.coat);
+}
 
 /// Converts the index of `c` from relative to the outside to relative to a layer of index ratio `coat_eta`.
 inline Conductor under_coat(Conductor c, float coat_eta) {
@@ -48,17 +54,10 @@ inline Conductor under_coat(Conductor c, float coat_eta) {
 // Functions of every closure: meanings, units and conventions as for `Bsdf` (bsdf.h).
 
 template <class Base>
-Spectrum eval(const Coated<Base>& c, const Vec3& wi, const Vec3& wo, Transport transport);
-template <class Base>
-float pdf(const Coated<Base>& c, const Vec3& wi, const Vec3& wo);
+BsdfValue evaluate(const Coated<Base>& c, const Vec3& wi, const Vec3& wo, Transport transport, BsdfParts parts);
 template <class Base>
 std::optional<BsdfSample> sample(const Coated<Base>& c, const Vec3& wi, float u_lobe, const Vec2& u,
                                  Transport transport);
-
-template <class Base>
-float pdf_reverse(const Coated<Base>& c, const Vec3& wi, const Vec3& wo) {
-  return pdf(c, wo, wi);
-}
 template <class Base>
 Spectrum albedo(const Coated<Base>& c, const Vec3& wi);
 template <class Base>

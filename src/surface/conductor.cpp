@@ -17,28 +17,13 @@ Conductor conductor_from_reflectance(const Spectrum& reflectance, float alpha_x,
   return {.eta = Spectrum(1), .k = map(reflectance, k), .alpha_x = alpha_x, .alpha_y = alpha_y};
 }
 
-BsdfValues eval_and_pdfs_of(const Conductor& c, const Vec3& wi, const Vec3& wo) {
+BsdfValue evaluate(const Conductor& c, const Vec3& wi, const Vec3& wo, Transport /*symmetric*/, BsdfParts parts) {
   if (is_smooth(c) || !same_hemisphere(wi, wo)) return {};
   const float side = std::copysign(1.0f, wi.z);
-  const Vec3 i = side * wi;
-  const Vec3 o = side * wo;
-  const Normal m = normalize(i + o);
-  const TrowbridgeReitz microfacets(c.alpha_x, c.alpha_y);
-  // Walter et al. 2007, eq. 20.
-  return {{fresnel_conductor(dot(i, m), c.eta, c.k) * (0.25f * microfacets.d(m) * microfacets.g_over_cosines(i, o)),
-           0.25f * microfacets.visible_d_over_dot(i, m)},
-          0.25f * microfacets.visible_d_over_dot(o, m)};
-}
-
-Spectrum eval(const Conductor& c, const Vec3& wi, const Vec3& wo, Transport /*symmetric*/) {
-  return eval_and_pdfs_of(c, wi, wo).f;
-}
-
-float pdf(const Conductor& c, const Vec3& wi, const Vec3& wo) {
-  if (is_smooth(c) || !same_hemisphere(wi, wo)) return 0;
-  const float side = std::copysign(1.0f, wi.z);
-  const TrowbridgeReitz microfacets(c.alpha_x, c.alpha_y);
-  return 0.25f * microfacets.visible_d_over_dot(side * wi, normalize(side * (wi + wo)));
+  const HalfwayReflection reflection({c.alpha_x, c.alpha_y}, side * wi, side * wo);
+  BsdfValue value{.pdf = reflection.pdf(), .pdf_reverse = reflection.pdf_reverse()};
+  if (parts.f) value.f = fresnel_conductor(reflection.cos_i(), c.eta, c.k) * reflection.f();
+  return value;
 }
 
 std::optional<BsdfSample> sample(const Conductor& c, const Vec3& wi, float /*u_lobe: one lobe*/, const Vec2& u,

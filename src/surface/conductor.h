@@ -28,13 +28,8 @@ inline bool is_smooth(const Conductor& c) { return effectively_smooth(c.alpha_x,
 
 // Functions of every closure: meanings, units and conventions as for `Bsdf` (bsdf.h).
 
-Spectrum eval(const Conductor& c, const Vec3& wi, const Vec3& wo, Transport transport);
-float pdf(const Conductor& c, const Vec3& wi, const Vec3& wo);
-/// `eval` and both densities, which share the microfacet's normal and density.
-BsdfValues eval_and_pdfs_of(const Conductor& c, const Vec3& wi, const Vec3& wo);
+BsdfValue evaluate(const Conductor& c, const Vec3& wi, const Vec3& wo, Transport transport, BsdfParts parts);
 std::optional<BsdfSample> sample(const Conductor& c, const Vec3& wi, float u_lobe, const Vec2& u, Transport transport);
-
-inline float pdf_reverse(const Conductor& c, const Vec3& wi, const Vec3& wo) { return pdf(c, wo, wi); }
 Spectrum albedo(const Conductor& c, const Vec3& wi);
 LobeWeights lobe_weights(const Conductor& c, const Vec3& wi);
 inline bool has_non_delta(const Conductor& c) { return !is_smooth(c); }

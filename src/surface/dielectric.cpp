@@ -64,44 +64,46 @@ std::optional<Transmitted> transmit(const TrowbridgeReitz& microfacets, const Ve
   return Transmitted{o, microfacets.g_over_g1(i, -o), microfacets.visible_d_over_dot(i, m) * cos_m * jacobian};
 }
 
-}  // namespace
-
-Spectrum eval(const Dielectric& d, const Vec3& wi, const Vec3& wo, Transport transport) {
-  if (is_smooth(d) || wi.z == 0 || wo.z == 0) return Spectrum();
+/// wi and wo are on the same side.
+BsdfValue evaluate_reflection(const Dielectric& d, const Vec3& wi, const Vec3& wo, BsdfParts parts) {
   const View view(d, wi);
-  const Vec3 i = view.side * wi;
-  const Vec3 o = view.side * wo;
-  const TrowbridgeReitz microfacets(d.alpha_x, d.alpha_y);
-  if (o.z > 0) {  // [W07 eq. 20]
-    const Normal m = normalize(i + o);
-    const Spectrum r = reflectance(d, view, dot(i, m), fresnel_dielectric(dot(i, m), view.eta));
-    return r * (0.25f * microfacets.d(m) * microfacets.g_over_cosines(i, o));
+  const HalfwayReflection reflection({d.alpha_x, d.alpha_y}, view.side * wi, view.side * wo);
+  const auto reflected = [&](float cos) { return reflectance(d, view, cos, fresnel_dielectric(cos, view.eta)); };
+  BsdfValue value;
+  if (parts.f || parts.pdf) {
+    const Spectrum r = reflected(reflection.cos_i());
+    value.f = r * reflection.f();
+    value.pdf = mean_component(r) * reflection.pdf();
   }
-  const auto refraction = refraction_between(i, o, view.eta);
-  if (!refraction) return Spectrum();
-  const Spectrum r = reflectance(d, view, refraction->dot_i, fresnel_dielectric(refraction->dot_i, view.eta));
-  // [W07 eq. 21], for flux.
-  const float f =
-      microfacets.d(refraction->m) * refraction->dot_i * refraction->jacobian * microfacets.g_over_cosines(i, -o);
-  return f * transport_factor(view.eta, transport) * (Spectrum(1) - r) * d.tint;
+  if (parts.pdf_reverse) value.pdf_reverse = mean_component(reflected(reflection.cos_o())) * reflection.pdf_reverse();
+  return value;
 }
 
-float pdf(const Dielectric& d, const Vec3& wi, const Vec3& wo) {
-  if (is_smooth(d) || wi.z == 0 || wo.z == 0) return 0;
+/// Without `pdf_reverse`. wi and wo are on opposite sides.
+BsdfValue evaluate_refraction(const Dielectric& d, const Vec3& wi, const Vec3& wo, Transport transport) {
   const View view(d, wi);
   const Vec3 i = view.side * wi;
   const Vec3 o = view.side * wo;
-  const TrowbridgeReitz microfacets(d.alpha_x, d.alpha_y);
-  if (o.z > 0) {
-    const Normal m = normalize(i + o);
-    const Spectrum r = reflectance(d, view, dot(i, m), fresnel_dielectric(dot(i, m), view.eta));
-    return 0.25f * mean_component(r) * microfacets.visible_d_over_dot(i, m);
-  }
   const auto refraction = refraction_between(i, o, view.eta);
-  if (!refraction) return 0;
-  const Spectrum r = reflectance(d, view, refraction->dot_i, fresnel_dielectric(refraction->dot_i, view.eta));
-  return (1 - mean_component(r)) * microfacets.visible_d_over_dot(i, refraction->m) * refraction->dot_i *
-         refraction->jacobian;
+  if (!refraction) return {};
+  const auto [m, dot_i, jacobian] = *refraction;
+  const TrowbridgeReitz microfacets(d.alpha_x, d.alpha_y);
+  const Spectrum r = reflectance(d, view, dot_i, fresnel_dielectric(dot_i, view.eta));
+  // [W07 eq. 21], for flux.
+  const float f = microfacets.d(m) * dot_i * jacobian * microfacets.g_over_cosines(i, -o);
+  return {.f = f * transport_factor(view.eta, transport) * (Spectrum(1) - r) * d.tint,
+          .pdf = (1 - mean_component(r)) * microfacets.visible_d_over_dot(i, m) * dot_i * jacobian};
+}
+
+}  // namespace
+
+BsdfValue evaluate(const Dielectric& d, const Vec3& wi, const Vec3& wo, Transport transport, BsdfParts parts) {
+  if (is_smooth(d) || wi.z == 0 || wo.z == 0) return {};
+  if ((wi.z > 0) == (wo.z > 0)) return evaluate_reflection(d, wi, wo, parts);
+  BsdfValue value;
+  if (parts.f || parts.pdf) value = evaluate_refraction(d, wi, wo, transport);
+  if (parts.pdf_reverse) value.pdf_reverse = evaluate_refraction(d, wo, wi, transport).pdf;
+  return value;
 }
 
 std::optional<BsdfSample> sample(const Dielectric& d, const Vec3& wi, float u_lobe, const Vec2& u,

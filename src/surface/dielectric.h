@@ -28,10 +28,8 @@ inline bool is_smooth(const Dielectric& d) { return d.eta == 1.0f || effectively
 
 // Functions of every closure: meanings, units and conventions as for `Bsdf` (bsdf.h).
 
-Spectrum eval(const Dielectric& d, const Vec3& wi, const Vec3& wo, Transport transport);
-float pdf(const Dielectric& d, const Vec3& wi, const Vec3& wo);
+BsdfValue evaluate(const Dielectric& d, const Vec3& wi, const Vec3& wo, Transport transport, BsdfParts parts);
 std::optional<BsdfSample> sample(const Dielectric& d, const Vec3& wi, float u_lobe, const Vec2& u, Transport transport);
-inline float pdf_reverse(const Dielectric& d, const Vec3& wi, const Vec3& wo) { return pdf(d, wo, wi); }
 Spectrum albedo(const Dielectric& d, const Vec3& wi);
 inline LobeWeights lobe_weights(const Dielectric& d, const Vec3& /*any*/) {
   return is_smooth(d) ? LobeWeights{.delta = 1} : microfacet_lobe(d.alpha_x, d.alpha_y);

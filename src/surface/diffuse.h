@@ -31,12 +31,10 @@ inline bool is_smooth(const Diffuse& /*any*/) { return false; }
 
 // Functions of every closure: meanings, units and conventions as for `Bsdf` (bsdf.h).
 
-inline Spectrum eval(const Diffuse& d, const Vec3& wi, const Vec3& wo, Transport /*both are equal*/) {
-  return same_hemisphere(wi, wo) ? d.reflectance * inv_pi : Spectrum();
-}
-
-inline float pdf(const Diffuse& /*any*/, const Vec3& wi, const Vec3& wo) {
-  return same_hemisphere(wi, wo) ? pdf_cosine_hemisphere(abs_cos_theta(wo)) : 0.0f;
+inline BsdfValue evaluate(const Diffuse& d, const Vec3& wi, const Vec3& wo, Transport /*both are equal*/,
+                          BsdfParts /*all*/) {
+  if (!same_hemisphere(wi, wo)) return {};
+  return {d.reflectance * inv_pi, pdf_cosine_hemisphere(abs_cos_theta(wo)), pdf_cosine_hemisphere(abs_cos_theta(wi))};
 }
 
 inline std::optional<BsdfSample> sample(const Diffuse& d, const Vec3& wi, float /*u_lobe: one lobe*/, const Vec2& u,
@@ -58,13 +56,12 @@ inline float reflection_probability(const DiffuseTransmission& d) {
   return r > 0 ? r / (r + t) : 0.0f;
 }
 
-inline Spectrum eval(const DiffuseTransmission& d, const Vec3& wi, const Vec3& wo, Transport /*both are equal*/) {
-  return (same_hemisphere(wi, wo) ? d.reflectance : d.transmittance) * inv_pi;
-}
-
-inline float pdf(const DiffuseTransmission& d, const Vec3& wi, const Vec3& wo) {
-  const float p = reflection_probability(d);
-  return pdf_cosine_hemisphere(abs_cos_theta(wo)) * (same_hemisphere(wi, wo) ? p : 1.0f - p);
+inline BsdfValue evaluate(const DiffuseTransmission& d, const Vec3& wi, const Vec3& wo, Transport /*both are equal*/,
+                          BsdfParts /*all*/) {
+  const bool reflected = same_hemisphere(wi, wo);
+  const float p = reflection_probability(d), p_lobe = reflected ? p : 1.0f - p;
+  return {(reflected ? d.reflectance : d.transmittance) * inv_pi, pdf_cosine_hemisphere(abs_cos_theta(wo)) * p_lobe,
+          pdf_cosine_hemisphere(abs_cos_theta(wi)) * p_lobe};
 }
 
 inline std::optional<BsdfSample> sample(const DiffuseTransmission& d, const Vec3& wi, float u_lobe, const Vec2& u,
@@ -82,7 +79,6 @@ inline std::optional<BsdfSample> sample(const DiffuseTransmission& d, const Vec3
                     .transmission = !reflected};
 }
 
-inline float pdf_reverse(const Diffuse& d, const Vec3& wi, const Vec3& wo) { return pdf(d, wo, wi); }
 inline Spectrum albedo(const Diffuse& d, const Vec3& /*any*/) { return d.reflectance; }
 inline LobeWeights lobe_weights(const Diffuse& d, const Vec3& /*any*/) {
   return {.diffuse = d.reflectance.is_black() ? 0.0f : 1.0f};
@@ -91,7 +87,6 @@ inline bool has_non_delta(const Diffuse& d) { return !d.reflectance.is_black(); 
 inline bool is_dispersive(const Diffuse& /*any*/) { return false; }
 inline SplitTerms split_terms(const Diffuse& d, const Vec3& /*any*/) { return {.diffuse = d.reflectance}; }
 
-inline float pdf_reverse(const DiffuseTransmission& d, const Vec3& wi, const Vec3& wo) { return pdf(d, wo, wi); }
 inline Spectrum albedo(const DiffuseTransmission& d, const Vec3& /*any*/) { return d.reflectance + d.transmittance; }
 inline bool has_non_delta(const DiffuseTransmission& d) {
   return !d.reflectance.is_black() || !d.transmittance.is_black();

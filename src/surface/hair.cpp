@@ -114,25 +114,18 @@ Lobes::Lobes(const Hair& hair, float offset, const Vec3& w) : phi(azimuth(w)) {
   for (std::size_t p = 0; p <= last_lobe; ++p) probability[p] = sum_of(attenuation[p]) / total;
 }
 
-// f for the eye's direction, whose ray has this offset, and the light's.
-Spectrum seen(const Hair& hair, float offset, const Vec3& eye, const Vec3& light) {
-  const Inclination i = inclination(light);
-  if (!(i.cos > 0)) return {};
-  const Lobes lobes(hair, offset, eye);
-  const float phi = azimuth(light);
-  Spectrum sum;
-  for (std::size_t p = 0; p <= last_lobe; ++p)
-    sum += longitudinal(lobes.o[p], i, lobes.variance[p]) * lobes.azimuthal(p, phi) * lobes.attenuation[p];
-  return sum / i.cos;
-}
-
-// Density with which a direction is sampled from the lobes around another.
-float density(const Lobes& lobes, const Vec3& wo) {
-  const Inclination i = inclination(wo);
-  const float phi = azimuth(wo);
-  float sum = 0;
-  for (std::size_t p = 0; p <= last_lobe; ++p)
-    sum += longitudinal(lobes.o[p], i, lobes.variance[p]) * lobes.azimuthal(p, phi) * lobes.probability[p];
+// f if the lobes are those of the eye's direction and `w` leads to the light, and the density with which w is sampled
+// from the lobes.
+BsdfValue evaluate(const Lobes& lobes, const Vec3& w) {
+  const Inclination i = inclination(w);
+  const float phi = azimuth(w);
+  BsdfValue sum;
+  for (std::size_t p = 0; p <= last_lobe; ++p) {
+    const float shape = longitudinal(lobes.o[p], i, lobes.variance[p]) * lobes.azimuthal(p, phi);
+    sum.f += shape * lobes.attenuation[p];
+    sum.pdf += shape * lobes.probability[p];
+  }
+  sum.f = i.cos > 0 ? sum.f / i.cos : Spectrum();
   return sum;
 }
 
@@ -150,6 +143,19 @@ bool draws_sign(const Hair& hair, Transport transport) {
   return hair.is_on_surface && transport == Transport::importance;
 }
 
+// Density with which a walk from a light chooses wo.
+float pdf_of_light_walk(const Hair& hair, const Vec3& wi, const Vec3& wo) {
+  const float offset = turning_offset(hair, wi, Transport::importance);
+  const float own = evaluate(Lobes(hair, offset, wi), wo).pdf;
+  return draws_sign(hair, Transport::importance) ? 0.5f * (own + evaluate(Lobes(hair, -offset, wi), wo).pdf) : own;
+}
+
+// The hair as a walk meets it that follows the path the other way.
+Hair reversed(Hair hair) {
+  std::swap(hair.h, hair.h_out);
+  return hair;
+}
+
 }  // namespace
 
 float hair_absorption(float reflectance, float n) {
@@ -159,26 +165,15 @@ float hair_absorption(float reflectance, float n) {
   return sqr(log / divisor);
 }
 
-Hair reversed(Hair hair) {
-  std::swap(hair.h, hair.h_out);
-  return hair;
-}
-
 // The model describes light as the eye sees it: absorption depends on the eye's inclination, so reversing the path
 // changes f. For light paths, f is evaluated with the roles of the directions exchanged.
-Spectrum eval(const Hair& hair, const Vec3& wi, const Vec3& wo, Transport transport) {
-  const bool from_eye = transport == Transport::radiance;
-  const Vec3 &eye = from_eye ? wi : wo, &light = from_eye ? wo : wi;
-  return seen(hair, seen_along(hair, eye, from_eye ? hair.h : hair.h_out), eye, light);
-}
-
-float pdf_of(const Hair& hair, const Vec3& wi, const Vec3& wo, Transport transport) {
-  const float offset = turning_offset(hair, wi, transport), own = density(Lobes(hair, offset, wi), wo);
-  return draws_sign(hair, transport) ? 0.5f * (own + density(Lobes(hair, -offset, wi), wo)) : own;
-}
-
-float pdf_reverse(const Hair& hair, const Vec3& wi, const Vec3& wo) {
-  return pdf_of(reversed(hair), wo, wi, Transport::importance);
+BsdfValue evaluate(const Hair& hair, const Vec3& wi, const Vec3& wo, Transport transport, BsdfParts parts) {
+  if (transport == Transport::importance)
+    return reversed(evaluate(reversed(hair), wo, wi, Transport::radiance, reversed(parts)));
+  BsdfValue value;
+  if (parts.f || parts.pdf) value = evaluate(Lobes(hair, turning_offset(hair, wi, transport), wi), wo);
+  if (parts.pdf_reverse) value.pdf_reverse = pdf_of_light_walk(reversed(hair), wo, wi);
+  return value;
 }
 
 std::optional<BsdfSample> sample(const Hair& hair, const Vec3& wi, float u_lobe, const Vec2& u, Transport transport) {
@@ -204,12 +199,17 @@ std::optional<BsdfSample> sample(const Hair& hair, const Vec3& wi, float u_lobe,
   const float phi = lobes.phi + turn;
   const Vec3 wo(sin_i, cos_i * std::cos(phi), cos_i * std::sin(phi));
 
-  const float pdf = draws_sign(hair, transport) ? pdf_of(hair, wi, wo, transport) : density(lobes, wo);
-  if (!(pdf > 0) || !(cos_i > 0)) return std::nullopt;
-  return BsdfSample{.wo = wo,
-                    .weight = eval(hair, wi, wo, transport) * (cos_i / pdf),
-                    .pdf = pdf,
-                    .transmission = !same_hemisphere(wi, wo)};
+  if (!(cos_i > 0)) return std::nullopt;
+  // The lobes have the density, unless the sign was drawn, and f for a walk from the eye.
+  const bool sign_is_known = !draws_sign(hair, transport);
+  BsdfValue value = sign_is_known ? evaluate(lobes, wo) : BsdfValue();
+  if (transport == Transport::importance) {
+    const BsdfValue seen = evaluate(hair, wi, wo, transport, {.f = true, .pdf = !sign_is_known});
+    value = {seen.f, sign_is_known ? value.pdf : seen.pdf};
+  }
+  std::optional<BsdfSample> s = sample_of_all(wo, cos_i, value);
+  if (s) s->transmission = !same_hemisphere(wi, wo);
+  return s;
 }
 
 Spectrum albedo(const Hair& hair, const Vec3& wi) {

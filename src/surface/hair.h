@@ -13,7 +13,7 @@ namespace lanthorn {
 /// A hair or a strand of fur: a dielectric cylinder with absorption inside (Chiang, Bitterli, Tappan, Burley 2016, "A
 /// Practical and Controllable Hair and Fur Model for Production Path Tracing"; Marschner et al. 2003). The frame's x
 /// axis runs along the hair. Light is scattered in all directions. The hair is a line whose width faces every
-/// direction, so `eval` must be multiplied by the cosine of the inclination to the plane across the hair, not the
+/// direction, so f must be multiplied by the cosine of the inclination to the plane across the hair, not the
 /// cosine to z (Marschner et al. 2003, eq. 1).
 ///
 /// f depends on the offset at which the eye's ray meets the hair; light arrives over the whole width alike. Each ray
@@ -39,14 +39,7 @@ float hair_absorption(float reflectance, float beta_n);
 
 // Functions of every closure: meanings, units and conventions as for `Bsdf` (bsdf.h).
 
-Spectrum eval(const Hair& hair, const Vec3& wi, const Vec3& wo, Transport transport);
-/// The hair as a walk meets it that follows the path the other way.
-Hair reversed(Hair hair);
-
-/// Density with which a walk of this kind chooses `wo`; `pdf` is that of a walk from the eye.
-float pdf_of(const Hair& hair, const Vec3& wi, const Vec3& wo, Transport transport);
-inline float pdf(const Hair& hair, const Vec3& wi, const Vec3& wo) { return pdf_of(hair, wi, wo, Transport::radiance); }
-float pdf_reverse(const Hair& hair, const Vec3& wi, const Vec3& wo);
+BsdfValue evaluate(const Hair& hair, const Vec3& wi, const Vec3& wo, Transport transport, BsdfParts parts);
 std::optional<BsdfSample> sample(const Hair& hair, const Vec3& wi, float u_lobe, const Vec2& u, Transport transport);
 Spectrum albedo(const Hair& hair, const Vec3& wi);
 /// Glossy and narrow, so that no cache gathers over a surface neighbourhood on a hair.
@@ -57,7 +50,5 @@ inline SplitTerms split_terms(const Hair& /*any*/, const Vec3& /*any*/) { return
 
 /// |cos| of a direction to the plane perpendicular to the hair.
 inline float cosine_across_fibre(const Vec3& w) { return safe_sqrt(1 - sqr(w.x)); }
-
-inline bool is_smooth(const Hair& /*any*/) { return false; }
 
 }  // namespace lanthorn

@@ -185,23 +185,23 @@ Spectrum MeasuredBrdf::reflectance(const Place& place, const Wavelengths& w) con
   });
 }
 
-Spectrum MeasuredBrdf::eval(const Vec3& any_view, const Vec3& any_light, const Wavelengths& w) const {
-  const Vec3 signs = symmetry_signs(any_view, data_->symmetry);
-  const Vec3 view = signs * any_view, light = signs * any_light;
-  const std::optional<Place> place = find(view, light);
-  return place ? reflectance(*place, w) * (factor(view, *place) / light.z) : Spectrum();
-}
-
 float MeasuredBrdf::sampling_pdf(const Vec3& view, const Place& place) const {
   const float p = place.vndf_pdf * luminance_.pdf(place.warped, place.blend);
   const float jacobian = 4 * dot(view, place.m) * solid_angle(place.normal, place.m);
   return p > 0 && jacobian > 0 ? p / jacobian : 0.0f;
 }
 
-float MeasuredBrdf::pdf(const Vec3& any_view, const Vec3& any_light) const {
+BsdfValue MeasuredBrdf::evaluate(const Vec3& any_view, const Vec3& any_light, const Wavelengths& w,
+                                 BsdfParts parts) const {
+  BsdfValue value;
+  if (!parts.f && !parts.pdf) return value;
   const Vec3 signs = symmetry_signs(any_view, data_->symmetry);
-  const std::optional<Place> place = find(signs * any_view, signs * any_light);
-  return place ? sampling_pdf(signs * any_view, *place) : 0.0f;
+  const Vec3 view = signs * any_view, light = signs * any_light;
+  const std::optional<Place> place = find(view, light);
+  if (!place) return value;
+  if (parts.f) value.f = reflectance(*place, w) * (factor(view, *place) / light.z);
+  if (parts.pdf) value.pdf = sampling_pdf(view, *place);
+  return value;
 }
 
 std::optional<MeasuredBrdf::Place> MeasuredBrdf::draw(const Vec3& view, const Vec2& u) const {
@@ -289,13 +289,13 @@ float side_of(const Vec3& w) { return std::copysign(1.0f, w.z); }
 
 }  // namespace
 
-Spectrum eval(const Measured& m, const Vec3& wi, const Vec3& wo, Transport transport) {
-  const float side = side_of(wi);
-  const bool from_eye = transport == Transport::radiance;
-  return m.brdf->eval(side * (from_eye ? wi : wo), side * (from_eye ? wo : wi), m.wavelengths);
+BsdfValue evaluate(const Measured& m, const Vec3& wi, const Vec3& wo, Transport transport, BsdfParts parts) {
+  if (transport == Transport::importance) return reversed(evaluate(m, wo, wi, Transport::radiance, reversed(parts)));
+  const Vec3 i = side_of(wi) * wi, o = side_of(wi) * wo;
+  BsdfValue value = m.brdf->evaluate(i, o, m.wavelengths, parts);
+  value.pdf_reverse = m.brdf->evaluate(o, i, m.wavelengths, {.pdf = parts.pdf_reverse}).pdf;
+  return value;
 }
-
-float pdf(const Measured& m, const Vec3& wi, const Vec3& wo) { return m.brdf->pdf(side_of(wi) * wi, side_of(wi) * wo); }
 
 std::optional<BsdfSample> sample(const Measured& m, const Vec3& wi, float /*u_lobe: one lobe*/, const Vec2& u,
                                  Transport transport) {
@@ -304,9 +304,7 @@ std::optional<BsdfSample> sample(const Measured& m, const Vec3& wi, float /*u_lo
   const std::optional<Vec3> drawn = m.brdf->sample(side * wi, u);
   if (!drawn) return std::nullopt;
   const Vec3 wo = side * *drawn;
-  const float density = pdf(m, wi, wo);
-  if (!(density > 0)) return std::nullopt;
-  return BsdfSample{.wo = wo, .weight = eval(m, wi, wo, transport) * (abs_cos_theta(wo) / density), .pdf = density};
+  return sample_of_all(wo, abs_cos_theta(wo), evaluate(m, wi, wo, transport, {.f = true, .pdf = true}));
 }
 
 Spectrum albedo(const Measured& m, const Vec3& wi) { return m.brdf->albedo(side_of(wi) * wi, m.wavelengths); }

@@ -22,9 +22,8 @@ class MeasuredBrdf {
   /// samples for each incident direction.
   explicit MeasuredBrdf(const MeasuredData& data, int albedo_side = 12);
 
-  Spectrum eval(const Vec3& view, const Vec3& light, const Wavelengths& w) const;
-  /// Density of `sample`, per solid angle of `light`.
-  float pdf(const Vec3& view, const Vec3& light) const;
+  /// f, and the density of `sample` per solid angle of `light`; without `pdf_reverse`.
+  BsdfValue evaluate(const Vec3& view, const Vec3& light, const Wavelengths& w, BsdfParts parts) const;
   /// Samples `light` according to the measured luminance; nullopt if it would lie below the surface.
   std::optional<Vec3> sample(const Vec3& view, const Vec2& u) const;
   /// Approximate fraction of light that is reflected, in [0,1].
@@ -67,10 +66,8 @@ struct Measured {
 // are only approximately reciprocal. `importance` uses the value of `radiance` with the directions exchanged, so that
 // light paths and eye paths see the same surface.
 
-Spectrum eval(const Measured& m, const Vec3& wi, const Vec3& wo, Transport transport);
-float pdf(const Measured& m, const Vec3& wi, const Vec3& wo);
+BsdfValue evaluate(const Measured& m, const Vec3& wi, const Vec3& wo, Transport transport, BsdfParts parts);
 std::optional<BsdfSample> sample(const Measured& m, const Vec3& wi, float u_lobe, const Vec2& u, Transport transport);
-inline float pdf_reverse(const Measured& m, const Vec3& wi, const Vec3& wo) { return pdf(m, wo, wi); }
 Spectrum albedo(const Measured& m, const Vec3& wi);
 inline LobeWeights lobe_weights(const Measured& m, const Vec3& /*any*/) {
   return {.glossy = 1, .alpha = m.brdf->alpha()};

@@ -83,4 +83,31 @@ class TrowbridgeReitz {
   float ay_;
 };
 
+/// Reflection between two directions above the surface, by the microfacet half-way between them: what f and both
+/// densities share.
+class HalfwayReflection {
+ public:
+  HalfwayReflection(const TrowbridgeReitz& microfacets, const Vec3& i, const Vec3& o)
+      : m_(normalize(i + o)),
+        d_(microfacets.d(m_)),
+        i_(i),
+        o_(o),
+        length_i_(microfacets.stretched_length(i)),
+        length_o_(microfacets.stretched_length(o)) {}
+
+  float cos_i() const { return dot(i_, m_); }
+  float cos_o() const { return dot(o_, m_); }
+  /// f without the Fresnel factor [W07 eq. 20].
+  float f() const { return 0.25f * d_ * (2 / (o_.z * length_i_ + i_.z * length_o_)); }
+  /// Density of sampling o from i by a normal visible from i, and of i from o.
+  float pdf() const { return 0.25f * (2 * d_ / (i_.z + length_i_)); }
+  float pdf_reverse() const { return 0.25f * (2 * d_ / (o_.z + length_o_)); }
+
+ private:
+  Normal m_;
+  float d_;
+  Vec3 i_, o_;
+  float length_i_, length_o_;
+};
+
 }  // namespace lanthorn

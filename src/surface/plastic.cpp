@@ -141,33 +141,39 @@ Spectrum fresnel(const Plastic& p, float cos) {
 
 /// Calls `f` with the albedo of the reflection.
 template <class F>
-Spectrum with_albedo(const Plastic& p, const F& f) {
+auto with_albedo(const Plastic& p, const F& f) {
   if (!p.film) return f(ReflectionAlbedo<2>(schlick_table(), {p.f0, Spectrum(p.f90)}, p.alpha));
   std::array<Spectrum, film_nodes> values;
   for (std::size_t k = 0; k < film_nodes; ++k) values[k] = fresnel(p, sqr(static_cast<float>(k) / (film_nodes - 1)));
   return f(ReflectionAlbedo<film_nodes>(film_table(), values, p.alpha));
 }
 
-Spectrum diffuse(const Plastic& p, float cos_i, float cos_o) {
+// Probability of sampling the reflection, of the albedo `e`, rather than the base.
+float specular_probability(const Plastic& p, const Spectrum& e) {
+  return lobe_probability(max_component(e), p.alpha, max_component((Spectrum(1) - e) * p.reflectance));
+}
+
+// The base's f, and the probabilities of sampling the reflection from either direction.
+struct BaseValue {
+  Spectrum f{};
+  float specular_i = 1, specular_o = 1;
+};
+
+BaseValue evaluate_base(const Plastic& p, float cos_i, float cos_o, BsdfParts parts) {
   if (p.reflectance.is_black()) return {};
   return with_albedo(p, [&](const auto& reflection) {
+    BaseValue value;
     const Spectrum one(1);
-    const Spectrum rest = map(one - reflection.mean(), [](float x) { return std::max(x, 1e-6f); });
-    return p.reflectance * inv_pi * (one - reflection.at(cos_i)) * (one - reflection.at(cos_o)) / rest;
+    const Spectrum e_i = parts.f || parts.pdf ? reflection.at(cos_i) : one;
+    const Spectrum e_o = parts.f || parts.pdf_reverse ? reflection.at(cos_o) : one;
+    if (parts.f) {
+      const Spectrum rest = map(one - reflection.mean(), [](float x) { return std::max(x, 1e-6f); });
+      value.f = p.reflectance * inv_pi * (one - e_i) * (one - e_o) / rest;
+    }
+    if (parts.pdf) value.specular_i = specular_probability(p, e_i);
+    if (parts.pdf_reverse) value.specular_o = specular_probability(p, e_o);
+    return value;
   });
-}
-
-Spectrum specular(const Plastic& p, const Vec3& i, const Vec3& o) {
-  const Normal m = normalize(i + o);
-  const TrowbridgeReitz microfacets(p.alpha, p.alpha);
-  return fresnel(p, dot(i, m)) * (0.25f * microfacets.d(m) * microfacets.g_over_cosines(i, o));
-}
-
-// Probability of sampling the reflection rather than the base.
-float specular_probability(const Plastic& p, float cos_i) {
-  if (p.reflectance.is_black()) return 1;
-  const Spectrum e = specular_albedo(p, cos_i);
-  return lobe_probability(max_component(e), p.alpha, max_component((Spectrum(1) - e) * p.reflectance));
 }
 
 }  // namespace
@@ -176,30 +182,25 @@ Spectrum specular_albedo(const Plastic& p, float cos) {
   return with_albedo(p, [&](const auto& reflection) { return reflection.at(cos); });
 }
 
-Spectrum eval(const Plastic& p, const Vec3& wi, const Vec3& wo, Transport /*symmetric*/) {
-  if (!same_hemisphere(wi, wo)) return Spectrum();
+BsdfValue evaluate(const Plastic& p, const Vec3& wi, const Vec3& wo, Transport /*symmetric*/, BsdfParts parts) {
+  if (!same_hemisphere(wi, wo)) return {};
   const float side = std::copysign(1.0f, wi.z);
   const Vec3 i = side * wi, o = side * wo;
-  const Spectrum below = diffuse(p, i.z, o.z);
-  return is_smooth(p) ? below : below + specular(p, i, o);
-}
-
-float pdf(const Plastic& p, const Vec3& wi, const Vec3& wo) {
-  if (!same_hemisphere(wi, wo)) return 0;
-  const float side = std::copysign(1.0f, wi.z);
-  const Vec3 i = side * wi, o = side * wo;
-  const float choose = specular_probability(p, i.z);
-  const float below = (1 - choose) * pdf_cosine_hemisphere(o.z);
+  const BaseValue base = evaluate_base(p, i.z, o.z, parts);
+  const BsdfValue below{base.f, (1 - base.specular_i) * pdf_cosine_hemisphere(o.z),
+                        (1 - base.specular_o) * pdf_cosine_hemisphere(i.z)};
   if (is_smooth(p)) return below;
-  const TrowbridgeReitz microfacets(p.alpha, p.alpha);
-  return below + choose * 0.25f * microfacets.visible_d_over_dot(i, normalize(i + o));
+  const HalfwayReflection reflection({p.alpha, p.alpha}, i, o);
+  return {parts.f ? below.f + fresnel(p, reflection.cos_i()) * reflection.f() : Spectrum(),
+          below.pdf + base.specular_i * reflection.pdf(),
+          below.pdf_reverse + base.specular_o * reflection.pdf_reverse()};
 }
 
 std::optional<BsdfSample> sample(const Plastic& p, const Vec3& wi, float u_lobe, const Vec2& u, Transport transport) {
   if (wi.z == 0) return std::nullopt;
   const float side = std::copysign(1.0f, wi.z);
   const Vec3 i = side * wi;
-  const float choose = specular_probability(p, i.z);
+  const float choose = evaluate_base(p, i.z, i.z, {.pdf = true}).specular_i;
   Vec3 o;
   if (u_lobe < choose) {
     if (is_smooth(p))
@@ -211,9 +212,7 @@ std::optional<BsdfSample> sample(const Plastic& p, const Vec3& wi, float u_lobe,
     o = sample_cosine_hemisphere(u);
   }
   if (o.z <= 0) return std::nullopt;
-  const float density = pdf(p, wi, side * o);
-  if (!(density > 0)) return std::nullopt;
-  return BsdfSample{.wo = side * o, .weight = eval(p, wi, side * o, transport) * (o.z / density), .pdf = density};
+  return sample_of_all(side * o, o.z, evaluate(p, wi, side * o, transport, {.f = true, .pdf = true}));
 }
 
 Spectrum albedo(const Plastic& p, const Vec3& wi) {

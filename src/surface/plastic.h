@@ -36,11 +36,8 @@ Spectrum specular_albedo(const Plastic& p, float cos);
 
 // Functions of every closure: meanings, units and conventions as for `Bsdf` (bsdf.h).
 
-Spectrum eval(const Plastic& p, const Vec3& wi, const Vec3& wo, Transport transport);
-float pdf(const Plastic& p, const Vec3& wi, const Vec3& wo);
+BsdfValue evaluate(const Plastic& p, const Vec3& wi, const Vec3& wo, Transport transport, BsdfParts parts);
 std::optional<BsdfSample> sample(const Plastic& p, const Vec3& wi, float u_lobe, const Vec2& u, Transport transport);
-
-inline float pdf_reverse(const Plastic& p, const Vec3& wi, const Vec3& wo) { return pdf(p, wo, wi); }
 Spectrum albedo(const Plastic& p, const Vec3& wi);
 LobeWeights lobe_weights(const Plastic& p, const Vec3& wi);
 inline bool has_non_delta(const Plastic& p) { return !is_smooth(p) || !p.reflectance.is_black(); }

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <optional>
 
 #include "math/vec.h"
 #include "spectrum/spectrum.h"
@@ -17,6 +18,9 @@ enum class Transport : std::uint8_t { radiance, importance };
 struct ClosureTraits {
   bool is_fibre;   ///< scatters all around a line: cosines are to the plane across it, and it has no area
   bool transmits;  ///< light may continue behind the surface, in the medium there
+
+  /// True if all light leaves a surface on the side on which it arrives.
+  constexpr bool is_opaque() const { return !is_fibre && !transmits; }
 };
 
 /// A direction sampled from a closure.
@@ -25,21 +29,34 @@ struct BsdfSample {
   Spectrum weight{};          ///< f * cosine(wo) / pdf, to be multiplied into the throughput; delta lobes included
   float pdf = 0;              ///< per solid angle; for a delta lobe the probability of choosing the lobe
   float eta = 1;              ///< index ratio (side of wo) / (side of wi); 1 for reflection and thin interfaces
-  bool delta = false;         ///< from a delta lobe: `pdf` and `eval` do not include this pdf and weight
+  bool delta = false;         ///< from a delta lobe: `evaluate` does not include this pdf and weight
   bool transmission = false;  ///< wo lies on the other side
-  bool pdf_is_exact = true;   ///< false if `pdf` is not the density of wo but the approximation that `pdf()` returns
+  bool pdf_is_exact = true;   ///< false if `pdf` is not the density of wo but the approximation of `evaluate`
 };
 
-/// f(wi, wo) and the density of sampling wo.
+/// How a closure scatters between wi and wo; for the meaning of each part see `evaluate` in bsdf.h.
 struct BsdfValue {
-  Spectrum f{};   ///< as from `eval`
-  float pdf = 0;  ///< as from `pdf`
+  Spectrum f{};           ///< 1/sr, without the cosine
+  float pdf = 0;          ///< of sampling wo from wi, per solid angle
+  float pdf_reverse = 0;  ///< of sampling wi from wo
 };
 
-/// The same, and the density in the reverse direction.
-struct BsdfValues : BsdfValue {
-  float pdf_reverse = 0;  ///< as from `pdf_reverse`
+/// The parts of a BsdfValue that a caller asks for. The others have any value: closures leave out what costs time.
+struct BsdfParts {
+  bool f = false, pdf = false, pdf_reverse = false;
 };
+inline constexpr BsdfParts all_parts{.f = true, .pdf = true, .pdf_reverse = true};
+
+/// A direction that some lobe has drawn, as a sample of all lobes: `value` has their f and pdf there. nullopt if the
+/// pdf is 0. `cos`: the cosine factor of wo.
+inline std::optional<BsdfSample> sample_of_all(const Vec3& wo, float cos, const BsdfValue& value) {
+  if (!(value.pdf > 0)) return std::nullopt;
+  return BsdfSample{.wo = wo, .weight = value.f * (cos / value.pdf), .pdf = value.pdf};
+}
+
+/// A value, and the question for it, as the walk sees them that follows the path the other way.
+constexpr BsdfValue reversed(const BsdfValue& v) { return {v.f, v.pdf_reverse, v.pdf}; }
+constexpr BsdfParts reversed(const BsdfParts& p) { return {p.f, p.pdf_reverse, p.pdf}; }
 
 /// GGX width at which following a lobe and gathering photons have about equal noise.
 inline constexpr float half_spread_alpha = 0.1f;

@@ -4,38 +4,25 @@
 
 namespace lanthorn {
 
-namespace {
-
-// Two directions above the pane and the facet between them. Transmitted light is mirrored to be above, too.
-struct Facet {
-  Vec3 i, o;
-  Normal m;
-  bool through;
-
-  Facet(const Vec3& wi, const Vec3& wo)
-      : i(std::copysign(1.0f, wi.z) * wi), o(std::copysign(1.0f, wi.z) * wo), m(0), through(o.z < 0) {
-    o.z = std::fabs(o.z);
-    m = normalize(i + o);
+BsdfValue evaluate(const ThinDielectric& d, const Vec3& wi, const Vec3& wo, Transport /*no refraction*/,
+                   BsdfParts parts) {
+  if (is_smooth(d) || wi.z == 0 || wo.z == 0) return {};
+  // Above the pane, to which transmitted light is mirrored.
+  const float side = std::copysign(1.0f, wi.z);
+  const bool through = side * wo.z < 0;
+  const HalfwayReflection facet({d.alpha_x, d.alpha_y}, side * wi, {side * wo.x, side * wo.y, std::fabs(wo.z)});
+  BsdfValue value;
+  if (parts.f || parts.pdf) {
+    const Spectrum r = thin_reflectance(d, facet.cos_i());
+    const float mean = mean_component(r);
+    value.f = through ? d.tint * (Spectrum(1) - r) * facet.f() : r * facet.f();
+    value.pdf = (through ? 1 - mean : mean) * facet.pdf();
   }
-};
-
-}  // namespace
-
-Spectrum eval(const ThinDielectric& d, const Vec3& wi, const Vec3& wo, Transport /*no refraction*/) {
-  if (is_smooth(d) || wi.z == 0 || wo.z == 0) return Spectrum();
-  const Facet facet(wi, wo);
-  const TrowbridgeReitz microfacets(d.alpha_x, d.alpha_y);
-  const Spectrum r = thin_reflectance(d, dot(facet.i, facet.m));
-  const float f = 0.25f * microfacets.d(facet.m) * microfacets.g_over_cosines(facet.i, facet.o);
-  return facet.through ? d.tint * (Spectrum(1) - r) * f : r * f;
-}
-
-float pdf(const ThinDielectric& d, const Vec3& wi, const Vec3& wo) {
-  if (is_smooth(d) || wi.z == 0 || wo.z == 0) return 0;
-  const Facet facet(wi, wo);
-  const float r = mean_component(thin_reflectance(d, dot(facet.i, facet.m)));
-  const TrowbridgeReitz microfacets(d.alpha_x, d.alpha_y);
-  return 0.25f * (facet.through ? 1 - r : r) * microfacets.visible_d_over_dot(facet.i, facet.m);
+  if (parts.pdf_reverse) {
+    const float mean = mean_component(thin_reflectance(d, facet.cos_o()));
+    value.pdf_reverse = (through ? 1 - mean : mean) * facet.pdf_reverse();
+  }
+  return value;
 }
 
 std::optional<BsdfSample> sample(const ThinDielectric& d, const Vec3& wi, float u_lobe, const Vec2& u,

@@ -37,12 +37,10 @@ inline Spectrum thin_reflectance(const ThinDielectric& d, float cos_i) {
 
 // Functions of every closure: meanings, units and conventions as for `Bsdf` (bsdf.h).
 
-Spectrum eval(const ThinDielectric& d, const Vec3& wi, const Vec3& wo, Transport transport);
-float pdf(const ThinDielectric& d, const Vec3& wi, const Vec3& wo);
+BsdfValue evaluate(const ThinDielectric& d, const Vec3& wi, const Vec3& wo, Transport transport, BsdfParts parts);
 std::optional<BsdfSample> sample(const ThinDielectric& d, const Vec3& wi, float u_lobe, const Vec2& u,
                                  Transport transport);
 
-inline float pdf_reverse(const ThinDielectric& d, const Vec3& wi, const Vec3& wo) { return pdf(d, wo, wi); }
 Spectrum albedo(const ThinDielectric& d, const Vec3& wi);
 inline LobeWeights lobe_weights(const ThinDielectric& d, const Vec3& /*any*/) {
   return microfacet_lobe(d.alpha_x, d.alpha_y);

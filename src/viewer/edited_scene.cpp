@@ -114,13 +114,8 @@ EditedScene::EditedScene(SharedScene scene, const std::map<std::string, float>& 
   }
 }
 
-void EditedScene::apply(SceneEdits edits) {
-  scene_ = edit_scene(*original_, edits);
-  edits_ = std::move(edits);
-}
-
-SceneEdits EditedScene::with_light(const LightRow& row) const {
-  SceneEdits edits = edits_;
+SceneDescription EditedScene::with_light(const LightRow& row) const {
+  SceneDescription edited = description();
   const SceneDescription& scene = description_of(*original_);
   const Rgb before = rows_of(scene)[row.is_area ? scene.lights.size() + row.index : row.index].colour;
   const float factor = row.on ? row.strength : 0;
@@ -128,15 +123,15 @@ SceneEdits EditedScene::with_light(const LightRow& row) const {
     AreaLight light = scene.area_lights[row.index];
     scale_light(light, factor);
     if (row.has_colour) light.radiance.value = coloured(light.radiance.value, before, row.colour);
-    edits.area_lights[row.index] = std::move(light);
-    return edits;
+    edited.area_lights[row.index] = std::move(light);
+    return edited;
   }
   Light light = scene.lights[row.index];
   scale_light(light, factor);
   if (row.has_colour) colour_light(light, before, row.colour);
   if (row.position) light.light_to_world = translate(*row.position - *position_of(light)) * light.light_to_world;
-  edits.lights[row.index] = std::move(light);
-  return edits;
+  edited.lights[row.index] = std::move(light);
+  return edited;
 }
 
 void EditedScene::set_light(std::size_t row, const LightRow& values) {
@@ -157,13 +152,12 @@ void EditedScene::move_light(std::size_t row, const Vec3& metres) {
 }
 
 void EditedScene::move_instance(description::Index instance, const Vec3& metres) {
-  SceneEdits edits = edits_;
-  const AnimatedTransform& now = description_of(*scene_).instances.at(instance).object_to_world;
+  SceneDescription edited = description();
+  AnimatedTransform& place = edited.instances.at(instance).object_to_world;
   const Transform move = translate(metres);
-  edits.instances[instance] = now.is_moving()
-                                  ? AnimatedTransform(move * now.start, move * now.end, now.start_time, now.end_time)
-                                  : AnimatedTransform(move * now.start);
-  apply(std::move(edits));
+  place = place.is_moving() ? AnimatedTransform(move * place.start, move * place.end, place.start_time, place.end_time)
+                            : AnimatedTransform(move * place.start);
+  apply(std::move(edited));
 }
 
 }  // namespace lanthorn

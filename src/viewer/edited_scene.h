@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "lanthorn/scene.h"
@@ -35,9 +36,9 @@ class EditedScene {
 
   const SharedScene& scene() const { return scene_; }
   const std::vector<LightRow>& lights() const { return lights_; }
-  /// All edits since the scene was read; lights that are off have strength 0.
-  const SceneEdits& edits() const { return edits_; }
-  bool is_edited() const { return !edits_.lights.empty() || !edits_.area_lights.empty() || !edits_.instances.empty(); }
+  /// With all edits; lights that are off have strength 0.
+  const SceneDescription& description() const { return description_of(*scene_); }
+  bool is_edited() const { return scene_ != original_; }
 
   /// Sets a light's colour and strength, and whether it is on. Throws Error if the scene rejects this; nothing then
   /// changes.
@@ -48,12 +49,11 @@ class EditedScene {
   void move_instance(description::Index instance, const Vec3& metres);
 
  private:
-  void apply(SceneEdits edits);
-  SceneEdits with_light(const LightRow& row) const;
+  void apply(SceneDescription edited) { scene_ = build_scene(std::move(edited), scene_); }
+  SceneDescription with_light(const LightRow& row) const;
 
   SharedScene original_, scene_;
   std::vector<LightRow> lights_;
-  SceneEdits edits_;
 };
 
 }  // namespace lanthorn

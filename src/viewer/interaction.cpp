@@ -78,7 +78,7 @@ void Interaction::begin(Input input, const View& view, const Picker& picker, con
   }
   if (!panel.selected_object) return;
   const Ray ray = ray_through(view, input.pointer);
-  const auto hit = picker.pick(ray, scene.edits().instances);
+  const auto hit = picker.pick(ray, scene.description().instances);
   if (!hit || hit->instance != panel.selected_object) return;
   drag_ = Drag::object;
   drag_depth_ = depth_of(pose_, ray.origin + hit->distance * ray.direction);
@@ -88,7 +88,7 @@ void Interaction::select(const Input& input, const View& view, const Picker& pic
                          Panel& panel) const {
   panel.selected_light.reset();
   panel.selected_object.reset();
-  const auto hit = picker.pick(ray_through(view, input.pointer), scene.edits().instances);
+  const auto hit = picker.pick(ray_through(view, input.pointer), scene.description().instances);
   if (!hit) return;
   for (std::size_t i = 0; hit->area_light && i < scene.lights().size(); ++i)
     if (scene.lights()[i].is_area && scene.lights()[i].index == *hit->area_light) panel.selected_light = i;

@@ -45,7 +45,7 @@ std::optional<float> hit_triangle(const Point& origin, const Vec3& direction, co
   return distance;
 }
 
-Picker::Picker(const Scene& scene) : model_(model_of(scene)) {
+Picker::Picker(const Scene& scene) : model_(model_of(scene)), instances_(description_of(scene).instances) {
   const SceneDescription& description = description_of(scene);
   std::map<Place, description::Index> emitters;
   const auto note = [&](const std::vector<description::Shape>& shapes) {
@@ -64,13 +64,15 @@ Picker::Picker(const Scene& scene) : model_(model_of(scene)) {
 }
 
 std::optional<SurfacePick> Picker::pick(const Ray& ray,
-                                        const std::map<description::Index, AnimatedTransform>& moved) const {
+                                        const description::Table<description::Instance>& instances) const {
   std::optional<SurfacePick> nearest;
   float distance = infinity;
   for (const SceneModel::Instance& instance : model_.instances) {
     Transform to_world = instance.to_world;
-    if (instance.instance)
-      if (const auto place = moved.find(*instance.instance); place != moved.end()) to_world = place->second.start;
+    if (instance.instance && !instances.empty()) {
+      const AnimatedTransform& now = instances[*instance.instance].object_to_world;
+      if (!(now == instances_[*instance.instance].object_to_world)) to_world = now.start;
+    }
     // Not of unit length: distances are measured in world space.
     const Transform to_local = to_world.inverted();
     const Point origin = to_local.point(ray.origin);

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cstddef>
-#include <map>
 #include <optional>
 #include <vector>
 
@@ -26,14 +25,15 @@ class Picker {
  public:
   explicit Picker(const Scene& scene);
 
-  /// The nearest surface along the ray. `moved`: instances that are elsewhere than in the scene of the constructor.
+  /// The nearest surface along the ray. `instances`: those of the constructor's scene, if they may have moved since.
   std::optional<SurfacePick> pick(const Ray& ray,
-                                  const std::map<description::Index, AnimatedTransform>& moved = {}) const;
+                                  const description::Table<description::Instance>& instances = {}) const;
 
   const SceneModel& model() const { return model_; }
 
  private:
   SceneModel model_;
+  description::Table<description::Instance> instances_;
   std::vector<Bounds> boxes_;                                   // of the meshes
   std::vector<std::optional<description::Index>> area_lights_;  // of the meshes
 };

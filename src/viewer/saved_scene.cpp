@@ -139,23 +139,28 @@ class TextEditor {
 }  // namespace
 
 std::string edited_pbrt(std::string_view text, const SceneDescription& scene, const CameraPose& camera,
-                        const SceneEdits& edits) {
+                        const SceneDescription& edited) {
   TextEditor editor(text, scene);
   const Transform to_file = translate(scene.origin);
   editor.before(scene.view.camera.location, transform_text((to_file * camera.camera_to_world).inverted()) + "\n");
-  for (const auto& [index, light] : edits.lights) {
-    const description::Light& original = scene.lights.at(index);
+  for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+    const description::Light &light = edited.lights.at(i), &original = scene.lights[i];
+    if (light == original) continue;
     const bool has_moved = !(light.light_to_world == original.light_to_world);
     if (has_moved)
       editor.before(light.location, "AttributeBegin\n  " + transform_text(to_file * light.light_to_world) + "\n");
     editor.after(light.location, parameters_of(light, original) + (has_moved ? "\nAttributeEnd" : ""));
   }
   std::map<std::pair<int, int>, bool> done;  // shapes of one directive share their light's place
-  for (const auto& [index, light] : edits.area_lights)
-    if (!std::exchange(done[{light.location.line, light.location.column}], true))
-      editor.after(light.location, parameters_of(light, scene.area_lights.at(index)));
-  for (const auto& [index, place] : edits.instances) {
-    const SourceLocation& at = scene.instances.at(index).location;
+  for (std::size_t i = 0; i < scene.area_lights.size(); ++i) {
+    const description::AreaLight &light = edited.area_lights.at(i), &original = scene.area_lights[i];
+    if (!(light == original) && !std::exchange(done[{light.location.line, light.location.column}], true))
+      editor.after(light.location, parameters_of(light, original));
+  }
+  for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+    const AnimatedTransform& place = edited.instances.at(i).object_to_world;
+    if (place == scene.instances[i].object_to_world) continue;
+    const SourceLocation& at = scene.instances[i].location;
     editor.before(at, "AttributeBegin\n  " + transform_text(to_file * place.start) + "\n");
     editor.after(at, "\nAttributeEnd");
   }

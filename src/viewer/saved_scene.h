@@ -11,10 +11,10 @@
 
 namespace lanthorn {
 
-/// The text of a pbrt file with the camera in this place and with the edits; everything else stays letter by letter.
-/// `scene`: the description that was read from it. Throws Error if the file has no camera, or if an edited part is
-/// described in another file that it includes.
+/// The text of a pbrt file with the camera in this place and with edited lights, area lights and instances; everything
+/// else stays letter by letter. `scene`: the description that was read from it. Throws Error if the file has no camera,
+/// or if an edited part is described in another file that it includes.
 std::string edited_pbrt(std::string_view text, const SceneDescription& scene, const CameraPose& camera,
-                        const SceneEdits& edits);
+                        const SceneDescription& edited);
 
 }  // namespace lanthorn

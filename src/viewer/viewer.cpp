@@ -508,7 +508,7 @@ fs::path Viewer::save_scene() {
   if (!panel_.can_save_scene) throw Error("only scenes of pbrt files can be saved");
   std::ifstream file(options_.scene_file, std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(file), {}};
-  const std::string edited = edited_pbrt(text, description_of(*original_), interaction_.pose(), scene_.edits());
+  const std::string edited = edited_pbrt(text, description_of(*original_), interaction_.pose(), scene_.description());
   // Beside the scene, because file names in it are relative to that folder.
   const fs::path path = free_name(options_.scene_file.parent_path(), stem_of(options_.scene_file) + "-view", ".pbrt");
   write_file(path, std::as_bytes(std::span(edited)));

@@ -9,6 +9,7 @@
 
 #include "render/state.h"
 #include "support/temporary_dir.h"
+#include "support/whole_film.h"
 
 namespace lanthorn::checkpoint_test {
 namespace {
@@ -18,9 +19,8 @@ namespace fs = std::filesystem;
 
 RenderState state_of(std::uint64_t passes) {
   RenderState state;
-  state.film = Film(4, 4, 1);
+  test::set_film(state, Film(4, 4, 1));
   state.integrator = "path";
-  state.settings = R"({"identity": {"seed": 0}})";
   for (std::uint64_t pass = 0; pass < passes; ++pass) state.add_pass(pass);
   return state;
 }

@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The option table: printed values parse to the same values, and every entry has help.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <map>
 #include <set>
 
 #include "cli_fixture.h"
+#include "lanthorn/description_data.h"
 #include "render_command.h"
 
 namespace lanthorn::command_line_test {
@@ -140,6 +142,19 @@ TEST_F(CommandLine, EveryOptionSaysBrieflyWhatItIs) {
     EXPECT_TRUE(option.details.empty() || option.details.ends_with('.')) << option.details;
     EXPECT_FALSE(option.otherwise.ends_with('.')) << option.otherwise;
   }
+}
+
+TEST_F(CommandLine, AndPlainDataHaveAllOptionsOfTheList) {
+  RenderCommand arguments;
+  const OptionTable table = render_command_options(arguments);
+  for_each_render_option([&](const auto& listed) {
+    EXPECT_TRUE(std::any_of(table.begin(), table.end(), [&](const Option& option) {
+      return option.long_name() == flag_name(listed.name);
+    })) << listed.name;
+    plain::Dict data;
+    data.set(listed.name, {});
+    EXPECT_NO_THROW(options_of_data(data)) << listed.name;
+  });
 }
 
 TEST_F(CommandLine, IsQuotedForAShell) {

@@ -68,13 +68,13 @@ TEST_F(CliOptions, TakeNumbersWithUnits) {
   const Words base{"render", "tiny.pbrt", "-r", "8x8", "-q", "--force", "-o", "a.state"};
   const auto identity = [&](const Words& more) {
     succeed(base + more);
-    return nlohmann::json::parse(load_state(path("a.state")).settings)["identity"];
+    return load_state(path("a.state")).record.identity;
   };
-  EXPECT_EQ(identity({"-p", "1", "--photons", "0.5k"})["photons"], 500);
-  EXPECT_EQ(identity({"-p", "1", "--photons", "0.001M"})["photons"], 1000);
-  EXPECT_EQ(identity({"-p", "1", "--photons", "2e3"})["photons"], 2000);
-  EXPECT_EQ(identity({"-p", "1", "-i", "path", "--seed", "18446744073709551615"})["seed"], 18446744073709551615u);
-  EXPECT_EQ(identity({"-p", "0.003k", "-i", "path"})["integrator"], "path");
+  EXPECT_EQ(identity({"-p", "1", "--photons", "0.5k"}).photons, 500u);
+  EXPECT_EQ(identity({"-p", "1", "--photons", "0.001M"}).photons, 1000u);
+  EXPECT_EQ(identity({"-p", "1", "--photons", "2e3"}).photons, 2000u);
+  EXPECT_EQ(identity({"-p", "1", "-i", "path", "--seed", "18446744073709551615"}).seed, 18446744073709551615u);
+  EXPECT_EQ(identity({"-p", "0.003k", "-i", "path"}).integrator, "path");
   EXPECT_EQ(load_state(path("a.state")).pass_count(), 3u);
   succeed(base + Words{"-i", "path", "--pass-range", "1k:1.002k"});
   EXPECT_EQ(load_state(path("a.state")).passes, (std::vector<PassRange>{{1000, 1002}}));
@@ -275,8 +275,8 @@ TEST_F(CliOptions, ReproducibleFilesHoldNoFoldersAndDependOnNone) {
     EXPECT_FALSE(contains(bytes("c" + extension), "private")) << extension;
   }
   EXPECT_EQ(metadata_of("c.exr")["scene"], "s.pbrt");
-  const nlohmann::json names = nlohmann::json::parse(load_state(path("c.state")).settings)["identity"]["files"];
-  EXPECT_TRUE(names.contains("parts/part.pbrt") && names.contains("outside.pbrt")) << names;
+  const auto names = load_state(path("c.state")).record.identity.files;
+  EXPECT_TRUE(names.contains("parts/part.pbrt") && names.contains("outside.pbrt")) << testing::PrintToString(names);
   succeed(
       {"render", "two/deep/s.pbrt", "-i", "path", "-p", "2", "-r", "8x8", "-q", "--resume", "a.state", "-o", "e.exr"});
 }

@@ -36,13 +36,12 @@ class Printable : public Cli {
   void write_evil_state() const {
     succeed(render({"-i", "probppm", "-p", "1", "-r", "8x8", "-o", "good.state"}));
     RenderState state = load_state(path("good.state"));
-    nlohmann::json settings = nlohmann::json::parse(state.settings);
-    nlohmann::json& identity = settings["identity"];
-    identity["parameters"][evil] = evil;
-    identity["files"][evil] = evil;
-    for (const char* member : {"color", "version", "seed", "max_depth", "photons"}) identity[member] = evil;
-    settings["scene"] = evil;
-    state.settings = settings.dump();
+    RenderIdentity& identity = state.record.identity;
+    identity.parameters[evil] = evil;
+    identity.files[evil] = {evil};
+    identity.version = evil;
+    identity.others[evil] = nlohmann::json(evil).dump();
+    state.record.scene = evil;
     state.integrator = evil;
     save_state(state, path("evil.state"));
   }

@@ -62,7 +62,7 @@ void check_state(std::span<const std::byte> bytes) {
   check_round_trip(*state);
   const Image image = state->film.resolve(state->pass_count());
   require(image.width == state->film.width() && image.height == state->film.height(), "size of the picture");
-  require_same_identity(*state, state->settings, "t.state");
+  require_same_identity(*state, state->record.identity, "t.state");
   check_merge(*state);
 }
 

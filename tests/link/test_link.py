@@ -143,15 +143,35 @@ class LinkTest(unittest.TestCase):
         revision = self.client.request("update", remove={"instances": ["first"]})["revision"]
         self.assertAlmostEqual(mean(last_picture(self.client, revision=revision)), 1, delta=0.01)
 
-    def test_pictures_do_not_depend_on_the_way_to_the_scene(self):
-        self.start(scene(sky=1, reflectance=0.3))
-        revision = self.client.request("update", set=scene(sky=2, reflectance=0.6))["revision"]
+    def assert_as_from_the_start(self, revision, scene):
         edited = last_picture(self.client, revision=revision)
         with link.Link(PROGRAM) as other:
-            other.request("update", set=scene(sky=2, reflectance=0.6))
+            other.request("update", set=scene)
             other.request("start", options={"integrator": "path", "passes": 4})
             direct = last_picture(other)
         self.assertEqual(bytes(edited["pixels"].bytes), bytes(direct["pixels"].bytes))
+
+    def test_pictures_do_not_depend_on_the_way_to_the_scene(self):
+        self.start(scene(sky=1, reflectance=0.3))
+        revision = self.client.request("update", set=scene(sky=2, reflectance=0.6))["revision"]
+        self.assert_as_from_the_start(revision, scene(sky=2, reflectance=0.6))
+
+    def test_parts_that_did_not_change_are_those_of_the_last_scene(self):
+        self.start(scene())
+        now = scene()
+        now["camera"]["fov"] = 40
+        now["lights"]["lamp"] = {"type": "point", "from": [0.3, 0.2, 0.7]}
+        now["instances"]["first"]["object_to_world"] = raised(0.1)
+        now["materials"]["white"]["reflectance"] = 0.8
+        for table in ("camera", "lights", "instances", "materials"):
+            revision = self.client.request("update", set={table: now[table]})["revision"]
+            last_picture(self.client, revision=revision)
+        self.assert_as_from_the_start(revision, now)
+        # A new material changes the numbers of others: all is read again.
+        now["materials"]["black"] = {"type": "diffuse", "reflectance": 0}
+        now["objects"]["square"]["shapes"].append({"type": "sphere", "radius": 0.2, "material": "black"})
+        revision = self.client.request("update", set={"materials": now["materials"], "objects": now["objects"]})["revision"]
+        self.assert_as_from_the_start(revision, now)
 
     def test_textures_come_in_any_order(self):
         textured = scene()

@@ -210,7 +210,7 @@ Mean integrated_albedo(const Bsdf& bsdf, const Vec3& wi, int n) {
     Vec3 wo = sample_cosine_hemisphere(rng.next2());
     if (wo.z == 0) continue;
     wo.z = std::copysign(wo.z, wi.z);
-    mean.add(static_cast<double>(eval(bsdf, wi, wo, Transport::importance)[0] * pi));
+    mean.add(static_cast<double>(evaluate(bsdf, wi, wo, Transport::importance).f[0] * pi));
   }
   return mean;
 }
@@ -287,14 +287,14 @@ TEST(Coated, ClearPlasticHasAClosedForm) {
   }
 }
 
-/// Mean of `eval` of a stochastic closure over directions so close to wo that its expectation hardly differs between
+/// Mean of f of a stochastic closure over directions so close to wo that its expectation hardly differs between
 /// them.
 Mean mean_of_walks(CoatedDiffuse closure, const Vec3& wi, const Vec3& wo) {
   closure.n_samples = 30000;
   Mean mean;
   for (int i = 0; i < 32; ++i) {
     const Vec3 near = normalize(wo + Vec3(1e-6f * static_cast<float>(i), 0, 0));
-    mean.add(static_cast<double>(eval(closure, wi, near, Transport::importance)[0]));
+    mean.add(static_cast<double>(evaluate(closure, wi, near, Transport::importance).f[0]));
   }
   return mean;
 }
@@ -320,8 +320,8 @@ TEST(Coated, WalksBelowAClearCoatHaveAClosedForm) {
   for (const auto& [coat, thickness, max_depth] : cases) {
     const CoatPassage passage(coat, thickness);
     for (const auto& [wi, wo] : pairs) {
-      const double expected =
-          static_cast<double>(eval(ClearCoated{&passage, colour, max_depth / 2}, wi, wo, Transport::importance)[0]);
+      const double expected = static_cast<double>(
+          evaluate(ClearCoated{&passage, colour, max_depth / 2}, wi, wo, Transport::importance).f[0]);
       const CoatedDiffuse walking{.coat = coat, .base = {colour}, .thickness = thickness, .max_depth = max_depth};
       EXPECT_TRUE(test::agrees(mean_of_walks(walking, wi, wo), expected, z, 0.001))
           << coat.eta << ' ' << coat.alpha_x << ' ' << wi.z << ' ' << wo.z;
@@ -361,7 +361,10 @@ TEST(Coated, PdfIsAUsefulDensity) {
       const int n = 20000;
       for (int i = 0; i < n; ++i) {
         const Vec3 wo = sample_cosine_hemisphere(rng.next2());
-        if (wo.z > 0) integral += static_cast<double>(pdf(bsdf, wi, wo) / pdf_cosine_hemisphere(wo.z)) / n;
+        if (wo.z > 0)
+          integral += static_cast<double>(evaluate(bsdf, wi, wo, Transport::radiance, {.pdf = true}).pdf /
+                                          pdf_cosine_hemisphere(wo.z)) /
+                      n;
       }
       EXPECT_LT(integral, 1.03) << name;
       EXPECT_GT(integral, 0.4) << name;
@@ -519,8 +522,9 @@ TEST(Hair, WhiteFurnace) {
       Mean sampled;
       for (int i = 0; i < side * side; ++i) {
         const Vec3 wo = sample_uniform_sphere((Vec2(i % side, i / side) + 0.5f) / static_cast<float>(side));
-        integral += static_cast<double>(eval(hair, wi, wo, Transport::radiance)[0] * cosine_across_fibre(wo) * 4 * pi) /
-                    (side * side);
+        integral +=
+            static_cast<double>(evaluate(hair, wi, wo, Transport::radiance).f[0] * cosine_across_fibre(wo) * 4 * pi) /
+            (side * side);
         const float u_lobe = rng.next();
         const auto s = sample(hair, wi, u_lobe, rng.next2(), Transport::radiance);
         sampled.add(s ? static_cast<double>(s->weight[0]) : 0.0);
@@ -545,11 +549,13 @@ TEST(Hair, LightPathsScatterWhatIsSeen) {
           const float u_lobe = rng.next();
           const auto s = sample(of_light, wi, u_lobe, rng.next2(), Transport::importance);
           if (!s) continue;
-          const Spectrum seen = eval(of_eye, s->wo, wi, Transport::radiance) * (cosine_across_fibre(s->wo) / s->pdf);
+          const Spectrum seen =
+              evaluate(of_eye, s->wo, wi, Transport::radiance).f * (cosine_across_fibre(s->wo) / s->pdf);
           EXPECT_NEAR(s->weight[0], seen[0], 2e-3f * seen[0]);
-          EXPECT_EQ(s->pdf, pdf(of_light, wi, s->wo, Transport::importance));
-          EXPECT_EQ(pdf_reverse(of_eye, s->wo, wi, Transport::radiance), s->pdf);
-          EXPECT_EQ(pdf_reverse(of_light, wi, s->wo, Transport::importance), pdf(of_eye, s->wo, wi));
+          EXPECT_EQ(s->pdf, evaluate(of_light, wi, s->wo, Transport::importance, {.pdf = true}).pdf);
+          EXPECT_EQ(evaluate(of_eye, s->wo, wi, Transport::radiance, {.pdf_reverse = true}).pdf_reverse, s->pdf);
+          EXPECT_EQ(evaluate(of_light, wi, s->wo, Transport::importance, {.pdf_reverse = true}).pdf_reverse,
+                    evaluate(of_eye, s->wo, wi, Transport::radiance, {.pdf = true}).pdf);
         }
     }
 }
@@ -561,8 +567,10 @@ TEST(Hair, IsMirroredBelowASurface) {
   Hair turned = hairs[0];
   const Vec3 eye = at_angles(130, 40), light = at_angles(60, 90);
   turned.h = -turned.h;
-  EXPECT_EQ(eval(above, eye, light, Transport::radiance)[0], eval(turned, eye, light, Transport::radiance)[0]);
-  EXPECT_EQ(eval(above, light, eye, Transport::radiance)[0], eval(hairs[0], light, eye, Transport::radiance)[0]);
+  EXPECT_EQ(evaluate(above, eye, light, Transport::radiance).f[0],
+            evaluate(turned, eye, light, Transport::radiance).f[0]);
+  EXPECT_EQ(evaluate(above, light, eye, Transport::radiance).f[0],
+            evaluate(hairs[0], light, eye, Transport::radiance).f[0]);
 }
 
 // The density of the reverse direction is nearly equal to the density of the forward one: on the way back, each lobe
@@ -575,7 +583,8 @@ TEST(Hair, WayBackIsInTheSameLobes) {
     const float u_lobe = rng.next();
     const auto s = sample(hair, at_angles(60, 40), u_lobe, rng.next2(), Transport::radiance);
     if (!s) continue;
-    const float ratio = pdf_reverse(hair, at_angles(60, 40), s->wo) / s->pdf;
+    const float ratio =
+        evaluate(hair, at_angles(60, 40), s->wo, Transport::radiance, {.pdf_reverse = true}).pdf_reverse / s->pdf;
     ++count;
     like += ratio > 0.2f && ratio < 5 ? 1 : 0;
   }
@@ -585,7 +594,7 @@ TEST(Hair, WayBackIsInTheSameLobes) {
 TEST(Hair, IsReciprocalWithoutTilt) {
   const Hair hair{Spectrum(0.3f), 0.4f, 1.55f, 0.4f, 0.4f, 0};
   const Vec3 a = at_angles(50, 0), b = at_angles(50, 180);  // equal inclinations of opposite sign, one plane
-  EXPECT_NEAR(eval(hair, a, b, Transport::radiance)[0], eval(hair, b, a, Transport::radiance)[0], 1e-3f);
+  EXPECT_NEAR(evaluate(hair, a, b, Transport::radiance).f[0], evaluate(hair, b, a, Transport::radiance).f[0], 1e-3f);
 }
 
 }  // namespace

@@ -66,12 +66,15 @@ TEST(GuidedWalk, DirectionsFollowTheMixture) {
   const SurfaceVertex& v = test.vertex;
   const DirectionGuide guide(oblique, uneven_light(v.at.shading));
   const GuidedContinuation guided{{}, {&guide, 0.4f}};
-  const DirectionSampler sampler{
-      [&](float u1, const Vec2& u) -> std::optional<Vec3> {
-        const auto s = walk_detail::draw<Transport::radiance>(v, guided, u1, u);
-        return s ? std::optional(s->wo) : std::nullopt;
-      },
-      [&](const Vec3& wo) { return guided.guidance.pdf(pdf(glossy, v.wi_local, wo), v.at.shading.to_world(wo)); }};
+  const auto density = [&](const Vec3& wo) {
+    const float own = evaluate(glossy, v.wi_local, wo, Transport::radiance, {.pdf = true}).pdf;
+    return guided.guidance.pdf(own, v.at.shading.to_world(wo));
+  };
+  const DirectionSampler sampler{[&](float u1, const Vec2& u) -> std::optional<Vec3> {
+                                   const auto s = walk_detail::draw<Transport::radiance>(v, guided, u1, u);
+                                   return s ? std::optional(s->wo) : std::nullopt;
+                                 },
+                                 density};
   EXPECT_TRUE(chi2_test(sampler));
   HashRng rng(seed(5));
   for (int i = 0; i < 1000; ++i) {
@@ -79,7 +82,7 @@ TEST(GuidedWalk, DirectionsFollowTheMixture) {
     const auto s = walk_detail::draw<Transport::radiance>(v, guided, u1, rng.next2());
     if (!s) continue;
     EXPECT_NEAR(s->pdf, sampler.pdf(s->wo), 1e-4f * s->pdf);
-    const float f_cos = eval(glossy, v.wi_local, s->wo, Transport::radiance)[0] * s->wo.z;
+    const float f_cos = evaluate(glossy, v.wi_local, s->wo, Transport::radiance).f[0] * s->wo.z;
     EXPECT_NEAR(s->weight[0] * s->pdf, f_cos, 1e-4f * f_cos);
   }
 }

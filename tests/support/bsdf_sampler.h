@@ -17,7 +17,7 @@ inline auto bsdf_sampler(const Bsdf& bsdf, const Vec3& wi, Transport transport =
                             if (!s || s->delta) return std::nullopt;
                             return s->wo;
                           },
-                          [=](const Vec3& wo) { return pdf(bsdf, wi, wo, transport); }};
+                          [=](const Vec3& wo) { return evaluate(bsdf, wi, wo, transport, {.pdf = true}).pdf; }};
 }
 
 /// Unit vector at these angles, degrees.

@@ -11,7 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "integrators/vcm/effort_pilot.h"
+#include "integrators/auto/auto.h"
+#include "integrators/auto/pilot.h"
 #include "integrators/vcm/vcm_pass.h"
 #include "render/picture.h"
 #include "render/plan.h"
@@ -120,7 +121,7 @@ Effort effort_of(const Scene& scene, std::optional<int> side = {}) {
   const RenderPlan plan = plan_render(scene, scene.description().view, options);
   const RenderJob job = plan.job(scene);
   VcmSettings settings(Parameters(find_integrator("vcm").parameters, {}, "vcm"), {});
-  settings.chooses_effort = true;
+  settings.plan_effort = plan_effort;
   return VcmPreparation(job, settings).effort;
 }
 

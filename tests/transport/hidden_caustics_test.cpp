@@ -137,7 +137,8 @@ TEST(HiddenCaustic, WhereThereIsNoneAutoIsPathTracing) {
       "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [5 5 5]\nTranslate 0 0 2\n"
       "Shape \"disk\" \"float radius\" .3\nAttributeEnd\n");
   const RenderState found = test::render_state(scene, test::options_for("auto", 4));
-  EXPECT_NE(found.settings.find("\"light_paths_per_pixel\":0"), std::string::npos) << found.settings;
+  ASSERT_TRUE(found.record.findings);
+  EXPECT_EQ(found.record.findings->light_paths_per_pixel, 0);
   const RenderState path = test::render_state(scene, test::options_for("path", 4));
   EXPECT_EQ(select_layer(picture_of(found), "color")->pixels, select_layer(picture_of(path), "color")->pixels);
 }

@@ -13,6 +13,7 @@
 #include "lanthorn/threads.h"
 #include "render/state.h"
 #include "scene/media_check.h"
+#include "support/edited.h"
 #include "support/runs.h"
 #include "support/shapes.h"
 
@@ -214,7 +215,7 @@ TEST(Media, InterfacesElsewhereChangeNothing) {
   const Scene without = test::scene_from_text(room);
   ASSERT_TRUE(with.has_interfaces());
   ASSERT_FALSE(without.has_interfaces());
-  EXPECT_TRUE(edit_scene(with, {})->has_interfaces());
+  EXPECT_TRUE(test::edited(with, [](SceneDescription&) {})->has_interfaces());
   for (const char* integrator : {"path", "bdpt"})
     EXPECT_EQ(test::render_image(with, options(integrator, 2)).pixels,
               test::render_image(without, options(integrator, 2)).pixels)
@@ -272,11 +273,11 @@ TEST(Media, LightsAndCamerasMayClaimTheWrongMedium) {
   }
   // The same after an edit: the light moves into the fog.
   const Scene before = ball(none, in_fog, outside, none, "0 3 1");
-  SceneEdits edits;
-  edits.lights[0] = before.description().lights[0];
-  std::get<description::PointLight>(edits.lights[0].node).from = {0.1f, 0.6f, 0.1f};
+  const SharedScene edited = test::edited(before, [](SceneDescription& description) {
+    std::get<description::PointLight>(description.lights[0].node).from = {0.1f, 0.6f, 0.1f};
+  });
   const Scene after = ball(none, in_fog, outside, in_fog, "0.1 0.6 0.1");
-  EXPECT_EQ(test::render_image(*edit_scene(before, edits), options("light", 2)).pixels,
+  EXPECT_EQ(test::render_image(*edited, options("light", 2)).pixels,
             test::render_image(after, options("light", 2)).pixels);
 }
 

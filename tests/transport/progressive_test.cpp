@@ -111,7 +111,8 @@ TEST(ReversePhotonMapping, SumsAreThoseOfGathering) {
         const float height = std::fabs(dot(photon.position() - hit.at.position, hit.at.normal));
         if (height > 0.2f * settings.radius || photon.flags().eye_scatterings < hit.state.depth - 1) return;
         const Vec3 wo = hit.at.shading.to_local(photon.wi());
-        Spectrum light = hit.state.beta * photon.power() * eval(hit.at.bsdf, hit.wi_local, wo, Transport::radiance);
+        Spectrum light =
+            hit.state.beta * photon.power() * evaluate(hit.at.bsdf, hit.wi_local, wo, Transport::radiance).f;
         light *= settings.kernel.weight(dist2, sqr(settings.radius)) *
                  incidence_ratio(cosine(hit.at.bsdf, wo), geometric_cosine(hit.at, photon.wi()));
         if (hit.state.dispersed || photon.flags().dispersed) light *= draw.w.dispersed;

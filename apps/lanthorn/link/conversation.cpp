@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "../estimate_json.h"
+#include "../json_text.h"
 #include "../value_types.h"
 #include "lanthorn/description_data.h"
 #include "lanthorn/error.h"
@@ -107,7 +108,7 @@ nlohmann::json about(const InteractivePicture& picture) {
                        {"integrator", picture.state.integrator},
                        {"limitation", picture.limitation},
                        {"remark", picture.remark},
-                       {"settings", nlohmann::json::parse(picture.state.settings, nullptr, false)}};
+                       {"settings", settings_json(picture.state.record)}};
   if (picture.seconds_left) about["seconds_left"] = *picture.seconds_left;
   if (picture.statistics.error) about["error"] = estimate_json(*picture.statistics.error);
   return about;

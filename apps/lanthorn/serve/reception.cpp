@@ -73,14 +73,21 @@ void Reception::finish(Visit visit, bool goes_on) try {
 void Reception::run() {
   ::fcntl(listener_.get(), F_SETFL, O_NONBLOCK);  // a client may disconnect before it is accepted
   Clients waiting;
-  while (!is_stopped_) try {
-      const Events events = wait(waiting);
-      waiting = read_from(std::move(waiting), events);
-      take_back_answered(waiting);
-      if (events.is_called) accept_clients(waiting);
+  while (!is_stopped_) {
+    try {
+      attend(waiting);
     } catch (const std::bad_alloc&) {  // only some clients' connections are lost
       std::this_thread::sleep_for(shortage_patience);
     }
+  }
+}
+
+// Waits until something happens, and deals with it.
+void Reception::attend(Clients& waiting) {
+  const Events events = wait(waiting);
+  waiting = read_from(std::move(waiting), events);
+  take_back_answered(waiting);
+  if (events.is_called) accept_clients(waiting);
 }
 
 Reception::Events Reception::wait(const Clients& waiting) const {

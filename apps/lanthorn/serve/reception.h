@@ -70,6 +70,7 @@ class Reception {
   };
 
   void run();
+  void attend(Clients& waiting);
   Events wait(const Clients& waiting) const;
   Clients read_from(Clients waiting, const Events& events);
   void take_back_answered(Clients& waiting);

@@ -9,6 +9,7 @@
 #include <glm/geometric.hpp>
 #include <utility>
 
+#include "../json_text.h"
 #include "../value_types.h"
 #include "lanthorn/error.h"
 #include "lanthorn/methods.h"
@@ -142,12 +143,14 @@ std::vector<NamedLight> Viewer::lights() const {
 }
 
 SharedScene Viewer::in_environment(const EnvironmentChoice& choice) {
-  const auto edit = [&](const Scene& scene) {
-    return edit_scene(scene, {.environment = choice, .hash = description_of(*scene_).hash});
+  const auto edit = [&](const SharedScene& scene) {
+    SceneDescription description = description_of(*scene);
+    replace_environment(description, choice);
+    return build_scene(std::move(description), scene);
   };
   SharedScene& first = surroundings_[choice.source];
-  if (!first) first = edit(*scene_);
-  return description_of(*first).environment == choice ? first : edit(*first);
+  if (!first) first = edit(scene_);
+  return description_of(*first).environment == choice ? first : edit(first);
 }
 
 // Lights that are the same in both environments keep their factors.
@@ -246,7 +249,7 @@ std::shared_ptr<const PageFrame> Viewer::frame_of(const InteractiveSnapshot& sna
   const std::lock_guard lock(mutex_);
   if (!snapshot.picture || (frame_ && frame_->number() >= snapshot.number)) return frame_;
   if (first_method_.empty()) first_method_ = snapshot.picture->state.integrator;
-  nlohmann::json metadata = nlohmann::json::parse(snapshot.picture->state.settings)["identity"];
+  nlohmann::json metadata = settings_json(snapshot.picture->state.record)["identity"];
   metadata["passes"] = snapshot.picture->state.pass_count;
   const std::shared_ptr<const Image> image(snapshot.picture, &snapshot.picture->image);
   std::shared_ptr<const Image> denoised;
@@ -275,7 +278,6 @@ nlohmann::json Viewer::about(const InteractiveSnapshot& snapshot) {
   const StateSummary& state = picture.state;
   const auto& [scene, view] = scenes_.at(picture.revision);
   const SceneChanges& changes = scene.changes;
-  const auto photons = nlohmann::json::parse(state.settings)["identity"]["photons"].get<std::uint64_t>();
   const InteractivePhase phase = snapshot.status.phase;
   nlohmann::json lights = nlohmann::json::object();
   for (const auto& [name, factor] : changes.lights) lights[name] = factor;
@@ -284,7 +286,7 @@ nlohmann::json Viewer::about(const InteractiveSnapshot& snapshot) {
           {"passes", state.pass_count},
           {"seconds", state.seconds},
           {"samples", static_cast<double>(state.pass_count) * state.width * state.height},
-          {"photons", state.pass_count * photons},
+          {"photons", state.pass_count * state.record.identity.photons},
           {"traces_photons", picture.statistics.light_paths > 0},
           {"error", picture.statistics.error ? describe_error(*picture.statistics.error) : ""},
           {"seconds_left", picture.seconds_left ? nlohmann::json(*picture.seconds_left) : nlohmann::json()},

@@ -75,7 +75,7 @@ struct HitVisitor {
   Continuation operator()(const SurfaceVertex& v) {
     subpath.arrive(path, v);
     if (v.state.depth <= scatterings) return Continuation::go_on();
-    layers.add_hit(v, hit_emitter(path, pass, v, subpath));
+    add_hits(v, subpath);
     return Continuation::stop();
   }
   Continuation operator()(const MediumVertex& v) {
@@ -85,12 +85,22 @@ struct HitVisitor {
   }
   void operator()(const FlownSegment& flight) { subpath.fly(flight); }
   void operator()(const EmissionVertex& v) {
-    if (v.state.depth == scatterings) layers.add_hit(v, hit_volume_emission(path, pass, v, subpath));
+    if (v.state.depth != scatterings) return;
+    Subpath to_medium = subpath;
+    to_medium.escape(v.state, v.direction, false);
+    add_hits(v, to_medium);
   }
   void operator()(const EscapeVertex& v) {
     if (v.state.depth < scatterings) return;
     subpath.escape(v.state, v.direction);
-    layers.add_hit(v, hit_environment(path, pass, v, subpath));
+    add_hits(v, subpath);
+  }
+
+  template <class Vertex>
+  void add_hits(const Vertex& v, const Subpath& to_light) {
+    Spectrum sum;
+    hit_lights(path, pass, v, to_light, [&](const Contribution& hit) { sum += hit.weighted(pass.techniques); });
+    layers.add_hit(v, sum);
   }
 };
 
@@ -172,8 +182,9 @@ class MultiplexedPath {
       result.raster = seen->raster;
       const PathLayers layers = layers_of_splat(v);
       result.from_medium = layers.from_medium;
-      result.of(layers.path_class) = seen->light * (seen->dispersed ? draw_.w.dispersed : Spectrum(1)) *
-                                     (factor_ * weight_of_seen(bidirectional_, v, subpath, *seen));
+      result.of(layers.path_class) =
+          seen->light * (seen->dispersed ? draw_.w.dispersed : Spectrum(1)) *
+          (factor_ * densities_of_seen(bidirectional_, v, subpath, *seen).weight(bidirectional_.techniques));
     });
     return result;
   }
@@ -189,9 +200,11 @@ class MultiplexedPath {
     const PathContext eye = path(eye_);
     const auto end = [&](const auto& v, const Subpath& subpath) {
       if (other && !may_connect(eye.scene, v, other->at.position, other->scatterings, pass_.limits.max_depth)) return;
-      const DirectLight found =
+      const auto found =
           other ? connect(eye, bidirectional_, v, subpath, *other) : next_event(eye, bidirectional_, v, subpath);
-      layers.add(other ? PathClass::indirect : class_of_next_event(v.state), found.radiance, found.dispersed);
+      if (!found) return;
+      layers.add(other ? PathClass::indirect : class_of_next_event(v.state), found->weighted(bidirectional_.techniques),
+                 found->dispersed);
     };
     SubpathVisitor<decltype(end)> visitor{.path = eye,
                                           .last = eye_vertices(),

@@ -86,7 +86,8 @@ HemisphereRay gather_ray(const GatherFill& fill, std::uint32_t key, const Surfac
   const Direction wo = frame.to_world(local);
   HemisphereRay ray;
   // The hemisphere of a shading normal reaches below the facet.
-  if (eval(vertex.at.bsdf, vertex.wi_local, vertex.at.shading.to_local(wo), Transport::radiance).is_black()) return ray;
+  const Vec3 wo_local = vertex.at.shading.to_local(wo);
+  if (evaluate(vertex.at.bsdf, vertex.wi_local, wo_local, Transport::radiance, {.f = true}).f.is_black()) return ray;
   LightLayers layers(w);
   const TwoPassContext context{fill.job, fill.settings, fill.maps, key, fill.pass, &fill.misses};
   const PathContext path{fill.job.scene, w, own, counts, {fill.job.settings.max_depth, 3}};

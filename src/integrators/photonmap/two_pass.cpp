@@ -19,7 +19,7 @@ NarrowContinuation TwoPassVisitor::operator()(const SurfaceVertex& vertex) {
   const WalkState& state = vertex.state;
   if (!is_gather_ray_) layers.see(vertex);
   begin(term_of_hit(state, state.depth - 1));
-  if (adds_hits(state)) layers.add_hit(vertex, hit_emitter(path, vertex));
+  if (adds_hits(state)) layers.add_hit(vertex, hit_lights(path, vertex));
   if (volume_ && volume_->is_gathered()) return {volume_->follow_emission(path)};
   if (!vertex.may_scatter) return {Continuation::stop()};
   if (!has_non_delta(vertex.at.bsdf)) return {Continuation::go_on()};

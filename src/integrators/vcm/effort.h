@@ -6,45 +6,13 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <string>
 #include <vector>
 
 #include "camera/view.h"
-#include "integrators/vcm/moments.h"
+#include "lanthorn/effort_report.h"
 #include "math/vec.h"
 
 namespace lanthorn {
-
-/// The effort at one place on the film.
-struct PlaceEffort {
-  std::uint8_t connections = 1;  ///< light paths that each eye vertex is connected to
-  bool merges = true;            ///< on surfaces
-  bool merges_in_media = true;
-  bool sees = true;     ///< light paths are connected to the lens
-  bool goes_on = true;  ///< eye paths go on after a lobe that is not delta (`Techniques::goes_on`)
-};
-
-/// The pilot's forecast for one choice, used for the whole picture.
-struct UniformEffort {
-  double light_paths_per_pixel = 0;
-  PlaceEffort place;
-  double variance = 0;  ///< of one pass: relative to the squared pixel values, mean over the picture
-  double work = 0;      ///< of one pass, per pixel, in units of a ray
-};
-
-/// The pilot's findings, for the user.
-struct EffortReport {
-  double light_by_light_paths = 0;  ///< share of the light that light paths find: by the lens, connections and merging
-  double caustic_light = 0;         ///< share of the light that is caustics
-  double caustic_part = 0;          ///< share of the picture where they are visible
-  double merged_part = 0, connected_part = 0;  ///< share of the picture where merging, or connections, are used
-  double short_part = 0;  ///< share of the picture where eye paths are short (`PlaceEffort::goes_on`)
-  double light_paths_per_pixel = 0;
-  double variance = 0, work = 0;  ///< as in UniformEffort, of the chosen effort
-  std::vector<UniformEffort> uniform;
-  EyeWork work_of_eye_path{};                 ///< with one connection at each vertex and one light path a pixel
-  double light_rays = 0, light_vertices = 0;  ///< of a light path
-};
 
 /// The effort of every pass: the same for the whole film, or one for each block of pixels.
 class Effort {
@@ -53,8 +21,7 @@ class Effort {
   /// Uses all techniques everywhere.
   explicit Effort(std::uint64_t light_paths) : light_paths_(light_paths) {}
   /// One effort per block; blocks divide the window evenly, row by row.
-  Effort(std::uint64_t light_paths, const PixelWindow& window, int columns, std::vector<PlaceEffort> blocks,
-         EffortReport report);
+  Effort(std::uint64_t light_paths, const PixelWindow& window, int columns, std::vector<PlaceEffort> blocks);
 
   std::uint64_t light_paths() const { return light_paths_; }  ///< of a pass
   PlaceEffort at(const Vec2& raster) const { return blocks_.empty() ? PlaceEffort{} : blocks_[block_of(raster)]; }
@@ -67,11 +34,6 @@ class Effort {
     return blocks_.empty() ||
            std::any_of(blocks_.begin(), blocks_.end(), [](const PlaceEffort& p) { return p.merges; });
   }
-  /// One line for the user: findings and choice.
-  std::string describe() const;
-  /// The numbers of the report, as the text of a JSON object.
-  std::string findings() const;
-
   /// Precondition: there are blocks.
   std::size_t block_of(const Vec2& raster) const;
 
@@ -80,7 +42,6 @@ class Effort {
   PixelWindow window_{};
   int columns_ = 0, rows_ = 0;
   std::vector<PlaceEffort> blocks_;
-  EffortReport report_;
 };
 
 }  // namespace lanthorn

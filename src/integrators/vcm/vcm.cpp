@@ -6,14 +6,14 @@
 // "Implementing Vertex Connection and Merging".
 //
 // The files in the order in which a pass goes through them:
-// 0. vcm_pass.cpp           what passes share: radii (merge_radii.h), and for `auto` the effort of each region of the
-//                           picture (effort_pilot.h); path/emission_densities.h: the choice of lights for light paths
+// 0. vcm_pass.cpp           what passes share: radii (merge_radii.h), the effort of each region of the picture (for
+//                           `auto` integrators/auto chooses it), the choice of lights (path/emission_densities.h)
 // 1. path/light_pass.h      N light paths, each a walk (path/walk.h) with the visitor
-//    vcm_visitors.h         `LightVisitor`: keeps each vertex, and connects it to the lens,
+//    light_visitor.h        `LightVisitor`: keeps each vertex, and connects it to the lens,
 //    path/lens_connection.h f |cos| W_e V / p                                                      (weight: TR eq. 46)
 // 2. merge_map.h            sorts the vertices into maps for merging; in media photon/media/volume_map.h
 // 3. path/eye_pass.h        an eye path for each pixel, with the visitor
-//    vcm_visitors.h         `EyeVisitor`: at each vertex the techniques
+//    eye_visitor.h          `EyeVisitor`: at each vertex the techniques
 //    path/connections.h     hits of lights (TR eq. 43), next-event estimation (TR eqs. 44, 45), and connections to the
 //                           vertices of a light path, f_eye G V f_light (TR eqs. 40, 41)
 //    merge_map.h            merges with all photons nearby, f / (N pi r^2) (TR eqs. 38, 39); in media volume_merge.h
@@ -32,8 +32,9 @@
 
 #include "base/pool.h"
 #include "integrators/integrator.h"
+#include "integrators/vcm/eye_visitor.h"
+#include "integrators/vcm/light_visitor.h"
 #include "integrators/vcm/vcm_pass.h"
-#include "integrators/vcm/vcm_visitors.h"
 #include "path/eye_pass.h"
 #include "path/radiance_along.h"
 #include "path/splat.h"
@@ -46,7 +47,8 @@ RayCounts trace_light_paths(const VcmPass& pass, const FilmPass& film) {
   const View& view = pass.job.view;
   return trace_light_paths(
       pass, &film, [&](const LightArrival& light, const LensLight& seen, const PlaceEffort& there, std::size_t) {
-        splat(film, view, light.w, seen, light.layers, light.weight(pass.bidirectional_at(seen.raster, there), seen));
+        const Bidirectional here = pass.bidirectional_at(seen.raster, there);
+        splat(film, view, light.w, seen, light.layers, light.densities(here, seen).weight(here.techniques));
       });
 }
 
@@ -121,13 +123,8 @@ class VertexConnectionAndMerging final : public Integrator {
   FilmContents film_contents(const Scene& scene) const override { return settings_.film_contents(scene); }
   MemoryUse memory_use(const RenderSettings& settings) const override { return settings_.memory_use(settings); }
   std::string limitation(const Scene& scene) const override { return settings_.limitation(scene); }
-  std::string remark() const override {
-    if (!prepared_) return {};
-    return settings_.chooses_effort ? prepared_->effort.describe() : prepared_->emission.remark;
-  }
-  std::string findings() const override {
-    return settings_.chooses_effort && prepared_ ? prepared_->effort.findings() : std::string();
-  }
+  std::string remark() const override { return prepared_ ? prepared_->remark : std::string(); }
+  std::optional<EffortReport> findings() const override { return prepared_ ? prepared_->findings : std::nullopt; }
   bool passes_share_wavelengths() const override { return true; }
   // Until the tests of the radii are done, passes must add their counts one after the other.
   bool passes_may_overlap() const override { return !tests_ || tests_->are_done(); }
@@ -135,8 +132,7 @@ class VertexConnectionAndMerging final : public Integrator {
     prepared_.emplace(job, settings_);
     tests_.reset();
     const Effort& effort = prepared_->effort;
-    if (settings_.chooses_effort && effort.light_paths() > 0 && effort.merges())
-      tests_.emplace(prepared_->radii.window());
+    if (settings_.plan_effort && effort.light_paths() > 0 && effort.merges()) tests_.emplace(prepared_->radii.window());
   }
   // With saved results, a resumed render need not trace the passes of the tests again.
   std::vector<std::byte> save() const override {

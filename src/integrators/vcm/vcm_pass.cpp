@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <span>
 
-#include "integrators/vcm/effort_choice.h"
-#include "integrators/vcm/effort_pilot.h"
 #include "photon/medium_records.h"
 
 namespace lanthorn {
@@ -25,13 +23,12 @@ MergeShrinks shrinks_of_pass(const RenderJob& job, std::uint32_t number, double 
 VcmPreparation::VcmPreparation(const RenderJob& job, const VcmSettings& settings)
     : emission(settings.switches.merging ? choose_emission(settings.emission, PhotonUse::merging, job) : Emission()),
       densities(job.scene, emission.starts()),
-      effort(job.settings.photons) {
+      effort(job.settings.photons),
+      remark(emission.remark) {
   if (!settings.switches.merging) return;
   radii = FirstMergeRadii(job, settings, emission.get());
   volume_radii = FirstVolumeRadii(job, settings, emission.get());
-  if (!settings.chooses_effort) return;
-  effort = Effort(pilot_light_paths(job));
-  effort = choose_effort(job, measure_candidates(job, settings, *this));
+  if (settings.plan_effort) settings.plan_effort(job, settings, *this);
 }
 
 VcmPass::VcmPass(const RenderJob& job_, std::uint32_t number_, const VcmSettings& settings_,

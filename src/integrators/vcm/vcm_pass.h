@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 
 #include "integrators/integrator.h"
 #include "integrators/vcm/effort.h"
@@ -30,6 +31,8 @@ struct VcmPreparation {
   FirstMergeRadii radii;
   FirstVolumeRadii volume_radii;
   Effort effort;
+  std::string remark;  ///< as of Integrator
+  std::optional<EffortReport> findings;
 
   VcmPreparation(const RenderJob& job, const VcmSettings& settings);
   VcmPreparation(const VcmPreparation&) = delete;

@@ -55,9 +55,6 @@ std::array<bool, volume_estimator_count> merged_in_media(const Parameters& param
 
 // Every light vertex costs a connection to the lens and one to an eye path: more light paths than pixels do not pay.
 constexpr LightPathRange light_path_range{.fewest = 10'000};
-// The pilot may choose up to four times as many: about one for each pixel of 1920 x 1080, which bounds the memory of
-// large pictures.
-constexpr LightPathRange range_of_auto{.fewest = 10'000, .most = 1u << 19};
 
 ParameterInfo merge_reduction_info(const char* default_alpha) {
   return {
@@ -88,7 +85,7 @@ VcmSettings::VcmSettings(const Parameters& parameters, VcmSwitches techniques)
 FilmContents VcmSettings::film_contents(const Scene& scene) const {
   using technique::hit, technique::nee, technique::splat, technique::vc, technique::vm;
   FilmContents contents = path_layers(scene);
-  if (!chooses_effort)
+  if (!plan_effort)
     contents.decomposition = {{"technique.hit", "technique.nee", "technique.vc", "technique.vm"},
                               "technique.splat",
                               Decomposition::Shares{"technique.share", {{{vm}, {vc, nee, splat}, {hit}}}}};
@@ -106,11 +103,11 @@ MemoryUse VcmSettings::memory_use(const RenderSettings& settings) const {
   constexpr double spare = 1.25;  // of vectors that grow; measured: 1.02
   const double merged = switches.merging ? bytes_per_photon : 0;
   const double of_vertex = spare * sizeof(LightVertex);
-  const double most_light_paths = chooses_effort ? 4 : 1;  // over those of `RenderSettings::photons`
+  const double most_light_paths = plan_effort ? 4 : 1;  // over those of `RenderSettings::photons`
   const auto block = static_cast<double>(settings.photon_block);
   return {.per_photon = most_light_paths * (of_vertex + merged),
           .per_light_path = most_light_paths * bytes_per_light_path,
-          .per_pixel = static_cast<double>(sizeof(float) + (chooses_effort ? UniformityTests::bytes_per_pixel : 0)),
+          .per_pixel = static_cast<double>(sizeof(float) + (plan_effort ? UniformityTests::bytes_per_pixel : 0)),
           .first_depth = 1,
           .media = MediumRecords::points,
           .per_medium_photon =
@@ -127,20 +124,6 @@ IntegratorInfo vcm_info() {
            merge_volume_info(), volume_radius_info()},
           make<true, true>,
           light_path_range};
-}
-
-IntegratorInfo auto_info() {
-  return {"auto",
-          "vcm with the light paths, connections and merges that a pilot finds best for each part of the picture",
-          "Grittmann et al. 2022",
-          {},
-          [](const Parameters&) {
-            const IntegratorInfo vcm = vcm_info();
-            VcmSettings settings(Parameters(vcm.parameters, {}, vcm.name), {.connections = true, .merging = true});
-            settings.chooses_effort = true;
-            return make_vertex_connection_and_merging(settings);
-          },
-          range_of_auto};
 }
 
 IntegratorInfo bdpt_info() {

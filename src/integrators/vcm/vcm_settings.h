@@ -39,10 +39,15 @@ namespace technique {
 inline constexpr std::size_t hit = 0, nee = 1, vc = 2, vm = 3, splat = 4;
 }  // namespace technique
 
+struct VcmPreparation;
+struct VcmSettings;
+/// Chooses the numbers of samples, once the rest is prepared: sets `effort`, `remark` and `findings`.
+using EffortPlanner = void (*)(const RenderJob& job, const VcmSettings& settings, VcmPreparation& prepared);
+
 struct VcmSettings {
   VcmSwitches switches;
-  std::optional<Strategy> only;  ///< all others are left out of the film
-  bool chooses_effort = false;   ///< numbers of samples are those that a pilot finds best (integrators/vcm/effort.h)
+  std::optional<Strategy> only;         ///< all others are left out of the film
+  EffortPlanner plan_effort = nullptr;  ///< of `auto`; null: all techniques everywhere
   int roulette_depth = 3;
   // With merging:
   double alpha = 1;  ///< on surfaces r² shrinks by (i + α) / (i + 1) (Knaus & Zwicker 2011)

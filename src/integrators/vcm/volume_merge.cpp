@@ -92,18 +92,19 @@ class MergeSum {
     const float sin = length(cross(wi_, m.to_light)), p = phase(phase_, wi_, m.to_light);
     const float collision = m.light.flight.collision, by_light = m.light.flight.pass, by_eye = m.eye.flight.pass;
     const float before = context_.subpath.coherence(), up_to_here = before * coherence(phase_);
-    const float weight = context_.bidirectional.weigh(
+    const TechniqueSum densities =
         sum_of_volume_merge(end_of_eye_path(m.eye.densities, p, state_.non_delta > 0),
                             end_of_light_path(m.light.densities, p, m.depth > 1 && !m.caustic, up_to_here),
                             before * own(t.volume, collision, by_light, by_eye, sin),
-                            before * t.volume.all(collision, by_light, by_eye, sin), t));
-    const Spectrum light = state_.beta * m.flux * factor.light * (p * weight);
+                            before * t.volume.all(collision, by_light, by_eye, sin), t);
+    const Spectrum light = state_.beta * m.flux * factor.light * (p * densities.weight(t));
     const bool is_dispersed = m.dispersed || state_.dispersed;
     context_.layers.add(class_of_merge(state_, m.depth == 1, m.caustic), technique::vm, light, is_dispersed);
     context_.layers.add_bias(factor.bias_share * light, is_dispersed);
-    if (!context_.moments) return;
-    context_.moments->add(flux_of(light, is_dispersed, context_.path.w), &TechniqueDensities::media);
-    context_.moments->count(&EyeWork::media_merges, state_.non_delta == 0);
+    if (!context_.log) return;
+    context_.log->found.push_back(
+        {flux_of(light, is_dispersed, context_.path.w), densities, &TechniqueDensities::media});
+    context_.log->count(&EyeWork::media_merges, state_.non_delta == 0);
   }
 
  private:

@@ -12,8 +12,8 @@
 
 #include "index/ball_bvh.h"
 #include "index/beam_bvh.h"
+#include "integrators/vcm/eye_path_log.h"
 #include "integrators/vcm/merge_radii.h"
-#include "integrators/vcm/moments.h"
 #include "path/connections.h"
 #include "path/light_layers.h"
 #include "path/light_vertices.h"
@@ -30,7 +30,7 @@ struct VolumeMergeContext {
   const Subpath& subpath;  ///< of the eye path
   int max_depth;           ///< scatterings of a whole path
   LightLayers& layers;
-  PathMoments* moments = nullptr;  ///< of a pilot
+  EyePathLog* log = nullptr;
 };
 
 /// The photons of a pass in media, one set of indices for each medium. Keeps pointers to the light vertices.

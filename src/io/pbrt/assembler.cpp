@@ -435,7 +435,7 @@ void Assembler::medium_interface(Directive& d) {
 }
 
 std::vector<description::Shape>& Assembler::shapes(std::optional<Index> object) {
-  return object ? context_.scene.objects[*object].shapes : context_.scene.shapes;
+  return object ? context_.scene.objects[*object].shapes : context_.scene.shapes.edit();
 }
 
 void Assembler::check_names_used() const {
@@ -571,7 +571,7 @@ void Assembler::read_ply_files() {
     const auto* mesh = std::get_if<description::TriangleMesh>(&shape.geometry);
     return mesh && mesh->triangles.empty();
   };
-  std::erase_if(context_.scene.shapes, is_empty);
+  std::erase_if(context_.scene.shapes.edit(), is_empty);
   for (description::Object& object : context_.scene.objects) std::erase_if(object.shapes, is_empty);
 }
 

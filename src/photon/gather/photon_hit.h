@@ -55,8 +55,8 @@ bool may_have_normal(const Photon& photon, const Normal& normal) {
 /// Scattering of a photon at a vertex. The density estimate is L = Σ K f Φ |cos_s| / |cos_g| (Jensen 2001, eq. 7.6,
 /// with shading normals as in incidence.h); each summand is K f Φ `ratio`. (DiffuseBundle in reverse_photons.cpp
 /// computes the same for several points at once.)
-struct PhotonHit : BsdfValues {  ///< towards the eye, from the photon's previous vertex; reverse pdf only where said
-  float ratio;                   ///< of the shading cosine to the geometric cosine (incidence_ratio)
+struct PhotonHit : BsdfValue {  ///< towards the eye, from the photon's previous vertex; reverse pdf only where said
+  float ratio;                  ///< of the shading cosine to the geometric cosine (incidence_ratio)
 };
 
 /// A vertex of an eye path, as photons meet it. Keeps a reference to the vertex.
@@ -81,14 +81,11 @@ class GatherVertex {
     const SurfacePoint& at = vertex_.at;
     if (is_behind(at, vertex_.wi, wi)) return result;  // light for `offset_origin`, which no photon brings
     const Vec3 wo_local = at.shading.to_local(wi);
-    BsdfValues value;
-    if constexpr (both_densities)
-      value = eval_and_pdfs(at.bsdf, vertex_.wi_local, wo_local, Transport::radiance);
-    else
-      value = {eval_and_pdf(at.bsdf, vertex_.wi_local, wo_local, Transport::radiance)};
+    const BsdfValue value = evaluate(at.bsdf, vertex_.wi_local, wo_local, Transport::radiance,
+                                     {.f = true, .pdf = true, .pdf_reverse = both_densities});
     if (value.f.is_black()) return result;
     PhotonHit& hit = result.emplace();
-    static_cast<BsdfValues&>(hit) = value;
+    static_cast<BsdfValue&>(hit) = value;
     hit.ratio = incidence_ratio(cosine(at.bsdf, wo_local), geometric_cosine(at, wi));
     return result;
   }

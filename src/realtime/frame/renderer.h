@@ -47,7 +47,8 @@ class Renderer {
   /// Throws gl::Unavailable if the context has no OpenGL 4.5, Error if a shader does not compile.
   explicit Renderer(const Scene& scene);
 
-  /// Shows an edited scene (`edit_scene`). `scene` must outlive its frames, like the constructor's scene.
+  /// Shows an edited scene, which shares its shapes with the last one. `scene` must outlive its frames, like the
+  /// constructor's scene.
   void update(const Scene& scene);
 
   /// Draws the frame into layers. Throws Error with OpenGL's message if OpenGL has reported an error.

@@ -30,12 +30,12 @@ struct SpecularVisitor {
 
   Continuation operator()(const MediumVertex&) const { return Continuation::stop(); }
   void operator()(const EscapeVertex& v) {
-    if (!is_drawn_by_gpu(v.state, v.state.depth)) layers.add_hit(v, hit_environment(path, v));
+    if (!is_drawn_by_gpu(v.state, v.state.depth)) layers.add_hit(v, hit_lights(path, v));
   }
   NarrowContinuation operator()(const SurfaceVertex& v) {
     const WalkState& state = v.state;
     if (is_drawn_by_gpu(state, state.depth - 1)) return {Continuation::stop()};
-    if (state.depth > 1) layers.add_hit(v, hit_emitter(path, v));
+    if (state.depth > 1) layers.add_hit(v, hit_lights(path, v));
     if (!v.may_scatter || (state.non_delta > 0 && !finds_indirect)) return {Continuation::stop()};
     if (!has_non_delta(v.at.bsdf)) return {Continuation::go_on()};
     const LobeSplit split = split_lobes(v);

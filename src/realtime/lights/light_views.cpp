@@ -49,7 +49,7 @@ bool is_all_around(const Light& light) { return is_infinite(light) && !std::hold
 std::vector<Group> groups_of(const Scene& scene) {
   const std::vector<Light>& lights = scene.lights();
   std::set<std::uint32_t> starts;
-  for (const EmittingShape& shape : scene.data()->emitters) starts.insert(shape.first_light);
+  for (const EmittingShape& shape : scene.data()->shapes->emitters) starts.insert(shape.first_light);
   std::vector<Group> groups;
   for (std::uint32_t i = 0; i < lights.size(); ++i) {
     if (!has_view(lights[i])) continue;
@@ -226,45 +226,60 @@ int views_wanted(const Scene& scene, const Group& group, const LightViewSettings
   return is_all_around(scene.lights()[group.first]) ? settings.sky_views : 1;
 }
 
+/// The views that a group of lights has in this frame.
+struct Quota {
+  Group group;
+  int views = 0;
+  float part = 0;  ///< of the group's light, in each view
+};
+
+/// Quotas if there are more groups than views: group g has most_views * power / total views on average (systematic
+/// sampling).
+std::vector<Quota> quotas_by_power(const std::vector<Group>& groups, const LightViewSettings& settings,
+                                   std::uint32_t frame) {
+  const auto most = static_cast<float>(settings.most_views);
+  float total = 0;
+  for (const Group& group : groups) total += group.power;
+  Sampler sampler = Sampler::for_pixel(settings.seed, stream_of("lights of a frame"), 0, frame);
+  float next = sampler.next() * total / most, sum = 0;
+  std::vector<Quota> quotas;
+  for (const Group& group : groups) {
+    sum += group.power;
+    int views = 0;
+    for (; next < sum; next += total / most) ++views;
+    const auto count = static_cast<float>(views);
+    if (views > 0) quotas.push_back({group, views, count * total / (most * group.power) / count});
+  }
+  return quotas;
+}
+
+std::vector<Quota> quotas_of(const Scene& scene, const LightViewSettings& settings, std::uint32_t frame) {
+  const std::vector<Group> groups = groups_of(scene);
+  std::vector<Quota> quotas;
+  int wanted = 0;
+  for (const Group& group : groups) {
+    const int views = views_wanted(scene, group, settings);
+    quotas.push_back({group, views, 1 / static_cast<float>(views)});
+    wanted += views;
+  }
+  return wanted <= settings.most_views ? quotas : quotas_by_power(groups, settings, frame);
+}
+
 }  // namespace
 
 std::vector<LightView> light_views(const Scene& scene, const LightViewSettings& settings) {
-  std::vector<Group> groups = groups_of(scene);
+  const std::uint32_t frame = settings.is_random ? settings.frame : 0;
   std::vector<LightView> views;
-  int wanted = 0;
-  float total = 0;
-  for (const Group& group : groups) {
-    wanted += views_wanted(scene, group, settings);
-    total += group.power;
-  }
-  const auto add = [&](const Group& group, int copies, float factor, std::uint32_t stream) {
-    for (int i = 0; i < copies; ++i) {
-      Sampler sampler =
-          Sampler::for_pixel(settings.seed, stream_of("light views"), stream * 64 + static_cast<std::uint32_t>(i),
-                             settings.is_random ? settings.frame : 0);
-      std::optional<LightView> view = view_of(scene, group, sampler, settings);
+  for (const Quota& quota : quotas_of(scene, settings, frame))
+    for (int i = 0; i < quota.views; ++i) {
+      const std::uint32_t number = quota.group.first * 64 + static_cast<std::uint32_t>(i);
+      Sampler sampler = Sampler::for_pixel(settings.seed, stream_of("light views"), number, frame);
+      std::optional<LightView> view = view_of(scene, quota.group, sampler, settings);
       if (!view) continue;
-      view->colour *= factor / static_cast<float>(copies);
-      view->power *= factor / static_cast<float>(copies);
+      view->colour *= quota.part;
+      view->power *= quota.part;
       views.push_back(std::move(*view));
     }
-  };
-  if (wanted <= settings.most_views) {
-    for (const Group& group : groups) add(group, views_wanted(scene, group, settings), 1, group.first);
-    return views;
-  }
-  // Systematic sampling: group g has most_views * power / total views on average.
-  Sampler sampler =
-      Sampler::for_pixel(settings.seed, stream_of("lights of a frame"), 0, settings.is_random ? settings.frame : 0);
-  float next = sampler.next() * total / static_cast<float>(settings.most_views), sum = 0;
-  for (const Group& group : groups) {
-    sum += group.power;
-    int copies = 0;
-    for (; next < sum; next += total / static_cast<float>(settings.most_views)) ++copies;
-    if (copies > 0)
-      add(group, copies, static_cast<float>(copies) * total / (static_cast<float>(settings.most_views) * group.power),
-          group.first);
-  }
   return views;
 }
 

@@ -126,8 +126,8 @@ float opacity_at(const ShapeStore& shape, const Vec2& uv) {
 
 std::vector<const ShapeStore*> shapes_of(const Scene& scene) {
   std::vector<const ShapeStore*> shapes;
-  for (const auto& shape : scene.data()->geometry.shapes()) shapes.push_back(shape.get());
-  for (const auto& group : scene.data()->geometry.groups())
+  for (const auto& shape : scene.data()->geometry->shapes()) shapes.push_back(shape.get());
+  for (const auto& group : scene.data()->geometry->groups())
     for (const auto& shape : group) shapes.push_back(shape.get());
   return shapes;
 }
@@ -170,7 +170,7 @@ void GpuScene::update(const Scene& scene) {
 }
 
 void GpuScene::make_materials(const Scene& scene, std::vector<SurfaceLayer>& layers) {
-  material_data_.assign(scene.data()->materials.size(), {});
+  material_data_.assign(scene.data()->materials->table.size(), {});
   bool has_more = false;
   for (const std::uint32_t i : used_materials(scene)) {
     SurfaceMaterial surface = surface_material(scene, i);
@@ -243,17 +243,17 @@ void GpuScene::make_draws(const Scene& scene, std::vector<SurfaceLayer>& layers)
   draw_data_.clear();
   triangles_ = 0;
   std::size_t mesh = 0;
-  for (const auto& shape : data.geometry.shapes())
+  for (const auto& shape : data.geometry->shapes())
     add_draw(shape->record, mesh++, Transform(), shape->record.first_light);
   std::vector<std::size_t> first_of_group;
-  for (const auto& group : data.geometry.groups()) {
+  for (const auto& group : data.geometry->groups()) {
     first_of_group.push_back(mesh);
     mesh += group.size();
   }
   const float shutter_open = data.description.view.camera.shutter_open;
-  for (const PlacedInstance& p : data.placed) {
+  for (const PlacedInstance& p : *data.placed) {
     const Transform to_world = p.placed.outer.at(shutter_open) * p.placed.inner.at(shutter_open);
-    const std::size_t first = first_of_group[p.placed.group], count = data.geometry.groups()[p.placed.group].size();
+    const std::size_t first = first_of_group[p.placed.group], count = data.geometry->groups()[p.placed.group].size();
     for (std::size_t m = first; m < first + count; ++m) add_draw(shapes[m]->record, m, to_world, p.placed.first_light);
   }
   make_patterns(scene, shapes, layers);

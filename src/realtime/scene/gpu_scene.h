@@ -55,7 +55,7 @@ class GpuScene {
   /// A context must be current. Reads no files.
   explicit GpuScene(const Scene& scene);
 
-  /// Takes over places, materials and lights of an edited scene (`edit_scene`) with the same meshes.
+  /// Takes over places, materials and lights of an edited scene with the same meshes.
   void update(const Scene& scene);
 
   /// Draws all triangles. A program with the vertex shader scene.vert.glsl, or one with its inputs, must be in use.

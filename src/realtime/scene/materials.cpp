@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstddef>
 #include <optional>
-#include <type_traits>
 #include <variant>
 
 #include "scene/scene_data.h"
@@ -64,16 +63,15 @@ GpuMaterial reduced(const Plastic& p) {
   return plastic_of(p.reflectance, p.f0, p.f90, p.alpha, p.film || smooth ? 0u : gpu::flag_exact);
 }
 
-/// Glass keeps only what the split sum uses: its reflection and refraction are delta or need paths. Hair has no split
-/// terms.
+/// Glass, which transmits, keeps only what the split sum uses: its reflection and refraction are delta or need paths.
+/// Hair has no split terms.
 template <class Closure>
 GpuMaterial reduced(const Closure& closure) {
-  constexpr bool is_glass = std::is_same_v<Closure, Dielectric> || std::is_same_v<Closure, ThinDielectric>;
   GpuMaterial m{};
   m.kind = gpu::kind_none;
   m.flags = gpu::flag_smooth;
   const SplitTerms terms = split_terms(closure, Vec3(0, 0, 1));
-  if (is_glass) {
+  if (Closure::traits.transmits) {
     m.colour.w = terms.alpha;
     m.through = rgba(terms.f0, 0);
     m.specular.x = max_component(terms.f90);
@@ -114,7 +112,7 @@ GpuMaterial blended(const std::vector<Part>& parts) {
 
 /// The mean of the parts' mapped normals, in the frame of dp/du, dp/dv and the smooth normal; nullopt if none has one.
 std::optional<Normal> normal_at(const Scene& scene, std::uint32_t material, const Vec2& uv) {
-  const MaterialTable& table = scene.data()->materials;
+  const MaterialTable& table = scene.data()->materials->table;
   const TexturePoint at{.uv = uv};
   Normal sum(0);
   bool is_mapped = false;
@@ -179,7 +177,7 @@ GpuMaterial reduce(const Bsdf& bsdf) {
 }
 
 GpuMaterial material_at(const Scene& scene, std::uint32_t material, const Vec2& uv) {
-  const MaterialTable& table = scene.data()->materials;
+  const MaterialTable& table = scene.data()->materials->table;
   TexturePoint at;
   at.uv = uv;
   at.position = scene.bounding_sphere().centre;

@@ -7,18 +7,13 @@
 #include <utility>
 
 #include "lanthorn/error.h"
+#include "render/record.h"
 
 namespace lanthorn {
 
 namespace {
 
 constexpr auto poll_interval = std::chrono::milliseconds(1);
-
-RenderState identity_of(const RenderState& state) {
-  RenderState identity;
-  identity.settings = state.settings;
-  return identity;
-}
 
 }  // namespace
 
@@ -31,14 +26,14 @@ TeamMember::TeamMember(Team& team, const StopRule& stop, const RenderState& stat
       gathering_(team.link.rank, team.link.size),
       tree_check_(team.link.size, gathering_.awaited_children()),
       round_(team.rounds),
-      identity_(identity_of(state)) {
+      identity_(state.record.identity) {
   if (is_first())
     deal_.emplace(stop, team, state.passes);
   else
     questions_.push_back({.kind = MessageKind::join,
                           .a = static_cast<std::uint64_t>(Gathering::parent(team.link.rank)),
                           .b = static_cast<std::uint64_t>(gathering_.awaited_children()),
-                          .rest = bytes_of(state.settings)});
+                          .rest = bytes_of(settings_text(state.record))});
   thread_ = std::thread([this] { run(); });
 }
 
@@ -188,11 +183,10 @@ void TeamMember::handle_at_first(int from, const Message& message) {
   if (message.kind == MessageKind::failed)
     throw Error(fmt::format("process {} of {}: {}", from, team_.link.size, text_of(message.rest)));
   if (message.kind == MessageKind::join) {
-    RenderState other;
-    other.settings = text_of(message.rest);
-    if (const auto difference = identity_difference(identity_, other))
-      throw Error(
-          fmt::format("process {} of {} renders something else: it differs in {}", from, team_.link.size, *difference));
+    const std::string sender = fmt::format("process {} of {}", from, team_.link.size);
+    const RenderRecord record = read_record(text_of(message.rest), sender);
+    if (const auto difference = identity_difference(identity_, record.identity))
+      throw Error(fmt::format("{} renders something else: it differs in {}", sender, *difference));
     return tree_check_.join(from, message.a, message.b);
   }
   add_counts(counts_, message.rest);

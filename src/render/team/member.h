@@ -108,7 +108,7 @@ class TeamMember {
   std::deque<std::pair<std::uint64_t, RoundSums>> arriving_;  // the pass loop has handed these over
   // Only rank 0 uses these.
   std::optional<Deal> deal_;
-  RenderState identity_;  // has the settings of the render and nothing else
+  RenderIdentity identity_;
   std::set<int> waiting_, ended_;
   std::map<int, std::uint64_t> told_to_wait_;  // the last round for which each rank was told to wait
   std::deque<RoundSums> gathered_;

@@ -17,7 +17,7 @@ namespace lanthorn {
 enum class MessageKind : std::uint8_t {
   // To rank 0.
   /// Says which render the process takes part in; a: the rank that it passes its sums on to, b: the number of
-  /// processes that pass theirs on to it, rest: the text of its settings.
+  /// processes that pass theirs on to it, rest: the text of its record.
   join,
   ask,     ///< asks for the next pass; rest: the counts of the passes since the last question
   failed,  ///< says why the process cannot render; rest: the text

@@ -214,10 +214,9 @@ TEST(Api, AnEditedSceneIsRenderedAnew) {
   session.render();
   const std::vector<float> pixels = session.picture().pixels;
   const double before = brightness(session.picture());
-  lanthorn::SceneEdits edits;
-  edits.area_lights[0] = lanthorn::description_of(*scene).area_lights.at(0);
-  edits.area_lights[0].scale *= 4;
-  session.set_scene(lanthorn::edit_scene(*scene, edits));
+  lanthorn::SceneDescription description = lanthorn::description_of(*scene);
+  description.area_lights.at(0).scale *= 4;
+  session.set_scene(lanthorn::build_scene(std::move(description), scene));
   EXPECT_EQ(session.pass_count(), 0u);
   session.render();
   const double bright = brightness(session.picture());

@@ -46,11 +46,10 @@ RenderOptions small(std::uint64_t passes = 3) {
 }
 
 SharedScene darker(float factor) {
-  SceneEdits edits;
-  edits.area_lights[0] = description_of(*box()).area_lights[0];
-  scale_light(edits.area_lights[0], factor);
-  edits.hash = static_cast<std::uint64_t>(1000 * factor);
-  return edit_scene(*box(), edits);
+  SceneDescription description = description_of(*box());
+  scale_light(description.area_lights[0], factor);
+  description.hash = static_cast<std::uint64_t>(1000 * factor);
+  return build_scene(std::move(description), box());
 }
 
 Image picture_of(const SharedScene& scene, const ViewDescription& view, const RenderOptions& options) {
@@ -149,8 +148,9 @@ TEST(InteractiveRender, CoarsePicturesOfAutoHaveNoPilot) {
   });
   ASSERT_EQ(coarse.status.problem, "");
   EXPECT_TRUE(coarse.picture->is_coarse);
-  EXPECT_NE(coarse.picture->state.settings.find("\"integrator\":\"vcm\""), std::string::npos);
-  EXPECT_NE(coarse.picture->state.settings.find("\"emission\":\"power\""), std::string::npos);
+  const RenderIdentity& identity = coarse.picture->state.record.identity;
+  EXPECT_EQ(identity.integrator, "vcm");
+  EXPECT_EQ(identity.parameters.at("emission"), "power");
   EXPECT_EQ(coarse.picture->state.integrator, "auto");
   EXPECT_EQ(coarse.picture->remark, "");
   EXPECT_FALSE(coarse.picture->seconds_left);

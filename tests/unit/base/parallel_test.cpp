@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 #include <immintrin.h>
+#include <tbb/parallel_for.h>
 
 #include <limits>
 #include <thread>

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 // Compares second moments for other numbers of samples with values computed by hand.
-#include "integrators/vcm/moments.h"
+#include "integrators/auto/moments.h"
 
 #include <gtest/gtest.h>
 
@@ -51,11 +51,11 @@ TEST(CandidateArrays, GivesSomeDensityToPathsThatACandidateCannotFind) {
 TEST(PathMoments, SumsContributionsOfTheWalk) {
   const CandidateArrays candidates(std::vector{EffortCandidate{}, path_tracing});
   PathMoments moments(candidates);
-  moments.weighed = {.within = {.walk = 1, .merging = 3}};
-  moments.add(2, &TechniqueDensities::walk);
-  moments.add(3, &TechniqueDensities::walk);
+  const TechniqueSum densities{.within = {.walk = 1, .merging = 3}};
+  moments.add({2, densities, &TechniqueDensities::walk});
+  moments.add({3, densities, &TechniqueDensities::walk});
   moments.set = 1;
-  moments.add(9, &TechniqueDensities::walk);  // the same eye path again
+  moments.add({9, densities, &TechniqueDensities::walk});  // the same eye path again
   EXPECT_EQ(moments.light, 5);
   EXPECT_EQ(moments.by_walk, 5);
   const PathMoments::Estimate pilot = moments.estimate(0), more_noise = moments.estimate(1);
@@ -71,10 +71,10 @@ TEST(PathMoments, SumsContributionsOfTheWalk) {
 TEST(PathMoments, TellsLightOfBothSetsApart) {
   const CandidateArrays candidates(std::vector{EffortCandidate{}, more, path_tracing});
   PathMoments moments(candidates);
-  moments.weighed = {.within = {.walk = 1, .connections = 1}};  // R of `more`: 5 / 2
-  moments.add(5, &TechniqueDensities::connections);
+  const TechniqueSum densities{.within = {.walk = 1, .connections = 1}};  // R of `more`: 5 / 2
+  moments.add({5, densities, &TechniqueDensities::connections});
   moments.set = 1;
-  moments.add(10, &TechniqueDensities::connections);
+  moments.add({10, densities, &TechniqueDensities::connections});
   EXPECT_EQ(moments.light, 5);
   const PathMoments::Estimate pilot = moments.estimate(0), other = moments.estimate(1), none = moments.estimate(2);
   EXPECT_DOUBLE_EQ(pilot.light, 7.5);
@@ -93,8 +93,8 @@ TEST(PathMoments, TellsLightOfBothSetsApart) {
 TEST(PathMoments, LeavesOutWhatShortEyePathsDoNotFind) {
   const CandidateArrays candidates(std::vector{EffortCandidate{}, short_paths});
   PathMoments moments(candidates);
-  moments.weighed = {.within = {.merging = 1}, .beyond = {.merging = 1}, .is_beyond = true};
-  moments.add(3, &TechniqueDensities::merging);
+  const TechniqueSum densities{.within = {.merging = 1}, .beyond = {.merging = 1}, .is_beyond = true};
+  moments.add({3, densities, &TechniqueDensities::merging});
   EXPECT_DOUBLE_EQ(moments.estimate(0).light, 1.5);
   EXPECT_DOUBLE_EQ(moments.estimate(1).light, 0);
   EXPECT_DOUBLE_EQ(moments.estimate(1).all_squares, 0.5 * 9 / 0.5);
@@ -103,10 +103,10 @@ TEST(PathMoments, LeavesOutWhatShortEyePathsDoNotFind) {
 TEST(PathMoments, TakesMergesOfBothSets) {
   const CandidateArrays candidates(std::vector{EffortCandidate{}});
   PathMoments moments(candidates);
-  moments.weighed = {.within = {.merging = 1}};
-  moments.add(3, &TechniqueDensities::merging);
+  const TechniqueSum densities{.within = {.merging = 1}};
+  moments.add({3, densities, &TechniqueDensities::merging});
   moments.set = 1;
-  moments.add(5, &TechniqueDensities::merging);
+  moments.add({5, densities, &TechniqueDensities::merging});
   EXPECT_DOUBLE_EQ(moments.estimate(0).of_eye_path, 15);
 }
 
@@ -114,8 +114,8 @@ TEST(PathMoments, TakesMergesOfBothSets) {
 TEST(PathMoments, IgnoresBrightLightOfTechniquesThatACandidateDoesNotUse) {
   const CandidateArrays candidates(std::vector{EffortCandidate{}, path_tracing});
   PathMoments moments(candidates);
-  moments.weighed = {.within = {.merging = 1}};
-  moments.add(1e37f, &TechniqueDensities::merging);
+  const TechniqueSum densities{.within = {.merging = 1}};
+  moments.add({1e37f, densities, &TechniqueDensities::merging});
   EXPECT_EQ(moments.estimate(1).light, 0);
 }
 

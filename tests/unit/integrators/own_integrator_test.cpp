@@ -6,7 +6,6 @@
 
 #include <memory>
 #include <new>
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "lanthorn/error.h"
@@ -132,7 +131,7 @@ TEST(OwnIntegrator, GoesOnFromItsStateAndItsShardsMerge) {
   EXPECT_EQ(encode_state(merge_states(test::render_state(scene, rest), first)), encode_state(whole));
   RenderState other = test::render_state(scene, test::options_for("path", 2));
   other.passes = {{4, 6}};
-  other.settings = whole.settings;
+  other.record = whole.record;
   EXPECT_THROW(merge_states(whole, other), Error);
 }
 

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <variant>
 
@@ -166,8 +165,7 @@ TEST_F(Environment, AnotherOneIsAnotherScene) {
     RenderOptions options;
     options.integrator = "path";
     const Session session(build_scene(read("model.gltf", choice)), options);
-    const auto settings = nlohmann::json::parse(summarize(session.state()).settings);
-    return settings["identity"]["scene_hash"].get<std::string>();
+    return summarize(session.state()).record.identity.scene_hash;
   };
   const std::string plain = hash({});
   EXPECT_EQ(hash({.source = "studio"}), hash({.source = "studio"}));

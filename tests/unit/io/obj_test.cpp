@@ -74,7 +74,7 @@ TEST(Obj, CornersAreSharedAndFacesSortedByMaterialAndAttributes) {
   std::map<std::string, std::size_t> triangles;
   for (const Shape& shape : scene.shapes)
     triangles[scene.materials.at(shape.material).name +
-              (mesh(scene, static_cast<std::size_t>(&shape - scene.shapes.data())).normals.empty() ? "" : " n")] =
+              (mesh(scene, static_cast<std::size_t>(&shape - &scene.shapes.front())).normals.empty() ? "" : " n")] =
         std::get<TriangleMesh>(shape.geometry).triangles.size();
   EXPECT_EQ(triangles, (std::map<std::string, std::size_t>{{"", 1}, {"red", 2}, {"red n", 1}, {"blue paint", 1}}));
   for (const Shape& shape : scene.shapes)

@@ -101,7 +101,7 @@ TEST_F(SceneFiles, NothingIsReadAgain) {
   EXPECT_NE(picture(scene = build_scene(file.at(1), scene)), first);
   // Data that scenes share outlive the scene that they come from.
   EXPECT_EQ(picture(scene = build_scene(file.at(0), scene)), first);
-  EXPECT_EQ(picture(edit_scene(*scene, {})), first);
+  EXPECT_EQ(picture(build_scene(description_of(*scene), scene)), first);
   EXPECT_THROW(build_scene(file.at(1)), Error) << "without another scene, its images are read";
 }
 

@@ -414,7 +414,7 @@ TEST(StandIns, WhatTheScenesOwnLightsReachIsShown) {
   EXPECT_LT(eye_of(seen_in_own_light(box)).z, -3) << "open at the back";
   // A view from the right, into a box whose left wall is visible from the front as well as from the right.
   SceneDescription open_at_right = scene_of(room({2, 2, 2}, {}));
-  open_at_right.shapes.erase(open_at_right.shapes.begin() + 1);
+  open_at_right.shapes.edit().erase(open_at_right.shapes.begin() + 1);
   add_lamp(open_at_right, {0, 1.99f, 0});
   const Point eye = eye_of(seen_in_own_light(open_at_right));
   EXPECT_GT(eye.x, 3);

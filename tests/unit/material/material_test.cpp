@@ -508,7 +508,7 @@ TEST(Materials, AnIndexOfAlmostOneBendsNothing) {
     const auto s = sample(bsdf, wi, 0.5f, Vec2(0.3f, 0.6f), Transport::radiance);
     ASSERT_TRUE(s) << index;
     EXPECT_EQ(s->wo, -wi) << index;
-    EXPECT_TRUE(eval(bsdf, wi, -wi, Transport::radiance).is_black()) << index;
+    EXPECT_TRUE(evaluate(bsdf, wi, -wi, Transport::radiance).f.is_black()) << index;
   }
 }
 

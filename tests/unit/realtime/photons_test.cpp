@@ -19,6 +19,7 @@
 #include "realtime/scene/shader_files.h"
 #include "realtime/techniques/ispm/bounce_map.h"
 #include "support/chi2.h"
+#include "support/edited.h"
 #include "support/opengl.h"
 #include "support/render_scene.h"
 #include "support/runs.h"
@@ -185,11 +186,10 @@ TEST_F(Photons, FollowALightThatMoves) {
   Renderer renderer(scene);
   renderer.draw(view, settings);
   const Image before = renderer.read_layers();
-  description::Light light = scene.description().lights[0];
-  light.light_to_world = translate({-0.6f, 0, 0}) * light.light_to_world;
-  SceneEdits edits;
-  edits.lights[0] = light;
-  const SharedScene moved = edit_scene(scene, edits);
+  const SharedScene moved = test::edited(scene, [](SceneDescription& description) {
+    Transform& place = description.lights[0].light_to_world;
+    place = translate({-0.6f, 0, 0}) * place;
+  });
   renderer.update(*moved);
   renderer.draw(view, settings);
   EXPECT_EQ(renderer.read_layers().pixels, frame_of(*moved, settings).pixels);

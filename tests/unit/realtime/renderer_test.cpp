@@ -14,6 +14,7 @@
 
 #include "lanthorn/metrics.h"
 #include "realtime/lights/light_views.h"
+#include "support/edited.h"
 #include "support/opengl.h"
 #include "support/render_scene.h"
 
@@ -140,7 +141,7 @@ TEST_F(RendererTest, ShapesHiddenFromTheCameraHaveShadows) {
   ASSERT_EQ(description.shapes.size(), 2u);
   description.shapes[1].visible_to_camera = false;
   const Scene hidden(description);
-  description.shapes.pop_back();
+  description.shapes.edit().pop_back();
   const Scene without(description);
   const View view = make_view(hidden.description().view);
   for (const ShadowKind shadows : {ShadowKind::maps, ShadowKind::traced}) {
@@ -332,12 +333,13 @@ TEST_F(RendererTest, FramesFollowObjectsAndLamps) {
   const std::string block_here = "-.2 0 0", block_there = ".4 .1 -.3", lamp_here = ".4 1.5 -.2",
                     lamp_there = "-.6 1.6 -.5";
   const Scene scene = test::scene_from_text(corner(block_here, lamp_here));
-  SceneEdits block, lamp;
-  block.instances[0] = AnimatedTransform(translate({0.4, 0.1, -0.3}));
-  lamp.lights[0] = scene.description().lights[0];
-  lamp.lights[0].light_to_world = translate({-1, 0.1, -0.3}) * lamp.lights[0].light_to_world;
-  SceneEdits both = block;
-  both.lights = lamp.lights;
+  const auto with = [&](bool block, bool lamp) {
+    return test::edited(scene, [&](SceneDescription& description) {
+      if (block) description.instances[0].object_to_world = AnimatedTransform(translate({0.4, 0.1, -0.3}));
+      Transform& place = description.lights[0].light_to_world;
+      if (lamp) place = translate({-1, 0.1, -0.3}) * place;
+    });
+  };
   const std::array looks{Look{"direct", TechniqueChoice("direct", {{"shadows", "maps"}})},
                          Look{"traced", TechniqueChoice("direct", {{"shadows", "traced"}})},
                          Look{"photons", TechniqueChoice("ispm", {{"shadows", "maps"}, {"radius", "0.3"}})},
@@ -345,10 +347,9 @@ TEST_F(RendererTest, FramesFollowObjectsAndLamps) {
   Renderer renderer(scene);
   std::vector<Image> first;
   for (const Look& look : looks) first.push_back(frame_of(renderer, scene, look));
-  for (const auto& [edits, block_at, lamp_at] : {std::tuple{&block, block_there, lamp_here},
-                                                 {&lamp, block_here, lamp_there},
-                                                 {&both, block_there, lamp_there}}) {
-    const SharedScene moved = edit_scene(scene, *edits);
+  for (const auto& [moved, block_at, lamp_at] : {std::tuple{with(true, false), block_there, lamp_here},
+                                                 {with(false, true), block_here, lamp_there},
+                                                 {with(true, true), block_there, lamp_there}}) {
     renderer.update(*moved);
     const Scene there = test::scene_from_text(corner(block_at, lamp_at));
     Renderer fresh(there);

@@ -15,6 +15,7 @@
 #include "lanthorn/metrics.h"
 #include "realtime/frame/renderer.h"
 #include "realtime/techniques/voxelcones/voxels.h"
+#include "support/edited.h"
 #include "support/opengl.h"
 #include "support/render_scene.h"
 #include "support/temporary_dir.h"
@@ -223,17 +224,14 @@ Material "diffuse" "texture reflectance" "stripes"
 )" + square(0, 0)));
   GpuScene gpu_scene(scene);
   const std::uint64_t version = gpu_scene.surface_version();
-  SceneEdits lamp;
-  lamp.lights[0] = scene.description().lights[0];
-  lamp.lights[0].light_to_world = translate({-1, 0, 0});
-  const SharedScene moved = edit_scene(scene, lamp);
+  const SharedScene moved = test::edited(scene, [](SceneDescription& description) {
+    description.lights[0].light_to_world = translate({-1, 0, 0});
+  });
   gpu_scene.update(*moved);
   EXPECT_EQ(gpu_scene.surface_version(), version);
-  SceneEdits material;
-  const auto& materials = scene.description().materials;
-  const auto last = static_cast<description::Index>(materials.size() - 1);
-  material.materials[last] = materials[last - 1];
-  const SharedScene painted = edit_scene(scene, material);
+  const SharedScene painted = test::edited(scene, [](SceneDescription& description) {
+    description.materials.back() = description.materials[description.materials.size() - 2];
+  });
   gpu_scene.update(*painted);
   EXPECT_GT(gpu_scene.surface_version(), version);
   SurfaceTextures textures;

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/colour_balance.h"
 
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <array>
@@ -118,7 +117,8 @@ TEST(ColourBalance, SpectralPicturesAreAsSmoothAsThoseInRgb) {
 Rgb colour_after(std::uint64_t seed, std::uint64_t passes, float (*reflectance)(float)) {
   RenderState state;
   constexpr std::uint32_t sets = 2;
-  state.settings = fmt::format(R"({{"identity": {{"seed": {}, "plateau_wavelength_sets": {}}}}})", seed, sets);
+  state.record.identity.seed = seed;
+  state.record.identity.wavelength_sets = sets;
   state.passes = {{0, passes}};
   Rgb mean;
   const auto count = static_cast<std::uint32_t>(passes) * sets;
@@ -227,20 +227,6 @@ TEST(ColourBalance, IsForPassesThatShareWavelengthsAlone) {
   EXPECT_EQ(balance("path", ColorMode::spectral), none);
   EXPECT_EQ(balance("light", ColorMode::spectral), none);
   EXPECT_FALSE(balance("probppm", ColorMode::spectral) == none);
-}
-
-TEST(ColourBalance, StatesThatAnybodyWroteAreTakenAsTheyAre) {
-  RenderState state;
-  for (const char* const text :
-       {R"({"identity": {"seed": 1, "wavelength_sets": 2}})",  // of another density of wavelengths
-        R"({"identity": 3})", R"({"identity": {"seed": 1}})",
-        R"({"identity": {"seed": "x", "plateau_wavelength_sets": 2}})",
-        R"({"identity": {"seed": 1, "plateau_wavelength_sets": -2}})",
-        R"({"identity": {"seed": 1, "plateau_wavelength_sets": 1000000000000}})"}) {
-    state.passes = {{0, 3}};
-    state.settings = text;
-    EXPECT_EQ(colour_balance(state), (Rgb{1, 1, 1})) << text;
-  }
 }
 
 }  // namespace

@@ -7,7 +7,6 @@
 #include <atomic>
 #include <chrono>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <thread>
 
@@ -107,7 +106,7 @@ TEST_F(StandInTest, IsNotNeededIfThereIsTime) {
   EXPECT_FALSE(whole.statistics.coarse);
   const Outcome unlimited = run("fast-pixels", {.passes = {0, 1}});
   EXPECT_EQ(picture_of(whole.plan.state).pixels, picture_of(unlimited.plan.state).pixels);
-  EXPECT_EQ(whole.plan.state.settings, unlimited.plan.state.settings);
+  EXPECT_EQ(settings_text(whole.plan.state.record), settings_text(unlimited.plan.state.record));
 }
 
 // The next call begins anew, and its state is that of a render without a stand-in.
@@ -119,7 +118,7 @@ TEST_F(StandInTest, LeavesNoTraceInTheNextCall) {
   const Outcome whole = run("slow-whole-picture", {.passes = {0, 1}});
   EXPECT_EQ(coarse.plan.state.passes, whole.plan.state.passes);
   EXPECT_EQ(picture_of(coarse.plan.state).pixels, picture_of(whole.plan.state).pixels);
-  EXPECT_EQ(coarse.plan.state.settings, whole.plan.state.settings);
+  EXPECT_EQ(settings_text(coarse.plan.state.record), settings_text(whole.plan.state.record));
 }
 
 TEST_F(StandInTest, BelongsToNoOtherRender) {
@@ -128,7 +127,7 @@ TEST_F(StandInTest, BelongsToNoOtherRender) {
   ASSERT_TRUE(coarse.statistics.coarse);
   RenderPlan plan = test::plan_render(scene_, test::options_for("slow-pixels", 1));
   try {
-    require_same_identity(coarse.plan.state, plan.state.settings, "a.state");
+    require_same_identity(coarse.plan.state, plan.state.record.identity, "a.state");
     ADD_FAILURE() << "a coarse picture was taken for a whole one";
   } catch (const Error& problem) {
     EXPECT_NE(problem.message.find("coarse"), std::string::npos) << problem.message;

@@ -13,9 +13,12 @@
 #include "film/film_pass.h"
 #include "lanthorn/error.h"
 #include "lanthorn/file.h"
+#include "render/record.h"
 #include "render/render.h"
 #include "support/error_text.h"
+#include "support/printable.h"
 #include "support/temporary_dir.h"
+#include "support/whole_film.h"
 
 namespace lanthorn::state_test {
 namespace {
@@ -23,16 +26,16 @@ namespace {
 using Bytes = std::vector<std::byte>;
 using nlohmann::json;
 
-// `settings` with the JSON merge patch `patch` applied.
-std::string patched(const std::string& settings, const std::string& patch) {
-  json result = json::parse(settings);
-  result.merge_patch(json::parse(patch));
-  return result.dump();
+// The record with a JSON merge patch applied to its settings.
+RenderRecord patched(const RenderRecord& record, const json& patch) {
+  json settings = json::parse(settings_text(record));
+  settings.merge_patch(patch);
+  return read_record(settings.dump(), "a.state");
 }
 
 RenderState shard(std::uint64_t first, std::uint64_t end, bool splats = true) {
   RenderState state;
-  state.film = Film(6, 4, 10, {.light = {"direct", "caustic"}, .splats = splats});
+  test::set_film(state, Film(6, 4, 10, {.light = {"direct", "caustic"}, .splats = splats}));
   for (std::uint64_t pass = first; pass < end; ++pass) {
     std::mt19937 rng(static_cast<unsigned>(pass));
     const auto value = [&] { return std::generate_canonical<float, 24>(rng) * 12 - 1; };
@@ -47,15 +50,17 @@ RenderState shard(std::uint64_t first, std::uint64_t end, bool splats = true) {
     state.add_pass(pass);
   }
   state.integrator = "probppm";
-  state.settings =
-      json{{"identity", {{"seed", 5}, {"camera", {{"fov", 40.5}}}}}, {"threads", first + 1}, {"host", "a"}}.dump();
+  state.record.identity.seed = 5;
+  state.record.identity.others = {{"camera", R"({"fov":40.5})"}};
+  state.record.others = {{"threads", std::to_string(first + 1)}, {"host", R"("a")"}};
   state.seconds = 0.1 * static_cast<double>(end - first);
   return state;
 }
 
 TEST(State, PicturesWithAndWithoutTheirErrorAreTheSame) {
   RenderState state = shard(0, 9);
-  state.settings = patched(state.settings, R"({"identity": {"resolution": [8, 4], "crop": [1, 0, 7, 4]}})");
+  state.record.identity.resolution = {8, 4};
+  state.record.identity.crop = {1, 0, 7, 4};
   const MeasuredPicture measured = measured_picture_of(state);
   EXPECT_EQ(measured.picture.pixels, picture_of(state).pixels);
   EXPECT_GT(measured.error.noise, 0);
@@ -71,7 +76,7 @@ TEST(State, PicturesWithAndWithoutTheirErrorAreTheSame) {
       EXPECT_EQ(own->pixels, select_layer(measured.picture, layer)->pixels) << layer;
     }
   }
-  state.settings = patched(state.settings, R"({"bias_not_measured": true})");
+  state.record.bias_not_measured = true;
   EXPECT_FALSE(measured_picture_of(state).error.is_known());
   EXPECT_FALSE(estimate_error(state).is_known());
 }
@@ -79,7 +84,7 @@ TEST(State, PicturesWithAndWithoutTheirErrorAreTheSame) {
 TEST(State, KeepsLayersAndTheirDecomposition) {
   RenderState state = shard(0, 3);
   const Decomposition parts{{"by.a", "by.b"}, "by.splat", Decomposition::Shares{"by.share", {{{0}, {1, 2}, {}}}}};
-  state.film = Film(2, 1, 10, {.light = {"near", "far", "sky"}, .decomposition = parts, .splats = true});
+  test::set_film(state, Film(2, 1, 10, {.light = {"near", "far", "sky"}, .decomposition = parts, .splats = true}));
   PixelSample s;
   s.light = {Rgb{1, 2, 3}, Rgb{0, 1, 0}, Rgb{4, 0, 0}};
   s.parts = {Rgb{5, 2, 3}, Rgb{0, 1, 0}};
@@ -95,11 +100,11 @@ TEST(State, KeepsLayersAndTheirDecomposition) {
 
 TEST(State, KeepsSpectralBucketsAndSamplesOfNegativeLobes) {
   RenderState state = shard(0, 3);
-  state.film = Film(3, 2, 10,
-                    {.light = {"direct", "caustic"},
-                     .splats = true,
-                     .buckets = SpectralBuckets{7, 400, 700},
-                     .negative_share = 0.3f});
+  test::set_film(state, Film(3, 2, 10,
+                             {.light = {"direct", "caustic"},
+                              .splats = true,
+                              .buckets = SpectralBuckets{7, 400, 700},
+                              .negative_share = 0.3f}));
   PixelSample s;
   s.spectrum.emplace();
   s.spectrum->radiance = {1, 2, 3, 4};
@@ -140,7 +145,7 @@ TEST(State, RoundTrips) {
     EXPECT_EQ(read.passes, state.passes);
     EXPECT_EQ(read.integrator, state.integrator);
     EXPECT_EQ(read.integrator_state, state.integrator_state);
-    EXPECT_EQ(read.settings, state.settings);
+    EXPECT_EQ(settings_text(read.record), settings_text(state.record));
     EXPECT_EQ(read.shardable, state.shardable);
     EXPECT_EQ(read.seconds, state.seconds);
     for (const auto& [ends, expected] : {std::pair{read.eye, state.eye}, {read.light, state.light}}) {
@@ -233,8 +238,9 @@ json header() {
 TEST(State, ForgedHeadersAreErrors) {
   EXPECT_NO_THROW(decode_state(with_header(header().dump()), "x"));
   EXPECT_THROW(decode_state(with_header("{}"), "x"), Error);
-  json deep = header();
-  for (int i = 0; i < 100; ++i) deep["settings"] = {{"a", deep["settings"]}};
+  json deep = header(), nested = 0;
+  for (int i = 0; i < 100; ++i) nested = {{"a", nested}};
+  deep["settings"]["a"] = nested;
   EXPECT_THROW(decode_state(with_header(deep.dump()), "x"), Error)
       << "nesting is bounded, for those who recurse over it";
   const json huge[] = {{{"film", {{"width", 1 << 20}, {"height", 1 << 11}}}},
@@ -271,6 +277,114 @@ TEST(State, ForgedHeadersAreErrors) {
     forged.merge_patch(change);
     EXPECT_THROW(decode_state(with_header(forged.dump()), "x"), Error) << change;
   }
+}
+
+// A record with all members, each of which differs from its default.
+RenderRecord full_record() {
+  RenderRecord record{
+      .identity = {.version = "1.2",
+                   .scene_hash = "0f",
+                   .files = {{"a.ply", {"01"}}, {"b.png", {"02", "03"}}},
+                   .integrator = "auto",
+                   .parameters = {{"alpha", "0.5"}},
+                   .seed = ~std::uint64_t{0},
+                   .color = ColorMode::spectral,
+                   .max_depth = 9,
+                   .photons = 10000,
+                   .resolution = {9, 8},
+                   .crop = {2, 1, 6, 5},
+                   .margin = std::array{2, 0, 0, 0},
+                   .filter = {.kind = description::FilterKind::mitchell, .radius = {2, 3}, .b = 0.1f, .c = 0.2f},
+                   .wavelength_sets = 2,
+                   .heroes_of_paths = true,
+                   .filter_lobes_apart = true,
+                   .view = "0c",
+                   .coarse = std::array{4, 3},
+                   .others = {{"new", "[1,{}]"}}},
+      .scene = "a.pbrt",
+      .measures_exposure = true,
+      .display_emission = true,
+      .bias_not_measured = true,
+      .findings = EffortReport{.summary = "few caustics",
+                               .short_part = 0.25,
+                               .variance = 3.5,
+                               .uniform = {{.place = {.connections = 4, .goes_on = false}, .work = 7}},
+                               .work_of_eye_path = {.lookups = 2},
+                               .work_of_light_path = {.vertices = 5}},
+      .others = {{"host", R"("a")"}}};
+  record.identity.options.clamp = 0.1f;
+  return record;
+}
+
+TEST(State, KeepsTheRecordOfItsRender) {
+  RenderState state = shard(0, 1);
+  state.record = full_record();
+  const RenderRecord read = decode_state(encode_state(state), "a.state").record;
+  EXPECT_EQ(settings_text(read), settings_text(state.record));
+  EXPECT_EQ(settings_text(read),
+            R"({"bias_not_measured":true,"display_emission":true,"findings":{"caustic_light":0.0,"caustic_part":0.0,)"
+            R"("connected_part":0.0,"everywhere":[{"connections":4,"connects_to_lens":true,"goes_on":false,)"
+            R"("light_paths_per_pixel":0.0,"merges":true,"merges_in_media":true,"variance":0.0,"work":7.0}],)"
+            R"("eye_path":{"connections":0.0,"lookups":2.0,"merges":0.0,"next_events":0.0,"rays":0.0},)"
+            R"("light_by_light_paths":0.0,"light_path":{"rays":0.0,"vertices":5.0},"light_paths_per_pixel":0.0,)"
+            R"("merged_part":0.0,"short_part":0.25,"summary":"few caustics","variance":3.5,"work":0.0},"host":"a",)"
+            R"("identity":{"clamp":0.10000000149011612,"coarse":[4,3],"color":"spectral","crop":[2,1,6,5],)"
+            R"("files":{"a.ply":"01","b.png":["02","03"]},"filter":{"b":0.10000000149011612,)"
+            R"("c":0.20000000298023224,"kind":"mitchell","radius":[2.0,3.0]},"filter_lobes_apart":true,)"
+            R"("heroes_of_paths":true,"integrator":"auto","margin":[2,0,0,0],"max_depth":9,"new":[1,{}],)"
+            R"("parameters":{"alpha":"0.5"},"photons":10000,"plateau_wavelength_sets":2,"resolution":[9,8],)"
+            R"("scene_hash":"0f","seed":18446744073709551615,"version":"1.2","view":"0c"},"measures_exposure":true,)"
+            R"("scene":"a.pbrt"})");
+  EXPECT_FALSE(identity_difference(read.identity, state.record.identity));
+  EXPECT_EQ(read.identity.files, state.record.identity.files);
+  EXPECT_EQ(read.identity.options.clamp, 0.1f);
+  EXPECT_EQ(read.findings->uniform.at(0).place.connections, 4);
+}
+
+// Members that were added later keep their defaults.
+TEST(State, RecordsOfEarlierVersionsAreRead) {
+  const json earlier{{"measures_exposure", nullptr}, {"findings", {{"short_part", nullptr}}}};
+  const RenderRecord read = patched(full_record(), earlier);
+  EXPECT_FALSE(read.measures_exposure);
+  EXPECT_EQ(read.findings->short_part, 0);
+  EXPECT_EQ(read.findings->variance, 3.5);
+}
+
+TEST(State, MessagesNameTheMemberOfARecordThatIsDamaged) {
+  const std::string evil = "\x1b]0;x\x07\nlanthorn: forged";
+  const std::vector<std::pair<json, std::string>> forged{
+      {{{"seed", "5"}}, "a count up to 18446744073709551615 at settings.identity.seed"},
+      {{{"seed", nullptr}}, "a count up to 18446744073709551615 at settings.identity.seed"},
+      {{{"max_depth", 2147483648}}, "a count up to 2147483647 at settings.identity.max_depth"},
+      {{{"max_depth", -1}}, "a count up to 2147483647 at settings.identity.max_depth"},
+      {{{"color", 1}}, "one of rgb, spectral at settings.identity.color"},
+      {{{"integrator", 1}}, "text at settings.identity.integrator"},
+      {{{"resolution", {6}}}, "2 numbers at settings.identity.resolution"},
+      {{{"resolution", {6, "4"}}}, "a count up to 2147483647 at settings.identity.resolution[1]"},
+      {{{"crop", {0, 0, 7, 4}}}, "a part of the resolution at settings.identity.crop"},
+      {{{"crop", {3, 0, 3, 4}}}, "a part of the resolution at settings.identity.crop"},
+      {{{"margin", {1, 0, 0, 0}}}, "pixels that are in the resolution at settings.identity.margin"},
+      {{{"filter", {{"radius", {1, "2"}}}}}, "a number at settings.identity.filter.radius[1]"},
+      {{{"filter", {{"kind", "round"}}}},
+       "one of box, triangle, gaussian, mitchell, sinc at settings.identity.filter.kind"},
+      {{{"filter", 3}}, "an object at settings.identity.filter"},
+      {{{"files", {{"a.ply", {1}}}}}, "text at settings.identity.files.a.ply"},
+      {{{"parameters", {{evil, 1}}}}, "text at settings.identity.parameters."},
+      {{{"plateau_wavelength_sets", 17}}, "a count from 1 to 16 at settings.identity.plateau_wavelength_sets"},
+      {{{"plateau_wavelength_sets", 0}}, "a count from 1 to 16 at settings.identity.plateau_wavelength_sets"},
+      {{{"heroes_of_paths", 1}}, "true or false at settings.identity.heroes_of_paths"},
+      {{{"clamp", 1e39}}, "a number at settings.identity.clamp"}};
+  for (const auto& [change, expected] : forged) {
+    json settings = header();
+    settings["settings"]["identity"].merge_patch(change);
+    const std::string message = test::error_text([&] { decode_state(with_header(settings.dump()), "a.state"); });
+    EXPECT_TRUE(message.starts_with("a.state: damaged: expected " + expected)) << message;
+    EXPECT_TRUE(test::is_printable(message)) << message;
+  }
+  json cropped = header();
+  cropped["settings"]["identity"]["crop"] = {0, 0, 5, 4};
+  EXPECT_EQ(test::error_text([&] { decode_state(with_header(cropped.dump()), "a.state"); }),
+            "a.state: damaged: its film is not that of its settings");
 }
 
 TEST(State, AnySumOfCountsCanBeRead) {
@@ -312,7 +426,8 @@ TEST(MergeStates, CommutesAndAssociatesToTheByte) {
   EXPECT_EQ(encode_state(merge_states(merge_states(c, a), b)), expected);
   EXPECT_EQ(encode_state(merge_states(a, merge_states(b, c))), expected);
   EXPECT_EQ(decode_state(expected, "x").passes, (std::vector<PassRange>{{0, 4}, {6, 11}}));
-  EXPECT_EQ(decode_state(expected, "x").settings, R"({"host":"a","identity":{"camera":{"fov":40.5},"seed":5}})");
+  EXPECT_EQ(decode_state(expected, "x").record.others, (OtherMembers{{"host", R"("a")"}}));
+  EXPECT_EQ(decode_state(expected, "x").record.identity.others, a.record.identity.others);
 }
 
 TEST(MergeStates, RefusesWhatDoesNotBelongTogether) {
@@ -320,11 +435,11 @@ TEST(MergeStates, RefusesWhatDoesNotBelongTogether) {
   EXPECT_EQ(test::error_text([&] { merge_states(a, shard(2, 5)); }),
             "cannot merge: some passes are in both; make shards with disjoint --pass-range");
   RenderState b = shard(3, 5);
-  b.settings = patched(b.settings, R"({"identity": {"camera": {"fov": 41}}})");
+  b.record.identity.others["camera"] = R"({"fov":41})";
   EXPECT_EQ(test::error_text([&] { merge_states(a, b); }),
             "cannot merge: the renders differ in camera.fov (40.5 and 41)");
   b = shard(3, 5);
-  b.settings = patched(b.settings, R"({"identity": {"depth": 4}})");
+  b.record.identity.others["depth"] = "4";
   EXPECT_EQ(test::error_text([&] { merge_states(a, b); }), "cannot merge: the renders differ in depth (not set and 4)");
   b = shard(3, 5);
   b.shardable = false;
@@ -373,7 +488,7 @@ TEST(MergeStates, SaturatesAsTheFilmDoes) {
 // A film of many blocks, the last one incomplete.
 TEST(State, LargeFilmsAreSavedInBlocks) {
   RenderState state = shard(0, 1);
-  state.film = Film(211, 97, 10, {.light = {"direct"}, .splats = true});
+  test::set_film(state, Film(211, 97, 10, {.light = {"direct"}, .splats = true}));
   std::mt19937_64 rng(3);
   std::vector<std::int64_t> values(state.film.pixel_count());
   for (std::size_t plane = 0; plane < state.film.plane_count(); ++plane) {
@@ -439,12 +554,13 @@ TEST(Film, ProblemsAreSaidWithTheirFirstPlace) {
 
 TEST(Identity, NamesTheFirstDifference) {
   RenderState state = shard(0, 1);
-  state.settings =
-      R"({"identity": {"b": {"x.z": 1, "y": [1, 2]}, "c": 3, "scene_hash": "00", "files": {"a.ply": "01"}}})";
+  state.record.identity.scene_hash = "00";
+  state.record.identity.files = {{"a.ply", {"01"}}};
+  state.record.identity.others = {{"b", R"({"x.z": 1, "y": [1, 2]})"}, {"c", "3"}};
   const auto difference = [&](const char* field, const json& value) {
     const json patch{{"threads", 99}, {"identity", {{field, value}}}};
-    const std::string settings = patched(state.settings, patch.dump());
-    const std::string message = test::error_text([&] { require_same_identity(state, settings, "a.state"); });
+    const RenderIdentity other = patched(state.record, patch).identity;
+    const std::string message = test::error_text([&] { require_same_identity(state, other, "a.state"); });
     const std::string begin = "a.state: belongs to another render: it differs in ";
     const std::string end = "; give the scene and settings it was made with, or another file";
     if (!message.starts_with(begin) || !message.ends_with(end)) return message;

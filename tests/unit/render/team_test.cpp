@@ -466,8 +466,8 @@ TEST(Team, AProcessThatExpectsAnotherTreeEndsTheRender) {
   Network network(2);
   const RenderOptions options = small("path", 1'000'000);
   Session other(box(), options);
-  network.link(1).send(0,
-                       encode({.kind = MessageKind::join, .a = 0, .b = 1, .rest = bytes_of(other.state().settings)}));
+  network.link(1).send(
+      0, encode({.kind = MessageKind::join, .a = 0, .b = 1, .rest = bytes_of(settings_text(other.state().record))}));
   const TeamRender render = of(options);
   EXPECT_NE(test::error_text([&] { render_as(0, network, render); }).find("process 1 of 2 waits for the sums of 1"),
             std::string::npos);

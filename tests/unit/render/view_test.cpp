@@ -40,6 +40,14 @@ TEST(View, IsNoPartOfTheScene) {
   }
 }
 
+TEST(View, RecordedOptionsArePartOfTheIdentity) {
+  const Scene scene = test::scene_from_text(test::camera + test::box);
+  RenderOptions clamped;
+  clamped.clamp = 2.0f;
+  EXPECT_EQ(identity_difference(test::plan_render(scene, {}).state, test::plan_render(scene, clamped).state),
+            "--clamp (not set and 2.0)");
+}
+
 // Passes of two views must not be added up. The file's own view is identified by the file's hash.
 TEST(View, IsPartOfWhatAStateBelongsTo) {
   const Scene scene = test::scene_from_text(test::camera + test::box);
@@ -51,7 +59,7 @@ TEST(View, IsPartOfWhatAStateBelongsTo) {
     return identity_difference(a.state, b.state).value_or("none");
   };
   EXPECT_EQ(difference([](ViewDescription&) {}), "none");
-  EXPECT_EQ(plan_render(scene, own, {}).state.settings.find("\"view\""), std::string::npos);
+  EXPECT_FALSE(plan_render(scene, own, {}).state.record.identity.view);
   EXPECT_EQ(difference([](ViewDescription& v) {
               std::get<description::PerspectiveCamera>(v.camera.node).fov += 1;
             }).substr(0, 14),

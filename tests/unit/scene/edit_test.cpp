@@ -1,10 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// An edited scene equals the scene built from the edited description, bit for bit.
+// A scene that shares parts with another one equals the scene built from its description alone, bit for bit.
 #include <gtest/gtest.h>
 
 #include <cstdint>
 #include <filesystem>
+#include <initializer_list>
 #include <string>
 #include <utility>
 #include <variant>
@@ -12,13 +13,13 @@
 #include "lanthorn/scene.h"
 #include "math/hash.h"
 #include "scene/scene.h"
+#include "scene/scene_data.h"
+#include "support/edited.h"
 #include "support/error_text.h"
 #include "support/temporary_dir.h"
 
 namespace lanthorn::edit_test {
 namespace {
-
-using description::DiffuseMaterial;
 
 // A floor, a textured wall, an emitting triangle, and two kinds of instances: of static shapes and of moving ones.
 const std::string text = R"(
@@ -113,73 +114,100 @@ void expect_equal(const Scene& a, const Scene& b) {
   }
 }
 
-// The scene built from the edited description.
-SharedScene rebuilt(const SceneEdits& edits) {
-  SceneDescription d = describe();
-  for (const auto& [i, m] : edits.materials) d.materials.at(i) = m;
-  for (const auto& [i, l] : edits.area_lights) d.area_lights.at(i) = l;
-  for (const auto& [i, l] : edits.lights) d.lights.at(i) = l;
-  for (const auto& [i, t] : edits.instances) d.instances.at(i).object_to_world = t;
-  return build_scene(std::move(d));
+using Edit = void (*)(SceneDescription&);
+
+description::Material& material_named(SceneDescription& scene, const std::string& name) {
+  for (description::Material& material : scene.materials)
+    if (material.name == name) return material;
+  throw Error("there is no material " + name);
 }
 
-description::Index material_named(const std::string& name) {
-  const SceneDescription d = describe();
-  for (std::size_t i = 0; i < d.materials.size(); ++i)
-    if (d.materials[i].name == name) return static_cast<description::Index>(i);
-  ADD_FAILURE() << name;
-  return 0;
-}
-
-SceneEdits material_edit() {
-  SceneEdits edits;
-  const SceneDescription d = describe();
-  const description::Index wall = material_named("wall"), brass = material_named("brass");
-  edits.materials[wall] = d.materials[brass];
-  edits.materials[brass] = d.materials[wall];
-  return edits;
+void leave(SceneDescription&) {}
+void swap_materials(SceneDescription& scene) {
+  std::swap(material_named(scene, "wall"), material_named(scene, "brass"));
 }
 // The shading frame depends on the surface's parametrisation.
-SceneEdits brushed_edit() {
+void brush_wall(SceneDescription& scene) {
   description::ConductorMaterial brushed;
   brushed.roughness = {{0.1f, {}}, {0.5f, {}}, true};
-  SceneEdits edits;
-  edits.materials[material_named("wall")].node = brushed;
-  return edits;
+  description::Material& wall = material_named(scene, "wall");
+  wall = {};
+  wall.node = brushed;
 }
-SceneEdits light_edit() {
-  SceneEdits edits;
-  const SceneDescription d = describe();
-  edits.lights[0] = d.lights[0];
-  std::get<description::PointLight>(edits.lights[0].node).from = {1, 2, 1};
-  edits.area_lights[0] = d.area_lights[0];
-  edits.area_lights[0].scale = 3;
-  return edits;
+void change_lights(SceneDescription& scene) {
+  std::get<description::PointLight>(scene.lights[0].node).from = {1, 2, 1};
+  scene.area_lights[0].scale = 3;
 }
-SceneEdits instance_edit() {
-  SceneEdits edits;
-  edits.instances[0] = AnimatedTransform(translate({2, 5, 0}) * rotate(40, {1, 1, 0}));
-  edits.instances[2] = AnimatedTransform(translate({-0.5f, 1, 1}));
-  return edits;
+// The lamp is not the last light: the others get another index.
+void add_lamp(SceneDescription& scene) {
+  description::Light lamp = scene.lights[0];
+  std::get<description::PointLight>(lamp.node).from = {-1, 1, 1};
+  scene.lights.edit().insert(scene.lights.begin() + 1, lamp);
+}
+void move_instances(SceneDescription& scene) {
+  scene.instances[0].object_to_world = AnimatedTransform(translate({2, 5, 0}) * rotate(40, {1, 1, 0}));
+  scene.instances[2].object_to_world = AnimatedTransform(translate({-0.5f, 1, 1}));
+}
+
+SharedScene rebuilt(std::initializer_list<Edit> edits) {
+  SceneDescription description = describe();
+  for (const Edit edit : edits) edit(description);
+  return build_scene(std::move(description));
 }
 
 TEST(SceneEdit, EachEditIsLikeBuildingAnew) {
   const SharedScene scene = build_scene(describe());
-  for (const auto& edits : {SceneEdits{}, material_edit(), brushed_edit(), light_edit(), instance_edit()})
-    expect_equal(*edit_scene(*scene, edits), *rebuilt(edits));
+  for (const Edit edit : {&leave, &swap_materials, &brush_wall, &change_lights, &add_lamp, &move_instances})
+    expect_equal(*test::edited(*scene, edit), *rebuilt({edit}));
   expect_equal(*scene, *rebuilt({}));  // the original is unchanged
 }
 
 TEST(SceneEdit, EditsOfEditsOutliveWhatTheyComeFrom) {
   SharedScene scene = build_scene(describe());
-  SceneEdits all = material_edit();
-  scene = edit_scene(*scene, all);
-  scene = edit_scene(*scene, light_edit());
-  scene = edit_scene(*scene, instance_edit());
-  all.lights = light_edit().lights;
-  all.area_lights = light_edit().area_lights;
-  all.instances = instance_edit().instances;
-  expect_equal(*scene, *rebuilt(all));
+  for (const Edit edit : {&swap_materials, &change_lights, &add_lamp, &move_instances})
+    scene = test::edited(*scene, edit);
+  expect_equal(*scene, *rebuilt({&swap_materials, &change_lights, &add_lamp, &move_instances}));
+}
+
+TEST(SceneEdit, PartsThatDidNotChangeAreShared) {
+  const SharedScene scene = build_scene(describe());
+  const SceneData& old = *scene->data();
+  const auto data_after = [&](Edit edit) { return test::edited(*scene, edit)->data(); };
+  for (const Edit edit : {&leave, Edit([](SceneDescription& d) { d.view.camera.camera_to_world = {}; })}) {
+    const auto data = data_after(edit);
+    EXPECT_EQ(data->materials, old.materials);
+    EXPECT_EQ(data->media, old.media);
+    EXPECT_EQ(data->shapes, old.shapes);
+    EXPECT_EQ(data->placed, old.placed);
+    EXPECT_EQ(data->geometry, old.geometry);
+    EXPECT_EQ(data->lights, old.lights);
+  }
+  const auto lit = data_after(&add_lamp);
+  EXPECT_EQ(lit->materials, old.materials);
+  EXPECT_EQ(lit->media, old.media);
+  EXPECT_EQ(lit->shapes, old.shapes);
+  EXPECT_EQ(lit->geometry, old.geometry);
+  EXPECT_NE(lit->lights, old.lights);
+  const auto painted = data_after(&swap_materials);
+  EXPECT_EQ(painted->shapes, old.shapes);
+  EXPECT_EQ(painted->placed, old.placed);
+  EXPECT_EQ(painted->lights, old.lights);
+  EXPECT_NE(painted->materials, old.materials);
+  const auto moved = data_after(&move_instances);
+  EXPECT_EQ(moved->shapes, old.shapes);
+  EXPECT_EQ(moved->materials, old.materials);
+  EXPECT_NE(moved->geometry, old.geometry);
+}
+
+// The description that was built first keeps its meshes if it has a copy.
+TEST(SceneEdit, MeshesOfACopyServeForNewGeometry) {
+  const SceneDescription all = describe();
+  const SharedScene scene = build_scene(all);
+  SceneDescription changed = all;
+  material_named(changed, "wall").node = description::InterfaceMaterial{};
+  SceneDescription expected = changed;
+  expect_equal(*build_scene(std::move(changed), scene), *build_scene(std::move(expected)));
+  EXPECT_EQ(build_scene(all, scene)->data()->geometry, scene->data()->geometry);
 }
 
 // A ball of fog with one light inside and one beside it. Edits move the other light into the fog, or the fog from one
@@ -194,12 +222,14 @@ TEST(SceneEdit, LightsStayInTheMediumAroundThem) {
     return std::pair(s.light_media(0).outside == MediumId(1), s.light_media(1).outside == MediumId(1));
   };
   EXPECT_EQ(in_fog(*scene), std::pair(true, false));
-  SceneEdits light, fog;
-  light.lights[1] = scene->description().lights[1];
-  std::get<description::PointLight>(light.lights[1].node).from = {0.5f, 0, 0};
-  fog.instances[0] = AnimatedTransform(translate({3, 0, 0}));
-  EXPECT_EQ(in_fog(*edit_scene(*scene, light)), std::pair(true, true));
-  EXPECT_EQ(in_fog(*edit_scene(*scene, fog)), std::pair(false, true));
+  const SharedScene light = test::edited(*scene, [](SceneDescription& description) {
+    std::get<description::PointLight>(description.lights[1].node).from = {0.5f, 0, 0};
+  });
+  const SharedScene fog = test::edited(*scene, [](SceneDescription& description) {
+    description.instances[0].object_to_world = AnimatedTransform(translate({3, 0, 0}));
+  });
+  EXPECT_EQ(in_fog(*light), std::pair(true, true));
+  EXPECT_EQ(in_fog(*fog), std::pair(false, true));
 }
 
 TEST(SceneEdit, ImagesAreNotReadAgain) {
@@ -210,7 +240,8 @@ TEST(SceneEdit, ImagesAreNotReadAgain) {
                            "\"\nMaterial \"diffuse\" \"texture reflectance\" \"t\"\nShape \"sphere\"\n",
                        ".", "image.pbrt"));
   std::filesystem::remove(image);
-  EXPECT_NO_THROW(edit_scene(*scene, {}));
+  // New materials look their images up.
+  EXPECT_NO_THROW(test::edited(*scene, [](SceneDescription& description) { description.materials.edit(); }));
 }
 
 // Three environments between other lights, and a medium that emits. Environments keep their order, and the medium comes
@@ -242,13 +273,16 @@ TEST(SceneEdit, AnEnvironmentIsLikeThatOfTheDescription) {
       replace_environment(wanted, choice);
       expect_equal(edited, *build_scene(std::move(wanted)));
     };
+    const auto in = [](const Scene& s, const EnvironmentChoice& choice) {
+      return test::edited(s, [&](SceneDescription& description) { replace_environment(description, choice); });
+    };
     SharedScene edited = scene;
     for (const EnvironmentChoice& choice :
          {EnvironmentChoice{.source = "studio"}, EnvironmentChoice{.source = "studio", .rotation = 70, .scale = 3},
           EnvironmentChoice{.source = "overcast", .up = UpAxis::z}, EnvironmentChoice{}}) {
-      edited = edit_scene(*edited, {.environment = choice});
+      edited = in(*edited, choice);
       expect_like_built(*edited, choice);
-      expect_like_built(*edit_scene(*scene, {.environment = choice}), choice);
+      expect_like_built(*in(*scene, choice), choice);
     }
     expect_equal(*edited, *scene);
   }
@@ -263,34 +297,56 @@ TEST(SceneEdit, AnEnvironmentIsReadOnce) {
       if (const auto* environment = std::get_if<ImageSky>(&light)) return environment->profile.image;
     return static_cast<const SphericalImage*>(nullptr);
   };
-  const SharedScene first = edit_scene(*scene, {.environment = EnvironmentChoice{.source = sky}});
+  const auto in = [](const Scene& s, const EnvironmentChoice& choice) {
+    return test::edited(s, [&](SceneDescription& description) { replace_environment(description, choice); });
+  };
+  const SharedScene first = in(*scene, {.source = sky});
   std::filesystem::remove(sky);
-  const SharedScene turned = edit_scene(*first, {.environment = EnvironmentChoice{.source = sky, .rotation = 90}});
+  const SharedScene turned = in(*first, {.source = sky, .rotation = 90});
   ASSERT_NE(image_of(first), nullptr);
   EXPECT_EQ(image_of(turned), image_of(first));
-  EXPECT_THROW(edit_scene(*scene, {.environment = EnvironmentChoice{.source = sky}}), Error);
+  EXPECT_THROW(in(*scene, {.source = sky}), Error);
 }
 
-TEST(SceneEdit, WhatNeedsANewSceneIsRefused) {
+TEST(SceneEdit, WhatNeedsNewGeometryIsRefusedWithoutMeshes) {
   const SharedScene scene = build_scene(describe());
-  const auto error_of = [&](const SceneEdits& edits) { return test::error_text([&] { edit_scene(*scene, edits); }); };
-  SceneEdits edits;
-  edits.materials[100] = {};
-  EXPECT_EQ(error_of(edits), "the scene has no material with index 100");
-  edits = {};
-  edits.materials[material_named("wall")].node = description::InterfaceMaterial{};
-  EXPECT_NE(error_of(edits).find("build the scene again"), std::string::npos);
-  edits = {};
-  edits.instances[1] = AnimatedTransform(scale({0, 1, 1}));
-  EXPECT_NE(error_of(edits).find("is singular"), std::string::npos);
+  const auto error_of = [&](Edit edit) { return test::error_text([&] { test::edited(*scene, edit); }); };
+  EXPECT_NE(error_of([](SceneDescription& description) {
+              material_named(description, "wall").node = description::InterfaceMaterial{};
+            }).find("build the scene again"),
+            std::string::npos);
+  EXPECT_NE(error_of([](SceneDescription& description) {
+              description.instances[1].object_to_world = AnimatedTransform(scale({0, 1, 1}));
+            }).find("is singular"),
+            std::string::npos);
+  const auto read_again = "read the scene's file again";
+  EXPECT_NE(error_of([](SceneDescription& description) { description.shapes.edit(); }).find(read_again),
+            std::string::npos);
+  EXPECT_NE(test::error_text([&] { build_scene(scene->description()); }).find(read_again), std::string::npos);
 }
 
 TEST(SceneEdit, StatesOfEditedScenesAreNotThoseOfTheFile) {
   const SharedScene scene = build_scene(describe());
   const std::uint64_t own = description_of(*scene).hash;
-  const SharedScene a = edit_scene(*scene, light_edit()), b = edit_scene(*scene, light_edit());
+  const SharedScene a = test::edited(*scene, &change_lights), b = test::edited(*scene, &change_lights);
   EXPECT_NE(description_of(*a).hash, own);
   EXPECT_NE(description_of(*a).hash, description_of(*b).hash);
+  // The same for an edited description of the file, after another edit.
+  SceneDescription moved = description_of(*scene);
+  move_instances(moved);
+  EXPECT_NE(description_of(*build_scene(std::move(moved), a)).hash, own);
+  EXPECT_EQ(description_of(*test::edited(*scene, &leave)).hash, own);
+  EXPECT_EQ(description_of(*test::edited(*a, &leave)).hash, description_of(*a).hash);
+}
+
+// The environment is a part of the states' identity besides the hash.
+TEST(SceneEdit, AnEnvironmentKeepsTheHash) {
+  const SharedScene scene = build_scene(describe());
+  SharedScene edited = scene;
+  for (const char* source : {"studio", "overcast", ""}) {
+    edited = test::edited(*edited, [&](SceneDescription& d) { replace_environment(d, {.source = source}); });
+    EXPECT_EQ(description_of(*edited).hash, description_of(*scene).hash) << source;
+  }
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include "lanthorn/scene.h"
 #include "scene/scene.h"
+#include "support/edited.h"
 
 namespace lanthorn::model_test {
 namespace {
@@ -81,9 +82,9 @@ TEST(SceneModel, InstancesKnowTheirPlaceAndName) {
   EXPECT_EQ(description_of(*scene).materials.at(model.meshes[0].material).name, "red");
   expect_on_surface(*scene, 1e-2f);
 
-  SceneEdits edits;
-  edits.instances[0] = AnimatedTransform(translate({7, 0, 0}));
-  const SharedScene moved = edit_scene(*scene, edits);
+  const SharedScene moved = test::edited(*scene, [](SceneDescription& description) {
+    description.instances[0].object_to_world = AnimatedTransform(translate({7, 0, 0}));
+  });
   EXPECT_EQ(model_of(*moved).instances[0].to_world.point({0, 0, 0}), Point(7, 0, 0));
   expect_on_surface(*moved, 1e-2f);
 }

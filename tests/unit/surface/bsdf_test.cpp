@@ -167,7 +167,7 @@ TEST(Microfacet, ShadowingTermsAgree) {
   EXPECT_NEAR(microfacets.g_over_g1(i, o), microfacets.g(i, o) / microfacets.g1(i), 1e-6f);
 }
 
-TEST(Bsdf, SampleIsEvalTimesCosineOverPdf) {
+TEST(Bsdf, SampleIsFTimesCosineOverPdf) {
   HashRng rng(2);
   for (const auto& [name, bsdf] : exact_closures()) {
     for (const Vec3& wi : directions()) {
@@ -180,8 +180,8 @@ TEST(Bsdf, SampleIsEvalTimesCosineOverPdf) {
           EXPECT_FALSE(s->delta);
           EXPECT_EQ(s->transmission, !same_hemisphere(wi, s->wo));
           EXPECT_NEAR(length_squared(s->wo), 1, 1e-5f);
-          EXPECT_NEAR(pdf(bsdf, wi, s->wo), s->pdf, 5e-3f * s->pdf) << name;
-          expect_near(eval(bsdf, wi, s->wo, transport) * (abs_cos_theta(s->wo) / s->pdf), s->weight, 5e-3f, name);
+          EXPECT_NEAR(evaluate(bsdf, wi, s->wo, Transport::radiance).pdf, s->pdf, 5e-3f * s->pdf) << name;
+          expect_near(evaluate(bsdf, wi, s->wo, transport).f * (abs_cos_theta(s->wo) / s->pdf), s->weight, 5e-3f, name);
         }
       }
     }
@@ -197,29 +197,32 @@ TEST(Bsdf, IsAdjoint) {
     for (int n = 0; n < 300; ++n) {
       const Vec3 a = sample_uniform_sphere(rng.next2());
       const Vec3 b = sample_uniform_sphere(rng.next2());
-      const Spectrum there = eval(bsdf, a, b, Transport::radiance);
-      expect_near(there, eval(bsdf, b, a, Transport::importance), 2e-3f, name);
-      if (same_hemisphere(a, b)) expect_near(there, eval(bsdf, b, a, Transport::radiance), 2e-3f, name);
+      const Spectrum there = evaluate(bsdf, a, b, Transport::radiance).f;
+      expect_near(there, evaluate(bsdf, b, a, Transport::importance).f, 2e-3f, name);
+      if (same_hemisphere(a, b)) expect_near(there, evaluate(bsdf, b, a, Transport::radiance).f, 2e-3f, name);
       if (!there.is_black()) ++positive;
     }
   }
   EXPECT_GT(positive, 1500);
 }
 
-TEST(Bsdf, EvalAndPdfTogetherAreThoseOfEach) {
+TEST(Bsdf, PartsTogetherAreThoseAskedForAlone) {
   HashRng rng(5);
   for (const auto& [name, bsdf] : all_closures())
     for (int n = 0; n < 100; ++n) {
       const Vec3 wi = sample_uniform_sphere(rng.next2()), wo = sample_uniform_sphere(rng.next2());
-      const auto [f, density] = eval_and_pdf(bsdf, wi, wo, Transport::radiance);
-      expect_near(f, eval(bsdf, wi, wo, Transport::radiance), 1e-6f, name);
-      if (f.is_black()) continue;
-      EXPECT_NEAR(density, pdf(bsdf, wi, wo), 1e-5f * density) << name;
-      const BsdfValues both = eval_and_pdfs(bsdf, wi, wo, Transport::radiance);
-      expect_near(both.f, f, 1e-6f, name);
-      EXPECT_NEAR(both.pdf, density, 1e-5f * density) << name;
-      const float reverse = pdf_reverse(bsdf, wi, wo, Transport::radiance);
-      EXPECT_NEAR(both.pdf_reverse, reverse, 1e-5f * reverse) << name;
+      for (const Transport transport : {Transport::radiance, Transport::importance}) {
+        const BsdfValue all = evaluate(bsdf, wi, wo, transport);
+        const BsdfValue two = evaluate(bsdf, wi, wo, transport, {.f = true, .pdf = true});
+        expect_near(all.f, evaluate(bsdf, wi, wo, transport, {.f = true}).f, 1e-6f, name);
+        expect_near(all.f, two.f, 1e-6f, name);
+        EXPECT_NEAR(all.pdf, evaluate(bsdf, wi, wo, transport, {.pdf = true}).pdf, 1e-5f * all.pdf) << name;
+        EXPECT_NEAR(all.pdf, two.pdf, 1e-5f * all.pdf) << name;
+        const float reverse = evaluate(bsdf, wi, wo, transport, {.pdf_reverse = true}).pdf_reverse;
+        EXPECT_NEAR(all.pdf_reverse, reverse, 1e-5f * reverse) << name;
+        const float forward = evaluate(bsdf, wo, wi, transport, {.pdf = true}).pdf;
+        EXPECT_NEAR(all.pdf_reverse, forward, 1e-5f * forward) << name;
+      }
     }
 }
 
@@ -242,20 +245,20 @@ TEST(Bent, IsOneFunctionOfEyeAndLight) {
       const bool is_metal = std::holds_alternative<Bent<Conductor>>(bsdf);
       ASSERT_GT(dot(wi, plane) * dot(s->wo, plane), 0);
       bent_away += !same_hemisphere(wi, s->wo);
-      EXPECT_NEAR(pdf(bsdf, wi, s->wo, transport), s->pdf, 5e-3f * s->pdf);
-      const Spectrum f = eval(bsdf, wi, s->wo, transport);
+      EXPECT_NEAR(evaluate(bsdf, wi, s->wo, transport).pdf, s->pdf, 5e-3f * s->pdf);
+      const Spectrum f = evaluate(bsdf, wi, s->wo, transport).f;
       expect_near(f * (abs_cos_theta(s->wo) / s->pdf), s->weight, 5e-3f, "weight");
-      expect_near(eval(bsdf, s->wo, wi, other), f, 1e-4f, "adjoint");
-      const float reverse = pdf(bsdf, s->wo, wi, other);
-      EXPECT_NEAR(pdf_reverse(bsdf, wi, s->wo, transport), reverse, 1e-5f * reverse);
-      const BsdfValues all = eval_and_pdfs(bsdf, wi, s->wo, transport);
+      expect_near(evaluate(bsdf, s->wo, wi, other).f, f, 1e-4f, "adjoint");
+      const float reverse = evaluate(bsdf, s->wo, wi, other).pdf;
+      EXPECT_NEAR(evaluate(bsdf, wi, s->wo, transport).pdf_reverse, reverse, 1e-5f * reverse);
+      const BsdfValue all = evaluate(bsdf, wi, s->wo, transport);
       if (f.is_black()) continue;  // behind the shading normal
       EXPECT_NEAR(all.pdf, s->pdf, 5e-3f * s->pdf);
       EXPECT_NEAR(all.pdf_reverse, reverse, 1e-5f * reverse);
       if (!is_metal) continue;
       const Vec3 under = s->wo - 2 * dot(s->wo, plane) * plane;
-      EXPECT_TRUE(eval(bsdf, wi, under, transport).is_black());
-      EXPECT_EQ(pdf(bsdf, wi, under, transport), 0);
+      EXPECT_TRUE(evaluate(bsdf, wi, under, transport).f.is_black());
+      EXPECT_EQ(evaluate(bsdf, wi, under, transport).pdf, 0);
     }
   EXPECT_GT(bent_away, 100);
 }
@@ -277,8 +280,8 @@ TEST(Bent, NothingPassesAnOpaqueClosure) {
         const auto s = sample(facet, wi, u, rng.next2(), transport);
         EXPECT_TRUE(!s || s->weight.is_black() || dot(wi, plane) * dot(s->wo, plane) >= 0) << name;
         if (dot(wi, plane) * dot(wo, plane) > 0) continue;
-        EXPECT_TRUE(eval(facet, wi, wo, transport).is_black()) << name;
-        EXPECT_EQ(pdf(facet, wi, wo, transport), 0) << name;
+        EXPECT_TRUE(evaluate(facet, wi, wo, transport).f.is_black()) << name;
+        EXPECT_EQ(evaluate(facet, wi, wo, transport).pdf, 0) << name;
       }
     }
   }
@@ -293,7 +296,7 @@ TEST(Hair, IsFiniteAlongTheHair) {
     for (const Vec3& along : {Vec3(1, 0, 0), Vec3(-1, 0, 0)})
       for (const Transport transport : {Transport::radiance, Transport::importance})
         for (const auto& [wi, wo] : {std::pair{along, at_angles(40, 20)}, {at_angles(40, 20), along}, {along, along}}) {
-          const BsdfValues values = eval_and_pdfs(hair, wi, wo, transport);
+          const BsdfValue values = evaluate(hair, wi, wo, transport);
           EXPECT_TRUE(std::isfinite(sum_of(values.f)) && std::isfinite(values.pdf + values.pdf_reverse));
         }
   }
@@ -303,14 +306,14 @@ TEST(Bsdf, RefractionScalesRadianceByTheSquaredIndexRatio) {
   const Dielectric glass{.eta = 1.5f, .alpha_x = 0.3f, .alpha_y = 0.3f};
   const Vec3 above = at_angles(30, 0);
   const Vec3 below = at_angles(155, 180);
-  const float f = eval(glass, above, below, Transport::importance)[0];
+  const float f = evaluate(glass, above, below, Transport::importance).f[0];
   ASSERT_GT(f, 0);
-  EXPECT_NEAR(eval(glass, above, below, Transport::radiance)[0] * 2.25f, f, 1e-4f * f);
-  const float back = eval(glass, below, above, Transport::importance)[0];
-  EXPECT_NEAR(eval(glass, below, above, Transport::radiance)[0] / 2.25f, back, 1e-4f * back);
+  EXPECT_NEAR(evaluate(glass, above, below, Transport::radiance).f[0] * 2.25f, f, 1e-4f * f);
+  const float back = evaluate(glass, below, above, Transport::importance).f[0];
+  EXPECT_NEAR(evaluate(glass, below, above, Transport::radiance).f[0] / 2.25f, back, 1e-4f * back);
 }
 
-TEST(Bsdf, DeltaLobesAreInvisibleToEvalAndPdf) {
+TEST(Bsdf, DeltaLobesAreInvisibleToEvaluate) {
   HashRng rng(4);
   for (const auto& [name, bsdf] : delta_closures()) {
     EXPECT_FALSE(has_non_delta(bsdf)) << name;
@@ -321,8 +324,8 @@ TEST(Bsdf, DeltaLobesAreInvisibleToEvalAndPdf) {
         if (!s) continue;
         EXPECT_TRUE(s->delta) << name;
         EXPECT_GT(s->pdf, 0) << name;
-        EXPECT_EQ(pdf(bsdf, wi, s->wo), 0) << name;
-        EXPECT_TRUE(eval(bsdf, wi, s->wo, Transport::radiance).is_black()) << name;
+        EXPECT_EQ(evaluate(bsdf, wi, s->wo, Transport::radiance).pdf, 0) << name;
+        EXPECT_TRUE(evaluate(bsdf, wi, s->wo, Transport::radiance).f.is_black()) << name;
         EXPECT_EQ(s->transmission, !same_hemisphere(wi, s->wo)) << name;
       }
     }
@@ -356,7 +359,7 @@ TEST(Bsdf, GrazingAndDegenerateDirectionsStayFinite) {
         if (!s) continue;
         EXPECT_TRUE(is_finite(s->weight)) << name;
         EXPECT_TRUE(std::isfinite(s->pdf) && s->pdf > 0) << name << ' ' << s->pdf;
-        EXPECT_TRUE(is_finite(eval(bsdf, wi, s->wo, Transport::radiance))) << name;
+        EXPECT_TRUE(is_finite(evaluate(bsdf, wi, s->wo, Transport::radiance).f)) << name;
       }
     }
   }
@@ -415,15 +418,16 @@ TEST(Coated, TwoSegmentsHaveAClosedForm) {
   const auto [ro, cos_o] = fresnel_dielectric(o.z, 1.5f);
   const float through = (1 - ri) * (1 - ro) / 2.25f * std::exp(-0.1f / cos_i - 0.1f / cos_o);
   const CoatedDiffuse plastic{.base = {colour}, .thickness = 0.1f, .max_depth = 2};
-  expect_near(eval(plastic, i, o, Transport::radiance), colour * (inv_pi * through), 1e-4f, "diffuse base");
-  expect_near(eval(ClearCoated{&smooth_coat, colour, 1}, i, o, Transport::radiance), colour * (inv_pi * through), 1e-4f,
-              "diffuse base, without walks");
-  EXPECT_TRUE(eval(ClearCoated{&smooth_coat, colour, 0}, i, o, Transport::radiance).is_black());
+  expect_near(evaluate(plastic, i, o, Transport::radiance).f, colour * (inv_pi * through), 1e-4f, "diffuse base");
+  expect_near(evaluate(ClearCoated{&smooth_coat, colour, 1}, i, o, Transport::radiance).f, colour * (inv_pi * through),
+              1e-4f, "diffuse base, without walks");
+  EXPECT_TRUE(evaluate(ClearCoated{&smooth_coat, colour, 0}, i, o, Transport::radiance).f.is_black());
   const Conductor metal{gold_eta, gold_k, 0.4f, 0.2f};
   const Vec3 inside_i(i.x / 1.5f, i.y / 1.5f, cos_i);
   const Vec3 inside_o(o.x / 1.5f, o.y / 1.5f, cos_o);
-  expect_near(eval(CoatedConductor{.base = metal, .thickness = 0.1f, .max_depth = 2}, -i, -o, Transport::radiance),
-              eval(metal, inside_i, inside_o, Transport::radiance) * through, 1e-4f, "metal base, from below");
+  expect_near(
+      evaluate(CoatedConductor{.base = metal, .thickness = 0.1f, .max_depth = 2}, -i, -o, Transport::radiance).f,
+      evaluate(metal, inside_i, inside_o, Transport::radiance).f * through, 1e-4f, "metal base, from below");
 }
 
 // Lobe weights follow the albedo, not the probabilities with which lobes are sampled.
@@ -442,8 +446,8 @@ TEST(Coated, EvalIsAPureFunction) {
   for (const auto& [name, bsdf] : layered_closures()) {
     const Vec3 i = at_angles(35, 10);
     const Vec3 o = at_angles(60, 150);
-    EXPECT_EQ(eval(bsdf, i, o, Transport::radiance), eval(bsdf, i, o, Transport::radiance)) << name;
-    EXPECT_EQ(eval(bsdf, i, o, Transport::radiance), eval(bsdf, -i, -o, Transport::importance)) << name;
+    EXPECT_EQ(evaluate(bsdf, i, o, Transport::radiance).f, evaluate(bsdf, i, o, Transport::radiance).f) << name;
+    EXPECT_EQ(evaluate(bsdf, i, o, Transport::radiance).f, evaluate(bsdf, -i, -o, Transport::importance).f) << name;
     const auto a = sample(bsdf, i, 0.7f, {0.2f, 0.6f}, Transport::radiance);
     const auto b = sample(bsdf, i, 0.7f, {0.2f, 0.6f}, Transport::importance);
     ASSERT_EQ(a.has_value(), b.has_value());

@@ -12,19 +12,7 @@
 namespace lanthorn::closure_test {
 namespace {
 
-enum class Part {
-  traits,
-  eval,
-  pdf,
-  pdf_reverse,
-  sample,
-  albedo,
-  lobe_weights,
-  has_non_delta,
-  is_dispersive,
-  split_terms,
-  none
-};
+enum class Part { traits, evaluate, sample, albedo, lobe_weights, has_non_delta, is_dispersive, split_terms, none };
 
 struct WithTraits {
   static constexpr ClosureTraits traits{.is_fibre = false, .transmits = false};
@@ -36,9 +24,10 @@ template <Part missing>
 struct Toy : std::conditional_t<missing == Part::traits, WithoutTraits, WithTraits> {
   Spectrum reflectance{0.5f};
 
-  friend Spectrum eval(const Toy&, const Vec3&, const Vec3&, Transport) requires(missing != Part::eval) { return {}; }
-  friend float pdf(const Toy&, const Vec3&, const Vec3&) requires(missing != Part::pdf) { return 0; }
-  friend float pdf_reverse(const Toy&, const Vec3&, const Vec3&) requires(missing != Part::pdf_reverse) { return 0; }
+  friend BsdfValue evaluate(const Toy&, const Vec3&, const Vec3&, Transport,
+                            BsdfParts) requires(missing != Part::evaluate) {
+    return {};
+  }
   friend std::optional<BsdfSample> sample(const Toy& toy, const Vec3& wi, float, const Vec2&,
                                           Transport) requires(missing != Part::sample) {
     return BsdfSample{.wo = {-wi.x, -wi.y, wi.z}, .weight = toy.reflectance, .pdf = 1, .delta = true};
@@ -64,9 +53,7 @@ TEST(Closure, AToyIsOne) {
 
 TEST(Closure, MissesNothing) {
   static_assert(!Closure<Toy<Part::traits>>);
-  static_assert(!Closure<Toy<Part::eval>>);
-  static_assert(!Closure<Toy<Part::pdf>>);
-  static_assert(!Closure<Toy<Part::pdf_reverse>>);
+  static_assert(!Closure<Toy<Part::evaluate>>);
   static_assert(!Closure<Toy<Part::sample>>);
   static_assert(!Closure<Toy<Part::albedo>>);
   static_assert(!Closure<Toy<Part::lobe_weights>>);

@@ -42,8 +42,8 @@ double mean_difference(const Bsdf& measured, const Bsdf& conductor, int componen
     if (i % 2 == 1) wi = -wi;
     const auto s = sample(conductor, wi, rng.next(), rng.next2(), Transport::radiance);
     if (!s || std::fabs(s->wo.z) < 0.1f) continue;
-    const float expected = eval(conductor, wi, s->wo, Transport::radiance)[component];
-    const float found = eval(measured, wi, s->wo, Transport::radiance)[component];
+    const float expected = evaluate(conductor, wi, s->wo, Transport::radiance).f[component];
+    const float found = evaluate(measured, wi, s->wo, Transport::radiance).f[component];
     sum += static_cast<double>(std::fabs(found / expected - 1));
     ++count;
   }
@@ -92,9 +92,9 @@ TEST(Measured, SpectraAreThoseOfTheWavelengths) {
   Rgb mean{};
   for (std::size_t i = 0; i < c.wavelengths.size(); ++i) {
     const Conductor one{Spectrum(c.indices[i].eta), Spectrum(c.indices[i].k), c.alpha_x, c.alpha_y};
-    mean += eval(one, wi, wo, Transport::radiance)[0] * rgb_shares(c.wavelengths)[i];
+    mean += evaluate(one, wi, wo, Transport::radiance).f[0] * rgb_shares(c.wavelengths)[i];
   }
-  const Spectrum found = eval(Measured{&brdf, rgb}, wi, wo, Transport::radiance);
+  const Spectrum found = evaluate(Measured{&brdf, rgb}, wi, wo, Transport::radiance).f;
   EXPECT_NEAR(found[0], mean.r, 0.03f * mean.r);
   EXPECT_NEAR(found[1], mean.g, 0.03f * mean.g);
   EXPECT_NEAR(found[2], mean.b, 0.03f * mean.b);
@@ -104,7 +104,7 @@ TEST(Measured, SpectraAreThoseOfTheWavelengths) {
   const MeasuredData coloured = measure({.indices = gold});
   const MeasuredBrdf colours(coloured);
   const Wavelengths red{.mode = ColorMode::spectral, .lambda = {650, 640, 420, 430}, .pdf = {1, 1, 1, 1}};
-  const Spectrum upsampled = eval(Measured{&colours, red}, wi, wo, Transport::radiance);
+  const Spectrum upsampled = evaluate(Measured{&colours, red}, wi, wo, Transport::radiance).f;
   EXPECT_GT(upsampled[0], 1.5f * upsampled[2]);
   EXPECT_GT(upsampled[2], 0);
 }
@@ -127,10 +127,11 @@ TEST(Measured, LightPathsSeeTheSameSurface) {
   int count = 0;
   for (int i = 0; i < 500; ++i) {
     const Vec3 a = sample_uniform_sphere(rng.next2()), b = sample_uniform_sphere(rng.next2());
-    const float there = eval(m, a, b, Transport::radiance)[0], back = eval(m, b, a, Transport::importance)[0];
+    const float there = evaluate(m, a, b, Transport::radiance).f[0],
+                back = evaluate(m, b, a, Transport::importance).f[0];
     EXPECT_EQ(there, back);
     EXPECT_TRUE(there == 0 || same_hemisphere(a, b));
-    const float turned = eval(m, b, a, Transport::radiance)[0];
+    const float turned = evaluate(m, b, a, Transport::radiance).f[0];
     if (!(there > 0.01f && std::fabs(a.z) > 0.2f && std::fabs(b.z) > 0.2f)) continue;
     asymmetry += static_cast<double>(std::fabs(turned / there - 1));
     ++count;
@@ -180,7 +181,7 @@ TEST(Measured, SamplesAndLobesAreThoseOfAClosure) {
       EXPECT_TRUE(is_finite(s->weight) && std::isfinite(s->pdf) && s->pdf > 0);
       EXPECT_TRUE(same_hemisphere(wi, s->wo) && !s->transmission && !s->delta);
       EXPECT_NEAR(length_squared(s->wo), 1, 1e-5f);
-      EXPECT_EQ(pdf(m, wi, s->wo), s->pdf);
+      EXPECT_EQ(evaluate(m, wi, s->wo, Transport::radiance).pdf, s->pdf);
     }
     const LobeWeights lobes = lobe_weights(m, wi);
     EXPECT_EQ(lobes.glossy, 1);
@@ -198,7 +199,7 @@ TEST(Measured, DataWithoutFactorAreThePlainReflectanceTimesTheCosine) {
   data.reflectance.values.assign(data.reflectance.values.size(), 0.5f);
   const MeasuredBrdf brdf(data);
   const Vec3 wo = at_angles(50, 100);
-  EXPECT_NEAR(eval(Measured{&brdf, rgb}, at_angles(20, 0), wo, Transport::radiance)[1], 0.5f / wo.z, 1e-4f);
+  EXPECT_NEAR(evaluate(Measured{&brdf, rgb}, at_angles(20, 0), wo, Transport::radiance).f[1], 0.5f / wo.z, 1e-4f);
 }
 
 }  // namespace

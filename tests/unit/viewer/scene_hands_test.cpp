@@ -82,7 +82,8 @@ TEST(Picking, FindsWallLampAndBall) {
   ASSERT_TRUE(ball);
   EXPECT_EQ(ball->instance, 0u);
   EXPECT_NEAR(ball->distance, std::sqrt(38.0f) - 0.5f, 0.01f);
-  const std::map<description::Index, AnimatedTransform> moved{{0, AnimatedTransform(translate({3, 2, 2}))}};
+  description::Table<description::Instance> moved = description_of(*scene).instances;
+  moved[0].object_to_world = AnimatedTransform(translate({3, 2, 2}));
   EXPECT_FALSE(picker.pick(ray_to({-1, -1, 2}), moved)->instance);
   EXPECT_EQ(picker.pick(ray_to({3, 2, 2}), moved)->instance, 0u);
   EXPECT_FALSE(picker.pick({Point(0, 0, 8), Direction(0, 0, 1)}));
@@ -102,7 +103,7 @@ TEST(EditedScene, EveryNodeOfAFileCanBeMoved) {
   EXPECT_TRUE(description.shapes.empty());
   EditedScene scene(build_scene(std::move(description)));
   const Picker picker(*scene.scene());
-  const auto under = [&](const Point& p) { return picker.pick(ray_to(p), scene.edits().instances); };
+  const auto under = [&](const Point& p) { return picker.pick(ray_to(p), scene.description().instances); };
   for (const float x : {-1.75f, 0.25f, 2.25f}) {
     const auto hit = under({x, 0.25f, 0});
     ASSERT_TRUE(hit && hit->instance) << x;
@@ -183,7 +184,7 @@ TEST(SavedScene, IsReadBackAsWhatWasEdited) {
   scene.move_light(1, {0, -0.5f, 0});
   scene.move_instance(0, {0.25f, 0, 0});
   const CameraPose pose = orbit(pose_of(description_of(*original).view.camera.camera_to_world.start, 8), {30, 10});
-  const std::string saved = edited_pbrt(text, description_of(*original), pose, scene.edits());
+  const std::string saved = edited_pbrt(text, description_of(*original), pose, scene.description());
   EXPECT_NE(saved.find("# a comment with \"quotes and LightSource"), saved.npos);
   const SharedScene read = scene_of(saved);
   const SceneDescription &a = description_of(*read), &b = description_of(*scene.scene());
@@ -208,10 +209,10 @@ TEST(SavedScene, RefusesEditsOfOtherFiles) {
   const SharedScene original = scene_of(text);
   EditedScene scene(original);
   scene.move_light(0, {1, 0, 0});
-  SceneEdits edits = scene.edits();
-  edits.lights.at(0).location.file = "included.pbrt";
+  SceneDescription edited = scene.description();
+  edited.lights.at(0).location.file = "included.pbrt";
   const CameraPose pose = pose_of(description_of(*original).view.camera.camera_to_world.start, 8);
-  EXPECT_THROW(edited_pbrt(text, description_of(*original), pose, edits), Error);
+  EXPECT_THROW(edited_pbrt(text, description_of(*original), pose, edited), Error);
 }
 
 /// A pointer over a picture of the scene, 200 x 100 pixels.

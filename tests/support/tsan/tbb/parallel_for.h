@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Replaces TBB's headers in builds for ThreadSanitizer, and implements the functions that parallel.h needs with plain
+// Replaces TBB's headers in builds for ThreadSanitizer, and implements the functions that parallel.cpp and parallel_sort.h need with plain
 // threads. Debian's TBB is not compiled for ThreadSanitizer, which therefore cannot see the order in which TBB runs
 // tasks and would report false races. Nested loops run on one thread.
 #pragma once
@@ -71,12 +71,6 @@ void parallel_for(const blocked_range<Index>& range, const Body& body, task_grou
 template <class Iterator>
 void parallel_sort(Iterator begin, Iterator end) {
   std::sort(begin, end);
-}
-
-template <class A, class B>
-void parallel_invoke(const A& a, const B& b, task_group_context& context) {
-  parallel_for(
-      0, 2, [&](int i) { i == 0 ? a() : b(); }, context);
 }
 
 }  // namespace tbb

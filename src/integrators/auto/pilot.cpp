@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include "integrators/vcm/effort_pilot.h"
+#include "integrators/auto/pilot.h"
 
 #include <algorithm>
 #include <array>
@@ -12,7 +12,8 @@
 #include <vector>
 
 #include "base/parallel.h"
-#include "integrators/vcm/vcm_visitors.h"
+#include "integrators/vcm/eye_visitor.h"
+#include "integrators/vcm/light_visitor.h"
 #include "path/eye_pass.h"
 
 namespace lanthorn {
@@ -46,16 +47,31 @@ std::vector<EffortCandidate> all_candidates(float scale, bool one_time, bool in_
 // Finds the light of one eye path with two sets of light paths.
 struct TwoSets {
   PathMoments& moments;
+  EyePathLog& log;
   EyeVisitor first, second;
 
   template <class Event>
   requires std::invocable<EyeVisitor&, const Event&>
   auto operator()(const Event& v) {
-    moments.set = 1;
-    second(v);
-    moments.set = 0;
+    {
+      const Taken of_second{*this, 1};
+      second(v);
+    }
+    const Taken of_first{*this, 0};
     return first(v);
   }
+
+ private:
+  // Moves what a visitor finds from the log to the moments.
+  struct Taken {
+    TwoSets& sets;
+    std::size_t set;
+    ~Taken() {
+      sets.moments.set = set;
+      for (const EyePathLog::Contribution& c : sets.log.found) sets.moments.add(c);
+      sets.log.found.clear();
+    }
+  };
 };
 
 // A light vertex that was connected to the lens.
@@ -64,7 +80,7 @@ struct SeenLight {
   float light;
   bool is_caustic;
   double spread;  // the sum over pixels of the squares of the filter
-  TechniqueSum weighed;
+  TechniqueSum densities;
 };
 
 double spread_of(const View& view, const Vec2& raster) {
@@ -124,7 +140,7 @@ class Pilot {
   }
   // An effort that serves only to find the block of a place on the film (`block_of`).
   static Effort places_of(const PixelWindow& window, const PilotGrid& grid) {
-    return {0, window, grid.columns(), std::vector<PlaceEffort>(grid.block_count()), {}};
+    return {0, window, grid.columns(), std::vector<PlaceEffort>(grid.block_count())};
   }
   // Calls `body(block, cell)` for each cell, row by row within a block. One thread does a whole block.
   template <class Body>
@@ -143,8 +159,9 @@ class Pilot {
   void add(std::span<const SeenLight> seen);
   void trace_eye(const VcmPass& pass, const VcmPass& other);
   // Returns the light of caustics.
-  float trace_eye_path(const VcmPass& pass, const VcmPass& other, std::size_t cell, PathMoments& moments) const;
-  void add(EffortBlock& block, std::size_t cell, const PathMoments& moments, float caustic);
+  float trace_eye_path(const VcmPass& pass, const VcmPass& other, std::size_t cell, PathMoments& moments,
+                       EyePathLog& log) const;
+  void add(EffortBlock& block, std::size_t cell, const PathMoments& moments, const EyePathLog& log, float caustic);
 
   RenderJob job_;
   const VcmSettings& settings_;
@@ -180,14 +197,13 @@ void Pilot::trace_light(const VcmPass& pass) {
   const RayCounts rays = trace_light_paths(
       pass, nullptr,
       [&](const LightArrival& light, const LensLight& seen, const PlaceEffort& effort, std::size_t chunk) {
-        TechniqueSum weighed;
-        Bidirectional there = pass.bidirectional_at(seen.raster, effort);
-        there.weighed = &weighed;
-        const float found = light.weight(there, seen) * flux_of(seen.light, seen.dispersed, light.w);
+        const Bidirectional there = pass.bidirectional_at(seen.raster, effort);
+        const TechniqueSum densities = light.densities(there, seen);
+        const float found = densities.weight(there.techniques) * flux_of(seen.light, seen.dispersed, light.w);
         if (!(found > 0)) return;
         seen_[chunk].push_back({static_cast<std::uint32_t>(blocks_.block_of(seen.raster)), found,
                                 light.layers.path_class == PathClass::caustic, spread_of(job_.view, seen.raster),
-                                weighed});
+                                densities});
       });
   measured_.light_rays += static_cast<double>(rays.walk);
   measured_.light_paths += static_cast<double>(pass.light_paths.total());
@@ -211,7 +227,7 @@ void Pilot::add(std::span<const SeenLight> seen) {
     std::array<double, at_a_time> all, own;
     const std::span<const float> samples = candidates_.samples(&TechniqueDensities::lens).subspan(begin, end - begin);
     for (const SeenLight& s : seen) {
-      candidates_.ratios(s.weighed, begin, std::span(ratios).first(samples.size()));
+      candidates_.ratios(s.densities, begin, std::span(ratios).first(samples.size()));
       EffortBlock& block = measured_.blocks[s.block];
       const double square = share_of(block) * s.spread * sqr(static_cast<double>(s.light));
       for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -233,12 +249,14 @@ void Pilot::trace_eye(const VcmPass& pass, const VcmPass& other) {
   for_each_cell_by_blocks([&](EffortBlock& block, std::size_t cell) {
     stop_point();
     PathMoments moments(candidates_);
-    const float caustic = trace_eye_path(pass, other, cell, moments);
-    add(block, cell, moments, caustic);
+    EyePathLog log;
+    const float caustic = trace_eye_path(pass, other, cell, moments, log);
+    add(block, cell, moments, log, caustic);
   });
 }
 
-float Pilot::trace_eye_path(const VcmPass& pass, const VcmPass& other, std::size_t cell, PathMoments& moments) const {
+float Pilot::trace_eye_path(const VcmPass& pass, const VcmPass& other, std::size_t cell, PathMoments& moments,
+                            EyePathLog& log) const {
   const auto index = static_cast<std::uint32_t>(cell);
   const int width = measured_.grid.cells().width(), x = static_cast<int>(cell) % width,
             y = static_cast<int>(cell) / width;
@@ -250,13 +268,14 @@ float Pilot::trace_eye_path(const VcmPass& pass, const VcmPass& other, std::size
   RayCounts counts;
   const PathContext path{pass.job.scene, draw.w, sampler, counts, {pass.max_depth(), settings_.roulette_depth}};
   walk_from_camera(path, start.camera, pass.job.view.medium,
-                   TwoSets{moments, EyeVisitor(path, pass, start.raster, layers, &moments),
-                           EyeVisitor(path, other, start.raster, other_layers, &moments)});
-  moments.work.rays = 2 * static_cast<double>(counts.walk);
+                   TwoSets{moments, log, EyeVisitor(path, pass, start.raster, layers, &log),
+                           EyeVisitor(path, other, start.raster, other_layers, &log)});
+  log.work.rays = 2 * static_cast<double>(counts.walk);
   return flux_of(layers.light(PathClass::caustic), false, draw.w);
 }
 
-void Pilot::add(EffortBlock& block, std::size_t cell, const PathMoments& moments, float caustic) {
+void Pilot::add(EffortBlock& block, std::size_t cell, const PathMoments& moments, const EyePathLog& log,
+                float caustic) {
   for (std::size_t k = 0; k < measured_.candidates.size(); ++k) {
     const PathMoments::Estimate e = moments.estimate(k);
     EffortBlock::Moments& m = block.moments[k];
@@ -273,8 +292,8 @@ void Pilot::add(EffortBlock& block, std::size_t cell, const PathMoments& moments
   block.caustic += static_cast<double>(caustic);
   block.paths += 1;
   constexpr double of_one_set = 0.5;
-  block.work.add(moments.work, of_one_set);
-  block.short_work.add(moments.short_work, of_one_set);
+  block.work.add(log.work, of_one_set);
+  block.short_work.add(log.short_work, of_one_set);
 }
 
 }  // namespace

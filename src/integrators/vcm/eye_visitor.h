@@ -1,105 +1,20 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The visitors of vertex connection and merging: for vertices of light paths and of eye paths.
+// Step 3 of vertex connection and merging: eye paths.
 #pragma once
 
 #include <cstdint>
-#include <optional>
-#include <variant>
 
 #include "base/prefetch.h"
-#include "integrators/vcm/moments.h"
+#include "integrators/vcm/eye_path_log.h"
 #include "integrators/vcm/vcm_pass.h"
 #include "path/connections.h"
 #include "path/depth.h"
 #include "path/light_layers.h"
-#include "path/splat.h"
 #include "photon/flux_classes.h"
 #include "photon/gather/flat_disc.h"
-#include "photon/photon_pass.h"
 
 namespace lanthorn {
-
-/// A vertex of a light path that is connected to the lens.
-struct LightArrival {
-  const std::variant<const SurfaceVertex*, const MediumVertex*> vertex;
-  const Subpath& subpath;
-  const Wavelengths& w;
-  PathLayers layers;
-
-  /// `bidirectional`: of the place on the film that receives the light.
-  float weight(const Bidirectional& bidirectional, const LensLight& seen) const {
-    return std::visit([&](const auto* v) { return weight_of_seen(bidirectional, *v, subpath, seen); }, vertex);
-  }
-};
-
-/// Step 1: keeps the vertices of a light path, and connects them to the lens: `see(LightArrival, LensLight,
-/// PlaceEffort)`.
-template <class See>
-class LightVisitor {
- public:
-  LightVisitor(const PathContext& path, const VcmPass& pass, std::uint32_t light, float time, const FilmPass* film,
-               LightVertices::Chunk& chunk, const See& see)
-      : path_(path),
-        pass_(pass),
-        light_(light),
-        time_(time),
-        film_(film),
-        chunk_(chunk),
-        see_(see),
-        subpath_(pass.bidirectional.techniques) {}
-
-  // The path starts (TR eqs. 31-33).
-  void operator()(const EmissionSample& emission) {
-    keeps_beams_ = pass_.beam_share > 0 && keeps_beams(path_.sampler, pass_.beam_share);
-    subpath_.begin_at_light(light_, emission, pass_.bidirectional.emission);
-  }
-  // It has come to a vertex (TR eqs. 34-36; through delta lobes eqs. 53-55).
-  Continuation operator()(const SurfaceVertex& v) {
-    subpath_.arrive(path_, v);
-    if (v.may_scatter && has_non_delta(v.at.bsdf)) keep(v);
-    return Continuation::go_on();
-  }
-  Continuation operator()(const MediumVertex& v) {
-    subpath_.arrive(path_, v);
-    if (v.may_scatter) keep(v);
-    return Continuation::go_on();
-  }
-  void operator()(const FlownSegment& flight) {
-    if (flight.state.medium == MediumId::vacuum) return;
-    if (keeps_beams_ && scatterings_on_flight(path_.scene, flight.state) <= pass_.max_depth())
-      if (auto beam = keep_beam(path_, flight, time_, pass_.beam_share, subpath_)) chunk_.beams.push_back(*beam);
-    subpath_.fly(flight);
-  }
-  void operator()(const EscapeVertex&) {}
-
- private:
-  // Keeps the vertex, and connects it to the lens (TR eqs. 46, 47).
-  template <class Vertex>
-  void keep(const Vertex& v) {
-    LightVertex& kept = chunk_.vertices.emplace_back(keep_vertex(v, subpath_));
-    kept.flux_class = pass_.class_of_flux(flux_of(v.state.beta, v.state.dispersed, path_.w));
-    kept.meet_others(path_.w);
-    if (!pass_.sees || !pass_.shows(v.state.depth + 1, 1)) return;
-    const auto lens = find_lens(path_, pass_.job.view, v);
-    if (!lens) return;
-    const PlaceEffort there = pass_.effort.at(lens->raster);
-    if (!there.sees) return;
-    if (film_) film_->prefetch_splats(pass_.job.view.window.pixel_at(lens->raster));
-    if (const auto seen = connect_to_lens(path_, pass_.job.view, v, *lens))
-      see_(LightArrival{&v, subpath_, path_.w, layers_of_splat(v)}, *seen, there);
-  }
-
-  const PathContext& path_;
-  const VcmPass& pass_;
-  std::uint32_t light_;
-  float time_;
-  bool keeps_beams_ = false;
-  const FilmPass* film_;
-  LightVertices::Chunk& chunk_;
-  const See& see_;
-  Subpath subpath_;
-};
 
 /// An answer of `EyeVisitor`: whether the walk continues, and whether by delta lobes alone.
 struct EyeContinuation : Continuation {
@@ -108,20 +23,19 @@ struct EyeContinuation : Continuation {
   WalkShare towards(float pdf) const { return {1, goes_on && (!by_delta_alone || pdf == infinity) ? 1.0f : 0.0f}; }
 };
 
-/// Step 3: finds the light of an eye path by all techniques except connections to the lens.
+/// Finds the light of an eye path by all techniques except connections to the lens.
 class EyeVisitor {
  public:
   // The path starts (TR eqs. 31-33).
   EyeVisitor(const PathContext& path, const VcmPass& pass, const Vec2& raster, LightLayers& layers,
-             PathMoments* moments = nullptr)
+             EyePathLog* log = nullptr)
       : path_(path),
         pass_(pass),
         bidirectional_(pass.bidirectional_at(raster, pass.effort.at(raster))),
-        moments_(moments),
+        log_(log),
         raster_(raster),
         layers_(layers),
         subpath_(pass.bidirectional.techniques) {
-    if (moments) bidirectional_.weighed = &moments->weighed;
     if (pass.connects() && bidirectional_.techniques.connections > 0) {
       partner_ = pass.partner(path.sampler);
       for (const LightVertex& vertex : pass.light_path(partner_)) prefetch(vertex);
@@ -134,8 +48,7 @@ class EyeVisitor {
     layers_.see(v);
     subpath_.arrive(path_, v);
     count_ray(v.state);
-    if (pass_.is_first_block() && hits_count(v.state) && pass_.shows(0, v.state.depth + 1))
-      add_hit(v, hit_emitter(path_, bidirectional_, v, subpath_), v.state.depth > 1);
+    if (pass_.is_first_block() && hits_count(v.state) && pass_.shows(0, v.state.depth + 1)) add_hits(v, subpath_);
     if (!v.may_scatter) return {Continuation::stop()};
     if (!looks_for_light(v.state)) return {Continuation::go_on(), true};
     if (has_non_delta(v.at.bsdf)) {
@@ -172,13 +85,15 @@ class EyeVisitor {
   void operator()(const EmissionVertex& v) {
     const bool is_light = path_.scene.volume_light(v.state.medium).has_value();
     if (!pass_.is_first_block() || (is_light && !hits_count(v.state)) || !pass_.shows(0, v.state.depth + 2)) return;
-    add_hit(v, hit_volume_emission(path_, bidirectional_, v, subpath_), is_light && v.state.depth > 0);
+    Subpath to_medium = subpath_;
+    to_medium.escape(v.state, v.direction, false);
+    add_hits(v, to_medium);
   }
   void operator()(const EscapeVertex& v) {
     count_ray(v.state);
     if (!pass_.is_first_block() || !hits_count(v.state) || !pass_.shows(0, v.state.depth + 2)) return;
     subpath_.escape(v.state, v.direction);
-    add_hit(v, hit_environment(path_, bidirectional_, v, subpath_), v.state.depth > 0);
+    add_hits(v, subpath_);
   }
 
   /// Whether it has looked for photons on a surface.
@@ -190,15 +105,23 @@ class EyeVisitor {
 
   bool merges_in_media() const { return pass_.volume_merges && bidirectional_.techniques.volume_part > 0; }
 
-  // `is_weighed`: other techniques find this light, too.
   template <class Vertex>
-  void add_hit(const Vertex& v, const Spectrum& light, bool is_weighed) {
-    if (moments_ && !is_weighed) bidirectional_.weigh({.within = {.walk = 1}});
-    layers_.add_hit(v, light, technique::hit);
-    note(light, v.state.dispersed, &TechniqueDensities::walk);
+  void add_hits(const Vertex& v, const Subpath& subpath) {
+    Spectrum sum;
+    hit_lights(path_, bidirectional_, v, subpath, [&](const Contribution& hit) {
+      const Spectrum light = hit.weighted(bidirectional_.techniques);
+      sum += light;
+      note(light, hit.dispersed, hit.densities, &TechniqueDensities::walk);
+    });
+    layers_.add_hit(v, sum, technique::hit);
   }
-  void note(const Spectrum& light, bool dispersed, float TechniqueDensities::*technique) {
-    if (moments_) moments_->add(flux_of(light, dispersed, path_.w), technique);
+  void add(const Contribution& found, PathClass path_class, std::size_t part, Technique technique) {
+    const Spectrum light = found.weighted(bidirectional_.techniques);
+    layers_.add(path_class, part, light, found.dispersed);
+    note(light, found.dispersed, found.densities, technique);
+  }
+  void note(const Spectrum& light, bool dispersed, const TechniqueSum& densities, Technique technique) {
+    if (log_) log_->found.push_back({flux_of(light, dispersed, path_.w), densities, technique});
   }
 
   // Whether the path connects and merges at its current vertex or flight.
@@ -208,10 +131,10 @@ class EyeVisitor {
 
   // Counts rays that short eye paths trace, too; the rays of the whole walk are counted elsewhere.
   void count_ray(const WalkState& arrived) {
-    if (moments_ && arrived.non_delta <= 1) ++moments_->short_work.rays;
+    if (log_ && arrived.non_delta <= 1) ++log_->short_work.rays;
   }
   void count(double EyeWork::*work, const WalkState& state) {
-    if (moments_) moments_->count(work, state.non_delta == 0);
+    if (log_) log_->count(work, state.non_delta == 0);
   }
 
   // Next-event estimation (TR eqs. 44, 45), and vertex connection (TR eqs. 40, 41).
@@ -220,9 +143,8 @@ class EyeVisitor {
     const int eye_vertices = v.state.depth + 1;
     count(&EyeWork::next_events, v.state);
     if (pass_.is_first_block() && pass_.shows(1, eye_vertices)) {
-      const DirectLight direct = next_event(path_, bidirectional_, v, subpath_);
-      layers_.add(class_of_next_event(v.state), technique::nee, direct.radiance, direct.dispersed);
-      note(direct.radiance, direct.dispersed, &TechniqueDensities::walk);
+      if (const auto direct = next_event(path_, bidirectional_, v, subpath_))
+        add(*direct, class_of_next_event(v.state), technique::nee, &TechniqueDensities::walk);
     }
     const auto connections = static_cast<int>(bidirectional_.techniques.connections);
     for (int i = 0; i < connections; ++i)
@@ -230,9 +152,8 @@ class EyeVisitor {
         if (!may_connect(path_.scene, v, other.at.position, other.scatterings, pass_.max_depth()) ||
             !pass_.shows(other.depth + 1, eye_vertices))
           continue;
-        const DirectLight light = connect(path_, bidirectional_, v, subpath_, other);
-        layers_.add(PathClass::indirect, technique::vc, light.radiance, light.dispersed);
-        note(light.radiance, light.dispersed, &TechniqueDensities::connections);
+        if (const auto connected = connect(path_, bidirectional_, v, subpath_, other))
+          add(*connected, PathClass::indirect, technique::vc, &TechniqueDensities::connections);
         count(&EyeWork::connections, v.state);
       }
   }
@@ -250,12 +171,12 @@ class EyeVisitor {
       const SubpathEnd at_eye = end_of_eye_path(subpath_.densities(), hit.pdf_reverse, scattered);
       const SubpathEnd at_light =
           end_of_light_path(photon.densities, hit.pdf, !photon.caustic, subpath_.coherence_beyond());
-      const float weight = bidirectional_.weigh(sum_of_merge(at_eye, at_light, t));
-      const Spectrum light = v.state.beta * hit.f * photon.power * (weight * place.density * hit.ratio);
+      const TechniqueSum densities = sum_of_merge(at_eye, at_light, t);
+      const Spectrum light = v.state.beta * hit.f * photon.power * (densities.weight(t) * place.density * hit.ratio);
       const bool is_dispersed = gather.is_dispersed(photon.dispersed);
       layers_.add(class_of_merge(v.state, photon.direct, photon.caustic), technique::vm, light, is_dispersed);
       layers_.add_bias(merge_kernel.bias_share(place.u) * light, is_dispersed);
-      note(light, is_dispersed, &TechniqueDensities::merging);
+      note(light, is_dispersed, densities, &TechniqueDensities::merging);
       count(&EyeWork::merges, v.state);
       if (tests) tests->count(pixel, v.at.shading.to_local(place.offset), place.u);
     };
@@ -267,35 +188,18 @@ class EyeVisitor {
     pass_.surface_merges->for_each_at(gather, raster_, pass_.max_depth(), add);
   }
   VolumeMergeContext volume_context() const {
-    return {path_, bidirectional_, subpath_, pass_.max_depth(), layers_, moments_};
+    return {path_, bidirectional_, subpath_, pass_.max_depth(), layers_, log_};
   }
 
   const PathContext& path_;
   const VcmPass& pass_;
   Bidirectional bidirectional_;
-  PathMoments* moments_;
+  EyePathLog* log_;
   const Vec2 raster_;
   std::size_t partner_ = 0;
   bool has_merged_ = false;
   LightLayers& layers_;
   Subpath subpath_;
 };
-
-/// Traces the light paths of a pass. `film`: receives splats, and is prefetched; null if there will be none.
-template <class See>
-RayCounts trace_light_paths(const VcmPass& pass, const FilmPass* film, const See& see) {
-  pass.vertices.begin(pass.light_paths.chunk_count());
-  const WalkLimits limits{.max_depth = pass.max_depth()};
-  return pass.light_paths.for_each([&](const LightPath& start, Sampler& sampler, RayCounts& counts, std::size_t c) {
-    LightVertices::Chunk& chunk = pass.vertices.chunk(c);
-    const PathDraw own = pass.draw.of_path(sampler);
-    const PathContext path{pass.job.scene, own.w, sampler, counts, limits};
-    const auto see_in_chunk = [&](const LightArrival& light, const LensLight& seen, const PlaceEffort& there) {
-      see(light, seen, there, c);
-    };
-    walk_from_light(path, start, own.time, LightVisitor(path, pass, start.index, own.time, film, chunk, see_in_chunk));
-    chunk.ends.push_back(static_cast<std::uint32_t>(chunk.vertices.size()));
-  });
-}
 
 }  // namespace lanthorn

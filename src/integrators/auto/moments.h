@@ -12,6 +12,7 @@
 #include <span>
 #include <vector>
 
+#include "integrators/vcm/eye_path_log.h"
 #include "math/vec.h"
 #include "path/mis.h"
 
@@ -29,7 +30,7 @@ struct EffortCandidate {
 
   /// The technique's number of samples over the pilot's. Merging uses all light paths; on surfaces the number of
   /// photons also grows with the area of its discs.
-  float samples(float TechniqueDensities::*technique) const {
+  float samples(Technique technique) const {
     if (technique == &TechniqueDensities::walk) return 1;
     if (technique == &TechniqueDensities::connections) return light_paths > 0 ? connections : 0.0f;
     if (technique == &TechniqueDensities::merging) return merges ? merge_area * light_paths : 0.0f;
@@ -39,21 +40,24 @@ struct EffortCandidate {
   }
 };
 
+/// The technique's place in the list.
+inline std::size_t index_of(Technique technique) {
+  return static_cast<std::size_t>(std::ranges::find(all_techniques, technique) - all_techniques.begin());
+}
+
 /// A list of candidates in arrays, so that vector instructions judge several of them at a time.
 class CandidateArrays {
  public:
   CandidateArrays() = default;
   explicit CandidateArrays(std::span<const EffortCandidate> candidates) {
-    for (std::size_t t = 0; t < techniques.size(); ++t)
-      for (const EffortCandidate& c : candidates) samples_[t].push_back(c.samples(techniques[t]));
+    for (std::size_t t = 0; t < all_techniques.size(); ++t)
+      for (const EffortCandidate& c : candidates) samples_[t].push_back(c.samples(all_techniques[t]));
     for (const EffortCandidate& c : candidates) goes_on_.push_back(c.goes_on ? 1.0f : 0.0f);
   }
   std::size_t size() const { return goes_on_.size(); }
 
   /// `EffortCandidate::samples` of all candidates.
-  std::span<const float> samples(float TechniqueDensities::*technique) const {
-    return samples_[static_cast<std::size_t>(std::ranges::find(techniques, technique) - techniques.begin())];
-  }
+  std::span<const float> samples(Technique technique) const { return samples_[index_of(technique)]; }
   /// `EffortCandidate::goes_on` of all candidates: 1 or 0.
   std::span<const float> goes_on() const { return goes_on_; }
 
@@ -61,29 +65,8 @@ class CandidateArrays {
   void ratios(const TechniqueSum& s, std::size_t first, std::span<float> result) const;
 
  private:
-  static constexpr std::array techniques{&TechniqueDensities::walk, &TechniqueDensities::lens,
-                                         &TechniqueDensities::connections, &TechniqueDensities::merging,
-                                         &TechniqueDensities::media};
-
-  std::array<std::vector<float>, techniques.size()> samples_;
+  std::array<std::vector<float>, all_techniques.size()> samples_;
   std::vector<float> goes_on_;
-};
-
-/// Counts of the costly operations of eye paths.
-struct EyeWork {
-  double rays = 0, next_events = 0, connections = 0;
-  double lookups = 0, merges = 0;              ///< on surfaces
-  double media_lookups = 0, media_merges = 0;  ///< on flights and at scatterings
-
-  void add(const EyeWork& other, double factor = 1) {
-    rays += factor * other.rays;
-    next_events += factor * other.next_events;
-    connections += factor * other.connections;
-    lookups += factor * other.lookups;
-    merges += factor * other.merges;
-    media_lookups += factor * other.media_lookups;
-    media_merges += factor * other.media_merges;
-  }
 };
 
 /// Second moments of one eye path's light, one for each candidate, from two independent sets of light paths.
@@ -102,18 +85,11 @@ class PathMoments {
   explicit PathMoments(const CandidateArrays& candidates)
       : candidates_(candidates), ratios_(candidates.size()), sums_(candidates.size() * row_count) {}
 
-  TechniqueSum weighed;          ///< of the contribution that comes next
-  EyeWork work, short_work;      ///< with both sets; of the part that a short eye path does (`Techniques::goes_on`)
   std::size_t set = 0;           ///< the set of light paths that the contribution comes from: 0 or 1
   float light = 0, by_walk = 0;  ///< X with the first set, and the part of it that needs no light path
 
-  /// `is_short`: a short eye path performs this operation, too.
-  void count(double EyeWork::*what, bool is_short) {
-    ++(work.*what);
-    if (is_short) ++(short_work.*what);
-  }
-  /// Adds a contribution c by a technique, with the densities `weighed`.
-  void add(float c, float TechniqueDensities::*technique);
+  /// Adds a contribution c.
+  void add(const EyePathLog::Contribution& c);
   /// Estimates for candidate k, without light that the lens sees.
   struct Estimate {
     double light;          ///< E[X]
@@ -123,24 +99,22 @@ class PathMoments {
     double all_squares;    ///< Σ c² / R
   };
   Estimate estimate(std::size_t k) const {
-    const auto samples = [&](float TechniqueDensities::*technique) {
-      return static_cast<double>(candidates_.samples(technique)[k]);
-    };
-    const Sums s = sums(k);
-    const double m = samples(&TechniqueDensities::connections), n = samples(&TechniqueDensities::merging),
-                 v = samples(&TechniqueDensities::media);
-    const double w = s.walk.sum;
-    const auto light_of = [&](int i) { return m * s.connections[i].sum + n * s.merges[i].sum + v * s.media[i].sum; };
-    const double a = light_of(0), b = light_of(1);
+    const PathSum walk = path_sum(row_of(&TechniqueDensities::walk, 0), k);
+    const double w = walk.sum;
+    double a = 0, b = 0;  // light of the sets
+    double squares = 0, within_sets = 0;
+    for (const Technique t : all_techniques) {
+      if (t == &TechniqueDensities::walk) continue;
+      const auto samples = static_cast<double>(candidates_.samples(t)[k]);
+      const PathSum of_a = path_sum(row_of(t, 0), k), of_b = path_sum(row_of(t, 1), k);
+      a += samples * of_a.sum;
+      b += samples * of_b.sum;
+      squares += samples * (of_a.squares + of_b.squares) / 2;
+      within_sets += samples * ((of_a.pairs() + of_b.pairs()) / 2 - of_a.sum * of_b.sum);
+    }
     const double of_eye_path = w * w + w * (a + b) + a * b;
-    const auto within = [](const PathSum(&of)[2]) {
-      return (of[0].pairs() + of[1].pairs()) / 2 - of[0].sum * of[1].sum;
-    };
-    const auto both = [](const PathSum(&of)[2]) { return (of[0].squares + of[1].squares) / 2; };
-    const double of_light = m * both(s.connections) + n * both(s.merges) + v * both(s.media);
-    const double second_moment =
-        of_eye_path + of_light + m * within(s.connections) + n * within(s.merges) + v * within(s.media);
-    return {w + (a + b) / 2, second_moment, of_eye_path, s.walk.squares + of_light, s.self};
+    return {w + (a + b) / 2, of_eye_path + squares + within_sets, of_eye_path, walk.squares + squares,
+            sums_[self_row * candidates_.size() + k]};
   }
 
  private:
@@ -149,21 +123,14 @@ class PathMoments {
     // Products of two different samples.
     double pairs() const { return sqr(sum) - squares; }
   };
-  struct Sums {
-    PathSum walk, connections[2], merges[2], media[2];
-    double self;
-  };
-  // `sums_` has a row for each number of Sums, with the sums of all candidates. Rows of PathSum:
-  static constexpr std::size_t walk = 0, connections = 2, merges = 6, media = 10, self = 14, row_count = 15;
+  // `sums_` has a row for each technique and set, with the sums of all candidates, one for their squares after it, and
+  // one for `all_squares` at the end.
+  static constexpr std::size_t self_row = 4 * all_techniques.size(), row_count = self_row + 1;
+  static std::size_t row_of(Technique technique, std::size_t set) { return 4 * index_of(technique) + 2 * set; }
 
-  double sum(std::size_t row, std::size_t k) const { return sums_[row * candidates_.size() + k]; }
-  PathSum path_sum(std::size_t row, std::size_t k) const { return {sum(row, k), sum(row + 1, k)}; }
-  Sums sums(std::size_t k) const {
-    return {path_sum(walk, k),
-            {path_sum(connections, k), path_sum(connections + 2, k)},
-            {path_sum(merges, k), path_sum(merges + 2, k)},
-            {path_sum(media, k), path_sum(media + 2, k)},
-            sum(self, k)};
+  PathSum path_sum(std::size_t row, std::size_t k) const {
+    const std::size_t at = row * candidates_.size() + k;
+    return {sums_[at], sums_[at + candidates_.size()]};
   }
   std::span<double> row(std::size_t number) {
     return std::span(sums_).subspan(number * candidates_.size(), candidates_.size());

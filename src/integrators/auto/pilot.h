@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "integrators/vcm/effort_measurement.h"
+#include "integrators/auto/measurement.h"
 #include "integrators/vcm/vcm_settings.h"
 #include "path/render_job.h"
 

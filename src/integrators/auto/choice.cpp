@@ -1,14 +1,18 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include "integrators/vcm/effort_choice.h"
+#include "integrators/auto/choice.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <string>
 #include <utility>
 #include <vector>
 
+#include "lanthorn/number_text.h"
 #include "photon/guides/rare_light.h"
 
 namespace lanthorn {
@@ -48,18 +52,32 @@ constexpr double short_eye_paths = 4;  // they have few dimensions; not used in 
 // stratified best, and merges add bias.
 constexpr double margin = 0.8;
 
+// One line for the user: findings and choice.
+std::string describe(const EffortReport& r) {
+  const auto percent = [](double share) { return fmt::format("{:.{}f} %", 100 * share, share < 0.1 ? 1 : 0); };
+  const bool has_caustics = r.caustic_light >= 0.001;
+  const std::string found = has_caustics ? fmt::format("caustics make {} of the light, in {} of the picture",
+                                                       percent(r.caustic_light), percent(r.caustic_part))
+                                         : "hardly any light is in caustics";
+  if (r.light_paths_per_pixel == 0) return found + ": path tracing";
+  const std::string shorter =
+      r.short_part > 0 ? fmt::format("; in {}, eye paths end at their first merge", percent(r.short_part)) : "";
+  return fmt::format("{}: {} light paths a pixel, merged in {} and connected in {} of the picture{}", found,
+                     short_number(r.light_paths_per_pixel), percent(r.merged_part), percent(r.connected_part), shorter);
+}
+
 PlaceEffort place_of(const EffortCandidate& c) {
   return {static_cast<std::uint8_t>(c.connections), c.merges, c.merges_in_media, c.sees, c.goes_on};
 }
 
-class EffortChoice {
+class Chooser {
  public:
-  EffortChoice(const RenderJob& job, const EffortMeasurement& measured)
+  Chooser(const RenderJob& job, const EffortMeasurement& measured)
       : job_(job), m_(measured), has_specular_(has_specular_surfaces(job.scene)), ray_work_(work_of_ray(job.scene)) {
     find_variances();
   }
 
-  Effort best() const;
+  EffortChoice best() const;
 
  private:
   // Variance and work of a choice for each block.
@@ -94,7 +112,7 @@ class EffortChoice {
   std::vector<double> variances_;  // by block and candidate: relative, of the mean of many passes, times their number
 };
 
-double EffortChoice::work_of(const EffortBlock& block, const EffortCandidate& c) const {
+double Chooser::work_of(const EffortBlock& block, const EffortCandidate& c) const {
   const EyeWork& of = c.goes_on ? block.work : block.short_work;
   double sum = ray_work_ * (of.rays + work::shadow * of.next_events);
   if (c.light_paths > 0) sum += work::eye_path * block.paths + work::densities * of.rays;
@@ -107,7 +125,7 @@ double EffortChoice::work_of(const EffortBlock& block, const EffortCandidate& c)
   return sum;
 }
 
-void EffortChoice::find_variances() {
+void Chooser::find_variances() {
   double light = 0, paths = 0;
   for (const EffortBlock& block : m_.blocks) {
     light += block.light;
@@ -129,7 +147,7 @@ void EffortChoice::find_variances() {
 }
 
 // The mean with the blocks around.
-double EffortChoice::variance_around(std::size_t b, std::size_t candidate) const {
+double Chooser::variance_around(std::size_t b, std::size_t candidate) const {
   const int x0 = static_cast<int>(b) % m_.grid.columns(), y0 = static_cast<int>(b) / m_.grid.columns();
   double sum = 0;
   int count = 0;
@@ -141,19 +159,19 @@ double EffortChoice::variance_around(std::size_t b, std::size_t candidate) const
   return sum / count;
 }
 
-double EffortChoice::work_of_light(float light_paths) const {
+double Chooser::work_of_light(float light_paths) const {
   return count_per_pixel(light_paths, work::light_path * m_.light_paths + work::light_ray * ray_work_ * m_.light_rays +
                                           work::light_vertex * m_.light_vertices);
 }
 
-double EffortChoice::count_per_pixel(float light_paths, double of_pilot) const {
+double Chooser::count_per_pixel(float light_paths, double of_pilot) const {
   const PixelWindow& window = job_.view.crop;
   const double pixels = static_cast<double>(window.width()) * static_cast<double>(window.height());
   return static_cast<double>(light_paths) * static_cast<double>(job_.settings.photons) / pixels * of_pilot /
          std::max(1.0, m_.light_paths);
 }
 
-void EffortChoice::count_work(EffortReport& report) const {
+void Chooser::count_work(EffortReport& report) const {
   double paths = 0;
   EyeWork all;
   for (const EffortBlock& block : m_.blocks) {
@@ -163,17 +181,17 @@ void EffortChoice::count_work(EffortReport& report) const {
   report.work_of_eye_path.add(all, 1 / paths);
   report.work_of_eye_path.merges /= per_pixel(1 / m_.scale);
   report.work_of_eye_path.media_merges /= per_pixel(1 / m_.scale);
-  report.light_rays = m_.light_rays / std::max(1.0, m_.light_paths);
-  report.light_vertices = m_.light_vertices / std::max(1.0, m_.light_paths);
+  const double light_paths = std::max(1.0, m_.light_paths);
+  report.work_of_light_path = {m_.light_rays / light_paths, m_.light_vertices / light_paths};
 }
 
-double EffortChoice::per_pixel(float light_paths) const {
+double Chooser::per_pixel(float light_paths) const {
   const PixelWindow& window = job_.view.crop;
   const auto paths = static_cast<double>(light_paths) * static_cast<double>(job_.settings.photons);
   return paths * job_.settings.parts / (static_cast<double>(window.width()) * static_cast<double>(window.height()));
 }
 
-std::vector<UniformEffort> EffortChoice::uniform_efforts() const {
+std::vector<UniformEffort> Chooser::uniform_efforts() const {
   std::vector<UniformEffort> result;
   for (std::size_t k = 0; k < m_.candidates.size(); ++k) {
     const float light_paths = m_.candidates[k].light_paths / m_.scale;
@@ -189,14 +207,14 @@ std::vector<UniformEffort> EffortChoice::uniform_efforts() const {
 
 // The pilot may miss light that arrives by way of mirrors and clear glass, and eye paths may be unable to find it.
 // Photons find it.
-bool EffortChoice::finds_all_light(const EffortCandidate& c) const {
+bool Chooser::finds_all_light(const EffortCandidate& c) const {
   const bool in_media = m_.candidates.back().merges_in_media;
   return !has_specular_ || (c.merges && c.merges_in_media == in_media);
 }
 
 // Minimises the product of variance and work for this number of light paths. In each round, every block takes the
 // candidate whose shares of the total variance and of the total work have the smallest sum.
-EffortChoice::Plan EffortChoice::plan_with(float light_paths) const {
+Chooser::Plan Chooser::plan_with(float light_paths) const {
   std::vector<std::size_t> able;
   for (std::size_t k = 0; k < m_.candidates.size(); ++k)
     if (m_.candidates[k].light_paths == m_.scale * light_paths && finds_all_light(m_.candidates[k])) able.push_back(k);
@@ -227,7 +245,7 @@ EffortChoice::Plan EffortChoice::plan_with(float light_paths) const {
   return plan;
 }
 
-EffortReport EffortChoice::report_on(const Plan& plan, float light_paths) const {
+EffortReport Chooser::report_on(const Plan& plan, float light_paths) const {
   constexpr double visible = 0.05;  // share of a block's light
   EffortReport report{.variance = plan.variance, .work = plan.work, .uniform = uniform_efforts()};
   double light = 0, by_light_paths = 0, caustic = 0;
@@ -247,10 +265,15 @@ EffortReport EffortChoice::report_on(const Plan& plan, float light_paths) const 
   report.caustic_light = light > 0 ? caustic / light : 0;
   report.light_paths_per_pixel = per_pixel(light_paths);
   count_work(report);
+  report.summary = describe(report);
+  // Variances of extreme scenes may exceed all numbers, which JSON does not know.
+  const auto finite = [](double x) { return std::isfinite(x) ? x : std::numeric_limits<double>::max(); };
+  report.variance = finite(report.variance);
+  for (UniformEffort& choice : report.uniform) choice.variance = finite(choice.variance);
   return report;
 }
 
-Effort EffortChoice::best() const {
+EffortChoice Chooser::best() const {
   float best_paths = 0;
   Plan best{};
   double least = infinity;
@@ -270,14 +293,14 @@ Effort EffortChoice::best() const {
   std::vector<PlaceEffort> places;
   for (const std::size_t k : best.candidates) places.push_back(place_of(m_.candidates[k]));
   const auto paths = static_cast<double>(best_paths) * static_cast<double>(job_.settings.photons);
-  return {static_cast<std::uint64_t>(std::ceil(paths)), job_.view.crop, m_.grid.columns(), std::move(places),
+  return {Effort(static_cast<std::uint64_t>(std::ceil(paths)), job_.view.crop, m_.grid.columns(), std::move(places)),
           report_on(best, best_paths)};
 }
 
 }  // namespace
 
-Effort choose_effort(const RenderJob& job, const EffortMeasurement& measured) {
-  return EffortChoice(job, measured).best();
+EffortChoice choose_effort(const RenderJob& job, const EffortMeasurement& measured) {
+  return Chooser(job, measured).best();
 }
 
 }  // namespace lanthorn

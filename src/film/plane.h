@@ -8,13 +8,14 @@
 
 #include "base/parallel.h"
 
-namespace lanthorn::denoising {
+namespace lanthorn {
 
-/// A number for each pixel, rows from the top.
-class Plane {
+/// A value for each pixel, rows from the top.
+template <class T>
+class PixelPlane {
  public:
-  Plane() = default;
-  Plane(int width, int height, float value = 0)
+  PixelPlane() = default;
+  PixelPlane(int width, int height, const T& value = T(0))
       : width_(width),
         height_(height),
         values_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), value) {}
@@ -23,10 +24,14 @@ class Plane {
   int height() const { return height_; }
   std::size_t size() const { return values_.size(); }
   bool empty() const { return values_.empty(); }
-  float* row(int y) { return values_.data() + static_cast<std::ptrdiff_t>(y) * width_; }
-  const float* row(int y) const { return values_.data() + static_cast<std::ptrdiff_t>(y) * width_; }
-  float& operator[](std::size_t i) { return values_[i]; }
-  float operator[](std::size_t i) const { return values_[i]; }
+  /// The place of a pixel in row-major order.
+  std::size_t index(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
+  }
+  T* row(int y) { return values_.data() + index(0, y); }
+  const T* row(int y) const { return values_.data() + index(0, y); }
+  T& operator[](std::size_t i) { return values_[i]; }
+  const T& operator[](std::size_t i) const { return values_[i]; }
 
   /// Calls `body(y)` for all rows, on any thread.
   template <class Body>
@@ -37,25 +42,33 @@ class Plane {
                       for (std::size_t y = begin; y < end; ++y) body(static_cast<int>(y));
                     });
   }
+  /// Calls `body(i)` for the pixels of a row, from the left.
+  template <class Body>
+  void for_each_in_row(int y, Body&& body) const {
+    for (std::size_t i = index(0, y), end = index(0, y + 1); i < end; ++i) body(i);
+  }
+  /// The same for all pixels; rows on any thread.
+  template <class Body>
+  void for_each_pixel(Body&& body) const {
+    for_each_row([&](int y) { for_each_in_row(y, body); });
+  }
   /// Sets each pixel to `value(i)`.
   template <class Value>
   void fill(Value&& value) {
-    for_each_row([&](int y) {
-      const auto w = static_cast<std::size_t>(width_);
-      for (std::size_t i = static_cast<std::size_t>(y) * w, end = i + w; i < end; ++i) values_[i] = value(i);
-    });
+    for_each_pixel([&](std::size_t i) { values_[i] = static_cast<T>(value(i)); });
   }
   template <class Value>
-  static Plane of(int width, int height, Value&& value) {
-    Plane plane(width, height);
+  static PixelPlane of(int width, int height, Value&& value) {
+    PixelPlane plane(width, height);
     plane.fill(value);
     return plane;
   }
 
  private:
   int width_ = 0, height_ = 0;
-  std::vector<float> values_;
+  std::vector<T> values_;
 };
+using Plane = PixelPlane<float>;
 
 /// Means over squares of (2 radius + 1)² pixels, clipped to the picture.
 Plane box_filtered(const Plane& plane, int radius);
@@ -64,4 +77,4 @@ Plane halved(const Plane& plane);
 /// Bilinear upsampling from half the size to this one.
 Plane doubled(const Plane& plane, int width, int height);
 
-}  // namespace lanthorn::denoising
+}  // namespace lanthorn

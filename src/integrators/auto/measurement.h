@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "camera/view.h"
-#include "integrators/vcm/moments.h"
+#include "integrators/auto/moments.h"
 #include "path/eye_pass.h"
 
 namespace lanthorn {
