@@ -9,6 +9,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -43,6 +44,16 @@ decltype(auto) with_type(Scalar scalar, Visit&& visit) {
       break;
   }
   return visit(static_cast<const double*>(nullptr));
+}
+template <class T>
+constexpr Scalar scalar_of() {
+  constexpr bool is_signed = std::is_signed_v<T>;
+  if constexpr (std::is_same_v<T, float>) return Scalar::float32;
+  if constexpr (std::is_same_v<T, double>) return Scalar::float64;
+  if constexpr (sizeof(T) == 1) return is_signed ? Scalar::int8 : Scalar::uint8;
+  if constexpr (sizeof(T) == 2) return is_signed ? Scalar::int16 : Scalar::uint16;
+  if constexpr (sizeof(T) == 4) return is_signed ? Scalar::int32 : Scalar::uint32;
+  return is_signed ? Scalar::int64 : Scalar::uint64;
 }
 inline bool is_integer(Scalar scalar) { return scalar < Scalar::float32; }
 inline std::size_t bytes_of(Scalar scalar) {

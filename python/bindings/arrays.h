@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "lanthorn/plain_data.h"
+#include "lanthorn/plain_value.h"
 
 namespace lanthorn::python {
 

@@ -13,18 +13,6 @@
 #include "lanthorn/text.h"
 #include "plain_data.h"
 
-namespace lanthorn::plain {
-
-template <>
-struct Names<ToneCurve> {
-  static constexpr std::array<std::pair<std::string_view, ToneCurve>, 4> list{{{"none", ToneCurve::none},
-                                                                               {"highlights", ToneCurve::highlights},
-                                                                               {"filmic", ToneCurve::filmic},
-                                                                               {"agx", ToneCurve::agx}}};
-};
-
-}  // namespace lanthorn::plain
-
 namespace lanthorn::python {
 
 Picture picture_of_state(const RenderState& state, bool with_noise_layers) {

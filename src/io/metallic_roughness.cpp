@@ -137,20 +137,17 @@ class Builder {
   }
 
   PlasticMaterial plastic(const std::optional<ThinFilm>& film) {
-    return {.reflectance = source_.base_color,
-            .roughness = width(source_.roughness),
-            .eta = source_.eta,
-            .specular = source_.specular,
-            .specular_color = source_.specular_color,
-            .sheen_color = source_.sheen_color,
-            .sheen_roughness = source_.sheen_roughness,
-            .film = film};
+    PlasticMaterial result = source_.dielectric;
+    result.reflectance = source_.base_color;
+    result.roughness = width(source_.roughness);
+    result.film = film;
+    return result;
   }
 
   Index transparent() {
     return with_film([&](const std::optional<ThinFilm>& film) {
-      if (source_.thin) return add(ThinDielectricMaterial{source_.eta, stretched_width(), tint(), film});
-      return add(DielectricMaterial{source_.eta, stretched_width(), tint(), film});
+      if (source_.thin) return add(ThinDielectricMaterial{source_.dielectric.eta, stretched_width(), tint(), film});
+      return add(DielectricMaterial{source_.dielectric.eta, stretched_width(), tint(), film});
     });
   }
 

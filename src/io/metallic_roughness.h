@@ -17,16 +17,12 @@ struct MetallicRoughness {
   description::FloatParameter metallic{0, {}};
   description::FloatParameter roughness{1, {}};   ///< GGX alpha is its square
   description::FloatParameter anisotropy{0, {}};  ///< strength, along the tangent; of metal and of glass
-  description::SpectrumValue eta = 1.5f;          ///< of the dielectric
-  /// Factors of the dielectric's reflection: at every angle, and at normal incidence only.
-  description::FloatParameter specular{1, {}};
-  description::SpectrumParameter specular_color{1.0f, {}};
+  /// The dielectric's own parameters. The members above and `film` replace its reflectance, roughness and film.
+  description::PlasticMaterial dielectric;
   description::FloatParameter transmission{0, {}};
   description::FloatParameter diffuse_transmission{0, {}};
   description::SpectrumParameter diffuse_transmission_color{1.0f, {}};
   bool thin = true;  ///< a transmitting surface is an infinitely thin sheet, not the boundary of a volume
-  description::SpectrumParameter sheen_color{0.0f, {}};  ///< of the dielectric
-  description::FloatParameter sheen_roughness{0, {}};
   description::FloatParameter iridescence{0, {}};  ///< fraction of rays that hit the film
   description::ThinFilm film;
   description::FloatParameter clearcoat{0, {}};

@@ -15,12 +15,15 @@
 #include <nlohmann/json.hpp>
 #include <set>
 #include <span>
+#include <string>
+#include <string_view>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "lanthorn/error.h"
 #include "lanthorn/text.h"
+#include "plain/type.h"
 
 namespace lanthorn {
 
@@ -32,10 +35,10 @@ using nlohmann::json;
 using FileHashes = std::map<std::string, std::set<std::string>>;
 
 // The words for the values of an enumeration, in their order.
-constexpr std::array color_words{"rgb", "spectral"};
-constexpr std::array filter_words{"box", "triangle", "gaussian", "mitchell", "sinc"};
-constexpr std::span<const char* const> words_of(ColorMode) { return color_words; }
-constexpr std::span<const char* const> words_of(FilterKind) { return filter_words; }
+template <class T>
+std::span<const std::string_view> words_of(T) {
+  return plain::type_of<T>().names;
+}
 
 // The members of each object, for reading and writing alike. `member` takes a name and a variable, and:
 // `flag`: is written only if it is true; `added`: keeps its default if it is missing, as in files of before it was
@@ -244,7 +247,8 @@ class RecordReader {
   template <Enumeration T>
   void read(const json& from, const std::string& path, T& to) const {
     const auto words = words_of(to);
-    const auto found = std::find(words.begin(), words.end(), from);
+    const auto* text = from.get_ptr<const std::string*>();
+    const auto found = text != nullptr ? std::find(words.begin(), words.end(), *text) : words.end();
     require(found != words.end(), fmt::format("one of {}", fmt::join(words, ", ")), path);
     to = static_cast<T>(found - words.begin());
   }

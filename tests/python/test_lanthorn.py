@@ -128,6 +128,8 @@ class Loading(unittest.TestCase):
         self.assertGreater(np.asarray(lanthorn.render(scene, **SMALL)).mean(), np.asarray(lanthorn.render(bare, **SMALL)).mean())
         with self.assertRaises(lanthorn.Error):
             lanthorn.load_dict({**floor_and_lamp(), "environment": "nowhere"})
+        with self.assertRaisesRegex(lanthorn.Error, "environment.up: expected one of 'y', 'z', got 'x'"):
+            lanthorn.load_dict({**floor_and_lamp(), "environment": {"source": "studio", "up": "x"}})
 
 
 class Pictures(unittest.TestCase):

@@ -249,9 +249,9 @@ class MaterialReader {
     const std::vector<float> base = old.numbers("diffuseFactor", {1, 1, 1, 1}, Range::at_least(0));
     result_.base_color = times_vertex_color(colour(old, {base[0], base[1], base[2]}, "diffuseTexture", neutral_grey));
     constexpr float dielectric = 0.04f;  // reflectance at normal incidence
-    result_.specular_color =
+    result_.dielectric.specular_color =
         colour(old, old.colour("specularFactor", Vec3(1)), "specularGlossinessTexture", dielectric);
-    result_.eta = total_reflection;
+    result_.dielectric.eta = total_reflection;
     const float glossiness = old.number("glossinessFactor", 1, zero_to_one);
     result_.roughness = {1 - glossiness, {}};
     if (auto image = texture(old, "specularGlossinessTexture").image) {
@@ -268,8 +268,8 @@ class MaterialReader {
   void read_specular() {
     const auto specular = material_.extension("KHR_materials_specular");
     if (!specular) return;
-    result_.specular = factor(*specular, "specularFactor", 1, "specularTexture", alpha_channel);
-    result_.specular_color =
+    result_.dielectric.specular = factor(*specular, "specularFactor", 1, "specularTexture", alpha_channel);
+    result_.dielectric.specular_color =
         colour(*specular, specular->colour("specularColorFactor", Vec3(1)), "specularColorTexture", neutral_property);
   }
 
@@ -280,11 +280,11 @@ class MaterialReader {
     const float inverse_abbe = dispersion ? dispersion->number("dispersion", 0, Range::at_least(0)) / 20 : 0.0f;
     if (ior || dispersion) {
       if (index == 0)
-        result_.eta = total_reflection;
+        result_.dielectric.eta = total_reflection;
       else if (inverse_abbe > 0)
-        result_.eta = cauchy(index, inverse_abbe);
+        result_.dielectric.eta = cauchy(index, inverse_abbe);
       else
-        result_.eta = index;
+        result_.dielectric.eta = index;
     }
     const auto transmission = material_.extension("KHR_materials_transmission");
     if (!transmission) return;
@@ -350,8 +350,9 @@ class MaterialReader {
     if (!sheen) return;
     const Vec3 factor_of_color = sheen->colour("sheenColorFactor", Vec3(0));
     if (!(max_component(factor_of_color) > 0)) return;
-    result_.sheen_color = colour(*sheen, factor_of_color, "sheenColorTexture", neutral_effect);
-    result_.sheen_roughness = factor(*sheen, "sheenRoughnessFactor", 0, "sheenRoughnessTexture", alpha_channel);
+    result_.dielectric.sheen_color = colour(*sheen, factor_of_color, "sheenColorTexture", neutral_effect);
+    result_.dielectric.sheen_roughness =
+        factor(*sheen, "sheenRoughnessFactor", 0, "sheenRoughnessTexture", alpha_channel);
     if (result_.metallic.texture || result_.metallic.value > 0)
       document_.warn("KHR_materials_sheen", *sheen, "KHR_materials_sheen is ignored on metal");
   }
@@ -403,6 +404,14 @@ class MaterialReader {
 };
 
 }  // namespace
+
+bool Materials::reads_extension(std::string_view name) {
+  constexpr std::string_view prefix = "KHR_materials_";
+  constexpr auto known = std::to_array<std::string_view>(
+      {"anisotropy", "clearcoat", "diffuse_transmission", "dispersion", "emissive_strength", "ior", "iridescence",
+       "pbrSpecularGlossiness", "sheen", "specular", "transmission", "unlit", "variants", "volume"});
+  return name.starts_with(prefix) && std::find(known.begin(), known.end(), name.substr(prefix.size())) != known.end();
+}
 
 Surface Materials::make(const Value& material, bool has_colors) {
   MaterialReader reader(document_, material, has_colors);

@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -28,6 +29,9 @@ struct Surface {
 class Materials {
  public:
   explicit Materials(Document& document) : document_(document) {}
+
+  /// True for the names of the extensions that are read here.
+  static bool reads_extension(std::string_view name);
 
   /// Selects a variant of the file (KHR_materials_variants), an index of its list.
   void choose_variant(std::size_t variant) { variant_ = variant; }

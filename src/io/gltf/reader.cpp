@@ -37,15 +37,17 @@ constexpr double bytes_of_instance = 2048;  // in the built scene, including its
 // Limit for geometry that small files could multiply: meshes copied for every node, and points and lines.
 constexpr std::size_t most_made_triangles = std::size_t{1} << 25;
 
-constexpr std::array<std::string_view, 23> extensions_read = {
+// Beside those of materials.
+constexpr std::array<std::string_view, 9> extensions_read = {
     "EXT_mesh_gpu_instancing", "EXT_meshopt_compression", "EXT_texture_webp", "KHR_draco_mesh_compression",
-    "KHR_lights_punctual", "KHR_materials_clearcoat", "KHR_materials_dispersion", "KHR_materials_emissive_strength",
-    "KHR_materials_ior", "KHR_materials_pbrSpecularGlossiness", "KHR_materials_specular", "KHR_materials_transmission",
-    "KHR_materials_volume", "KHR_mesh_quantization", "KHR_texture_transform", "KHR_materials_anisotropy",
-    "KHR_materials_diffuse_transmission", "KHR_materials_sheen", "KHR_materials_unlit", "KHR_materials_iridescence",
-    "KHR_meshopt_compression", "KHR_materials_variants",
+    "KHR_lights_punctual", "KHR_mesh_quantization", "KHR_meshopt_compression", "KHR_texture_transform",
     // A warning follows where it is used.
     "KHR_texture_basisu"};
+
+bool is_known(std::string_view extension) {
+  return Materials::reads_extension(extension) ||
+         std::find(extensions_read.begin(), extensions_read.end(), extension) != extensions_read.end();
+}
 
 void check_version(const Document& document) {
   const Value asset = document.root().at("asset");
@@ -61,8 +63,7 @@ void check_extensions(Document& document) {
     std::vector<Value> result;
     const auto names = document.root().find_array(list);
     for (std::size_t i = 0; names && i < names->size(); ++i)
-      if (std::find(extensions_read.begin(), extensions_read.end(), names->element(i).text()) == extensions_read.end())
-        result.push_back(names->element(i));
+      if (!is_known(names->element(i).text())) result.push_back(names->element(i));
     return result;
   };
   for (const Value& name : unknown("extensionsRequired"))

@@ -309,8 +309,8 @@ class MaterialFile {
     MetallicRoughness material;
     material.base_color = add_base_color(m);
     add_relief(m, material);
-    if (m.index && *m.index > 1) material.eta = *m.index;
-    if (refracts && !physical) return add_node(m, material, glass(m, material.eta));
+    if (m.index && *m.index > 1) material.dielectric.eta = *m.index;
+    if (refracts && !physical) return add_node(m, material, glass(m, material.dielectric.eta));
     if (mirrors && !physical && is_black(m.kd) && !m.map_kd && !m.lost_colours)
       return add_node(m, material,
                       ConductorMaterial{.reflectance = SpectrumParameter{RgbSpectrum{m.ks}, {}},
@@ -318,7 +318,7 @@ class MaterialFile {
     const bool is_dull = (is_black(m.ks) && !m.map_ks) || m.illumination < 2;
     if (!physical && is_dull) return add_node(m, material, DiffuseMaterial{material.base_color});
     // Ks is treated as white: its magnitude is unreliable.
-    if (m.map_ks) material.specular_color = add_colour(m, {1, 1, 1}, m.map_ks);
+    if (m.map_ks) material.dielectric.specular_color = add_colour(m, {1, 1, 1}, m.map_ks);
     const float exponent = m.exponent.value_or(0);
     const float by_exponent = by_blender_ ? roughness_by_blender(exponent) : roughness_of(exponent);
     material.roughness = {m.roughness ? *m.roughness : mirrors ? 0 : by_exponent, {}};

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include "api/plain/reference_order.h"
+#include "api/reference_order.h"
 
 #include "lanthorn/text.h"
 

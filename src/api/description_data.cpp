@@ -2,35 +2,27 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lanthorn/description_data.h"
 
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
 #include <utility>
+#include <vector>
 
-#include "api/plain/description_fields.h"
-#include "api/plain/reference_order.h"
+#include "api/reference_order.h"
 #include "lanthorn/error.h"
 #include "lanthorn/file.h"
+#include "plain/type.h"
 
 namespace lanthorn {
 
 using namespace plain;
+using description::Index;
 
 namespace {
 
-constexpr auto view_members =
-    std::tuple(field("camera", &ViewDescription::camera), field("film", &ViewDescription::film),
-               field("filter", &ViewDescription::filter));
-constexpr auto single_members =
-    std::tuple(field("hints", &SceneDescription::hints), field("color_space", &SceneDescription::color_space));
-constexpr auto table_members = std::tuple(
-    field("float_textures", &SceneDescription::float_textures),
-    field("spectrum_textures", &SceneDescription::spectrum_textures), field("media", &SceneDescription::media),
-    field("materials", &SceneDescription::materials), field("area_lights", &SceneDescription::area_lights),
-    field("shapes", &SceneDescription::shapes), field("objects", &SceneDescription::objects),
-    field("instances", &SceneDescription::instances), field("lights", &SceneDescription::lights));
-
-template <class T, class Members>
-void read_listed(Reader& reader, const Dict& data, T& out, const Members& members, Keys& known) {
-  std::apply([&](const auto&... member) { (read_member(reader, data, out, member, known), ...); }, members);
-}
+bool is_table(const Member& member) { return member.type->kind == Kind::list; }
 
 // An entry of a table, with its path in messages and, unless the table is a list, its name in references.
 struct TableEntry {
@@ -74,30 +66,28 @@ using Tables = std::map<std::string, std::vector<TableEntry>>;
 
 Tables tables_of(Reader& reader, const Dict& data) {
   Tables tables;
-  const auto add = [&](const char* name) {
-    if (const Value* table = data.find(name))
-      reader.at(name, [&] { tables.emplace(name, entries_of(reader, name, *table)); });
-  };
-  std::apply([&](const auto&... member) { (add(member.name), ...); }, table_members);
+  for (const Member& member : type_of<SceneDescription>().members)
+    if (const Value* table = is_table(member) ? data.find(member.name) : nullptr)
+      reader.at(member.name, [&] { tables.emplace(member.name, entries_of(reader, member.name, *table)); });
   for (const auto& [table, entries] : tables) reader.names[table] = names_of(entries);
   return tables;
 }
 
-template <class T, class M>
-void read_table(Reader& reader, const Tables& tables, T& out, const Member<T, M>& member) {
-  const auto found = tables.find(member.name);
-  if (found == tables.end()) return;
-  M parts;
-  parts.reserve(found->second.size());
-  reader.at(member.name, [&] {
-    for (const TableEntry& entry : found->second)
-      reader.at(entry.step, [&] {
-        auto& part = parts.emplace_back();
-        read(reader, *entry.value, part);
-        if constexpr (requires { part.name; }) part.name = entry.name;
-      });
-  });
-  out.*member.member = std::move(parts);
+// The entry's own name is the one that others refer to it by.
+void set_name(const Type& type, void* entry, const std::string& name) {
+  for (const Member& member : type.members)
+    if (member.name != nullptr && member.name == std::string_view("name"))
+      *static_cast<std::string*>(member.of(entry)) = name;
+}
+
+void read_table(Reader& reader, const std::vector<TableEntry>& entries, const Type& list, void* out) {
+  const Type& type = *list.items[0];
+  list.resize(out, entries.size());
+  for (std::size_t i = 0; i < entries.size(); ++i)
+    reader.at(entries[i].step, [&] {
+      read(reader, *entries[i].value, type, list.item(out, i));
+      set_name(type, list.item(out, i), entries[i].name);
+    });
 }
 
 Reader reader_for(const SceneDescription& scene) {
@@ -176,25 +166,28 @@ void mix_environment(Reader& reader, const EnvironmentChoice& choice) {
 }
 
 // Gives those members that `data` has their default values.
-template <class T, class Members>
-void reset_listed(const Dict& data, T& out, const Members& members) {
-  const T defaults{};
-  const auto reset = [&](const auto& member) {
-    if (data.contains(member.name)) out.*member.member = defaults.*member.member;
-  };
-  std::apply([&](const auto&... member) { (reset(member), ...); }, members);
+void reset_members(const Dict& data, const Type& type, void* out, void* defaults) {
+  for (const Member& member : type.members)
+    if (member.name == nullptr)
+      reset_members(data, *member.type, member.of(out), member.of(defaults));
+    else if (data.contains(member.name))
+      member.type->assign(member.of(out), member.of(defaults));
 }
 
 // Reads those members of the description that `data` has, all but the environment. `tables`: those in `data`.
 void read_present(Reader& reader, const Dict& data, const Tables& tables, SceneDescription& scene) {
-  reset_listed(data, scene.view, view_members);
-  reset_listed(data, scene, single_members);
+  SceneDescription defaults;
+  reset_members(data, type_of<SceneDescription>(), &scene, &defaults);
   Keys known{"environment"};
-  std::apply([&](const auto&... member) { (known.emplace_back(member.name), ...); }, table_members);
-  read_listed(reader, data, scene.view, view_members, known);
-  read_listed(reader, data, scene, single_members, known);
+  for (const Member& member : type_of<SceneDescription>().members)
+    if (is_table(member))
+      known.emplace_back(member.name);
+    else
+      read_member(reader, data, member, &scene, known);
   refuse_other_keys(reader, data, known);
-  std::apply([&](const auto&... member) { (read_table(reader, tables, scene, member), ...); }, table_members);
+  for (const Member& member : type_of<SceneDescription>().members)
+    if (is_table(member) && tables.contains(member.name))
+      reader.at(member.name, [&] { read_table(reader, tables.at(member.name), *member.type, member.of(&scene)); });
   if (scene.materials.empty()) scene.materials.emplace_back();
 }
 
@@ -252,12 +245,9 @@ bool PartialDescription::read_again(const Value& value) {
 
 Value data_of_description(const SceneDescription& description, const ViewDescription& view) {
   Dict data;
-  const auto write_listed = [&](const auto& value, const auto& members) {
-    std::apply([&](const auto&... member) { (write_member(data, value, member), ...); }, members);
-  };
-  write_listed(view, view_members);
-  write_listed(description, single_members);
-  write_listed(description, table_members);
+  write_members(data, type_of<ViewDescription>(), &view);
+  for (const Member& member : type_of<SceneDescription>().members)
+    if (member.name != nullptr) write_member(data, member, &description);
   return data;
 }
 
@@ -265,21 +255,7 @@ EnvironmentChoice environment_of_data(const Value& data) {
   if (data.as<std::string>() != nullptr) return {.source = *data.as<std::string>()};
   Reader reader;
   EnvironmentChoice choice;
-  constexpr auto members =
-      std::tuple(field("source", &EnvironmentChoice::source), field("rotation", &EnvironmentChoice::rotation),
-                 field("scale", &EnvironmentChoice::scale));
-  Keys known{"up"};
-  reader.at("environment", [&] {
-    const Dict& dict = dict_of(reader, data);
-    read_listed(reader, dict, choice, members, known);
-    if (const Value* value = dict.find("up")) {
-      std::string up;
-      read(reader, *value, up);
-      if (up != "y" && up != "z") reader.fail("one of 'y', 'z'", *value);
-      choice.up = up == "y" ? UpAxis::y : UpAxis::z;
-    }
-    refuse_other_keys(reader, dict, known);
-  });
+  reader.at("environment", [&] { read(reader, data, choice); });
   return choice;
 }
 
@@ -288,7 +264,7 @@ DescriptionEdits edits_of_data(const Value& value, const SceneDescription& scene
   const Dict& data = dict_of(reader, value);
   DescriptionEdits result{.view = view};
   Keys known{"materials", "lights", "area_lights", "instances", "environment"};
-  read_listed(reader, data, result.view, view_members, known);
+  read_members(reader, data, type_of<ViewDescription>(), &result.view, known);
   refuse_other_keys(reader, data, known);
 
   // Excludes the members of the view, because they are part of the view's own identity.

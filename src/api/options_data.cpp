@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <string>
 #include <vector>
 
@@ -13,26 +12,13 @@
 #include "lanthorn/methods.h"
 #include "lanthorn/plain_data.h"
 #include "lanthorn/text.h"
+#include "plain/type.h"
 
 namespace lanthorn {
-
-namespace plain {
-
-template <>
-struct Names<ColorMode> {
-  static constexpr std::array<std::pair<std::string_view, ColorMode>, 2> list{
-      {{"rgb", ColorMode::rgb}, {"spectral", ColorMode::spectral}}};
-};
-
-}  // namespace plain
 
 using namespace plain;
 
 namespace {
-
-// Limits, for which each command line has its own words.
-constexpr std::tuple limit_members{field("passes", &RenderOptions::passes), field("seconds", &RenderOptions::seconds),
-                                   field("noise", &RenderOptions::noise)};
 
 // Names of parameters, which use hyphens where Python uses underscores.
 std::string with_hyphens(std::string name) {
@@ -66,18 +52,8 @@ RenderOptions options_of_data(const Value& data) {
   Reader reader;
   const Dict& dict = dict_of(reader, data);
   RenderOptions options;
-  Keys known{"pass_range"};
-  const auto read_option = [&](const auto& member) { read_member(reader, dict, options, member, known); };
-  for_each_render_option([&](const auto& option) { read_option(field(option.name, option.value)); });
-  std::apply([&](const auto&... member) { (read_option(member), ...); }, limit_members);
-  const Value* range = dict.find("pass_range");
-  if (range != nullptr && !range->is_none()) {
-    reader.at("pass_range", [&] {
-      std::array<std::uint64_t, 2> passes{};
-      read(reader, *range, passes);
-      options.pass_range = PassRange{passes[0], passes[1]};
-    });
-  }
+  Keys known;
+  read_members(reader, dict, type_of<RenderOptions>(), &options, known);
   for (const auto& [name, value] : dict.entries()) {
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
     require_parameter_of_any_method(name, known);
