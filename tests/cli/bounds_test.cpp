@@ -18,10 +18,13 @@ namespace {
 // The tiny scene with an image on its floor.
 std::string textured(const std::string& file) {
   std::string scene = tiny_scene;
-  const std::string material = "Material \"diffuse\" \"rgb reflectance\" [0.7 0.6 0.5]\n";
+  const std::string material = R"(Material "diffuse" "rgb reflectance" [0.7 0.6 0.5]
+)";
   return scene.replace(scene.find(material), material.size(),
-                       "Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"" + file +
-                           "\"\nMaterial \"diffuse\" \"texture reflectance\" \"t\"\n");
+                       R"(Texture "t" "spectrum" "imagemap" "string filename" ")" + file +
+                           R"("
+Material "diffuse" "texture reflectance" "t"
+)");
 }
 
 class Bounds : public Cli {
@@ -64,12 +67,22 @@ TEST_F(Bounds, MethodsThatKeepNoPhotonsTakeAnyNumber) {
 // per-cell lists take 1.6 GB.
 TEST_F(Bounds, ProjectionMapsTakeLittleMemory) {
   std::string scene =
-      "LookAt 0 0 4  0 0 0  0 1 0\nCamera \"perspective\"\nFilm \"rgb\" \"integer xresolution\" [8] \"integer "
-      "yresolution\" [8]\nWorldBegin\nLightSource \"spot\" \"point3 from\" [0 1 0]\nShape \"sphere\"\n"
-      "ObjectBegin \"o\"\nShape \"sphere\" \"float radius\" [0.1]\nObjectEnd\n";
+      R"(LookAt 0 0 4  0 0 0  0 1 0
+Camera "perspective"
+Film "rgb" "integer xresolution" [8] "integer yresolution" [8]
+WorldBegin
+LightSource "spot" "point3 from" [0 1 0]
+Shape "sphere"
+ObjectBegin "o"
+Shape "sphere" "float radius" [0.1]
+ObjectEnd
+)";
   for (int i = 0; i < 8; ++i)
     scene += "AttributeBegin\nScale 1 1e30 1\nRotate " + std::to_string(20 + i) +
-             " 1 1 1\nObjectInstance \"o\"\nAttributeEnd\n";
+             R"( 1 1 1
+ObjectInstance "o"
+AttributeEnd
+)";
   write("long.pbrt", scene);
   succeed({"render", "long.pbrt", "-i", "reversephotonmap", "-p", "1", "-n", "100", "-q", "-o", "a.exr", "--json",
            "a.json"});
@@ -89,7 +102,7 @@ TEST_F(Bounds, ImagesOfTooManyPixelsAreRefused) {
   write("bomb.png", test::png_header(65535, 65535));
   write("bomb.gif", test::gif_header(65535, 65535));
   write("textured.pbrt", textured("bomb.png"));
-  refuse({"render", "textured.pbrt", "-o", "a.exr"}, "textured.pbrt:10:1: image \"bomb.png\" has 4294836225 pixels");
+  refuse({"render", "textured.pbrt", "-o", "a.exr"}, R"(textured.pbrt:10:1: image "bomb.png" has 4294836225 pixels)");
   refuse({"render", "textured.pbrt", "-o", "a.exr", "--max-pixels", "5G"}, "announces 12 GiB of pixels, which its");
   refuse({"info", "textured.pbrt", "--max-pixels", "1M"}, "more than the 1000000 of --max-pixels");
   refuse({"compare", "bomb.gif", "bomb.png"}, "bomb.gif: the file has 4294836225 pixels");
@@ -107,13 +120,16 @@ TEST_F(Bounds, MalformedGifIsNoInternalError) {
 // A chain once overflowed the stack; a doubling chain took years, during which only SIGKILL ended the render.
 TEST_F(Bounds, TexturesThatNameEachOtherTooOftenAreRefused) {
   const auto scene = [](const std::string& kind, const Words& inputs, int last) {
-    std::string text = tiny_scene + std::string("Texture \"t0\" \"spectrum\" \"checkerboard\"\n");
+    std::string text = tiny_scene + std::string(R"(Texture "t0" "spectrum" "checkerboard"
+)");
     for (int i = 1; i <= last; ++i) {
-      text += "Texture \"t" + std::to_string(i) + "\" \"spectrum\" \"" + kind + "\"";
-      for (const std::string& input : inputs) text += " \"texture " + input + "\" \"t" + std::to_string(i - 1) + "\"";
+      text += "Texture \"t" + std::to_string(i) + R"(" "spectrum" ")" + kind + "\"";
+      for (const std::string& input : inputs) text += " \"texture " + input + R"(" "t)" + std::to_string(i - 1) + "\"";
       text += "\n";
     }
-    return text + "Material \"diffuse\" \"texture reflectance\" \"t" + std::to_string(last) + "\"\nShape \"sphere\"\n";
+    return text + R"(Material "diffuse" "texture reflectance" "t)" + std::to_string(last) + R"("
+Shape "sphere"
+)";
   };
   for (const std::string kind : {"mix", "directionmix"}) {
     write("doubling.pbrt", scene(kind, {"tex1", "tex2"}, 60));
@@ -161,11 +177,10 @@ TEST_F(Bounds, SpecialFilesAreRefusedEverywhere) {
   refuse({"converge", "tiny.pbrt", "--reference", "pipe.exr"}, expected);
   write("textured.pbrt", textured("pipe.exr"));
   refuse({"info", "textured.pbrt"}, expected);
-  for (const std::string directive :
-       {"Include \"/dev/zero\"", "Shape \"plymesh\" \"string filename\" \"/dev/zero\"",
-        "Material \"measured\" \"string filename\" \"/dev/tty\"",
-        "LightSource \"infinite\" \"string filename\" \"/dev/zero\"",
-        "MakeNamedMedium \"m\" \"string type\" \"nanovdb\" \"string filename\" \"/dev/zero\""}) {
+  for (const std::string directive : {R"(Include "/dev/zero")", R"(Shape "plymesh" "string filename" "/dev/zero")",
+                                      R"(Material "measured" "string filename" "/dev/tty")",
+                                      R"(LightSource "infinite" "string filename" "/dev/zero")",
+                                      R"(MakeNamedMedium "m" "string type" "nanovdb" "string filename" "/dev/zero")"}) {
     write("special.pbrt", tiny_scene + std::string(directive) + "\n");
     refuse({"info", "special.pbrt"}, expected);
   }
@@ -177,7 +192,11 @@ TEST_F(Bounds, PipesWithoutAReaderAreErrors) {
     ASSERT_EQ(::mkfifo(path(name).c_str(), 0600), 0);
   const Words few = render({"-p", "1", "-r", "8x8"});
   succeed(few + Words{"-o", "a.exr", "-o", "a.state"});
-  write("v3.pbrt", "Camera \"perspective\"\nWorldBegin\nShape \"sphere\"\nWorldEnd\n");
+  write("v3.pbrt", R"(Camera "perspective"
+WorldBegin
+Shape "sphere"
+WorldEnd
+)");
   const std::vector<Words> commands{few + Words{"-o", "pipe.exr"},
                                     few + Words{"-o", "pipe.png"},
                                     few + Words{"-o", "pipe.state"},
@@ -211,7 +230,7 @@ TEST_F(Bounds, PipesThatAreReadAndDevicesAreWritten) {
             0);
   expect_equal_files("a.exr", "read.exr");
   const Ending ending = run_shell("L compare a.exr a.exr --json /dev/stdout | grep mse");
-  EXPECT_TRUE(contains(ending.out, "\"mse\": 0.0")) << ending.out << ending.err;
+  EXPECT_TRUE(contains(ending.out, R"("mse": 0.0)")) << ending.out << ending.err;
   succeed({"compare", "a.exr", "a.exr", "--json", "/dev/null"});
 }
 
@@ -246,25 +265,27 @@ TEST_F(Bounds, EnvironmentsOfBytesStayBytes) {
   std::fill(flat.pixels.begin(), flat.pixels.end(), 0.5f);
   write_png(path("flat.png"), flat, {});
   const auto memory_with = [&](const std::string& light) {
-    write("sky.pbrt", tiny_scene + ("LightSource \"infinite\" " + light + "\n"));
+    write("sky.pbrt", tiny_scene + (R"(LightSource "infinite" )" + light + "\n"));
     succeed({"render", "sky.pbrt", "-i", "path", "-p", "1", "-r", "8x8", "-q", "-o", "a.exr", "--json", "a.json"});
     return json("a.json").value("peak_memory_bytes", 1e12);
   };
   Image small(8, 8, {"R", "G", "B"});
   write_png(path("small.png"), small, {});
-  const double others = memory_with("\"string filename\" \"small.png\"");
-  EXPECT_LT(memory_with("\"string filename\" \"flat.png\"") - others, 130e6);
+  const double others = memory_with(R"("string filename" "small.png")");
+  EXPECT_LT(memory_with(R"("string filename" "flat.png")") - others, 130e6);
 }
 
 TEST_F(Bounds, SandboxReadsOnlyWhatIsInTheScenesFolder) {
   fs::create_directory(path("uploads"));
   write("secret.pbrt", "secret-word\n");
-  write("uploads/a.pbrt", tiny_scene + std::string("Include \"../secret.pbrt\"\n"));
+  write("uploads/a.pbrt", tiny_scene + std::string(R"(Include "../secret.pbrt"
+)"));
   write("uploads/b.pbrt", textured("link.exr"));
-  write(
-      "uploads/c.pbrt",
-      tiny_scene + std::string("MakeNamedMedium \"m\" \"string type\" \"nanovdb\" \"string filename\" \"link.exr\"\n"));
-  write("uploads/d.pbrt", tiny_scene + std::string("LightSource \"infinite\" \"string filename\" \"link.exr\"\n"));
+  write("uploads/c.pbrt",
+        tiny_scene + std::string(R"(MakeNamedMedium "m" "string type" "nanovdb" "string filename" "link.exr"
+)"));
+  write("uploads/d.pbrt", tiny_scene + std::string(R"(LightSource "infinite" "string filename" "link.exr"
+)"));
   write("uploads/good.pbrt", tiny_scene);
   succeed({"render", "tiny.pbrt", "-q", "-p", "1", "-r", "8x8", "-o", "picture.exr"});
   fs::create_symlink("../picture.exr", path("uploads/link.exr"));
@@ -285,7 +306,8 @@ TEST_F(Bounds, MeshesThatDoNotFitAreRefusedByTheirHeader) {
         "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
         "element face 40000000\nproperty list uchar int vertex_indices\nend_header\n");
   fs::resize_file(path("mesh.ply"), fs::file_size(path("mesh.ply")) + 36 + 40000000);
-  write("huge.pbrt", tiny_scene + std::string("Shape \"plymesh\" \"string filename\" \"mesh.ply\"\n"));
+  write("huge.pbrt", tiny_scene + std::string(R"(Shape "plymesh" "string filename" "mesh.ply"
+)"));
   for (const std::string command : {"info huge.pbrt", "render huge.pbrt -q -o a.exr"}) {
     const Ending ending = run_shell("ulimit -v 4000000; L " + command);
     EXPECT_EQ(ending.exit_code, 2) << ending.err;
@@ -300,7 +322,8 @@ TEST_F(Bounds, MeshesThatDoNotFitTogetherAreRefusedBeforeAnyIsRead) {
         "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
         "element face 10000000\nproperty list uchar int vertex_indices\nend_header\n");
   fs::resize_file(path("mesh.ply"), fs::file_size(path("mesh.ply")) + 36 + 10000000);
-  const std::string mesh = "Shape \"plymesh\" \"string filename\" \"mesh.ply\"\n";
+  const std::string mesh = R"(Shape "plymesh" "string filename" "mesh.ply"
+)";
   write("huge.pbrt", tiny_scene + mesh + mesh + mesh);
   for (const std::string command : {"info huge.pbrt", "render huge.pbrt -q -o a.exr"}) {
     const Ending ending = run_shell("ulimit -v 4000000; L " + command);

@@ -66,7 +66,8 @@ class Cli : public testing::Test {
   /// Runs the program in a shell, for redirections and limits. In `command`, L is the program; `exec L` lets signals
   /// reach it.
   static Words shell(const std::string& command) {
-    return {"-c", "L() { exec '" LANTHORN_PROGRAM "' \"$@\"; }\n" + command};
+    return {"-c", "L() { exec '" LANTHORN_PROGRAM R"(' "$@"; }
+)" + command};
   }
   Ending run_shell(const std::string& command) const {
     return ChildProcess("/bin/sh", shell(command), dir_.path()).wait();

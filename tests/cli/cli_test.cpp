@@ -55,16 +55,22 @@ TEST_F(Cli, HelpNamesSubcommandsAndOptions) {
 }
 
 TEST_F(Cli, ConvertTranslatesToPbrtV4) {
-  dir_.write("old/part.pbrt", "Shape \"sphere\"\n");
-  dir_.write(
-      "old/scene.pbrt",
-      "Film \"image\" \"integer xresolution\" 8 \"integer yresolution\" 8\nWorldBegin\nLightSource \"infinite\"\n"
-      "Translate 0 0 4\nMaterial \"matte\" \"float sigma\" 9\nInclude \"part.pbrt\"\nWorldEnd\n");
+  dir_.write("old/part.pbrt", R"(Shape "sphere"
+)");
+  dir_.write("old/scene.pbrt",
+             R"(Film "image" "integer xresolution" 8 "integer yresolution" 8
+WorldBegin
+LightSource "infinite"
+Translate 0 0 4
+Material "matte" "float sigma" 9
+Include "part.pbrt"
+WorldEnd
+)");
   const Ending ending = succeed({"convert", "old/scene.pbrt", "new.pbrt"});
   EXPECT_EQ(ending.out, "new.pbrt: old/scene.pbrt as a pbrt-v4 file\n");
-  EXPECT_TRUE(contains(ending.err, "old/scene.pbrt:5:1: the roughness \"sigma\"")) << ending.err;
+  EXPECT_TRUE(contains(ending.err, R"(old/scene.pbrt:5:1: the roughness "sigma")")) << ending.err;
   EXPECT_TRUE(contains(succeed({"info", "new.pbrt"}).out, "2 diffuse"));
-  refuse({"convert", "new.pbrt", "newer.pbrt"}, "Film \"rgb\" in line 1 belongs to pbrt-v4");
+  refuse({"convert", "new.pbrt", "newer.pbrt"}, R"(Film "rgb" in line 1 belongs to pbrt-v4)");
   refuse({"convert", "old/scene.pbrt", "old/part.pbrt"}, "part.pbrt, which the scene reads");
   refuse({"convert", "old/scene.pbrt", "old/scene.pbrt"}, "is the scene file");
   refuse({"convert", "old/scene.pbrt", "new.txt"}, "expected a name that ends in .pbrt");
@@ -72,10 +78,17 @@ TEST_F(Cli, ConvertTranslatesToPbrtV4) {
 
 TEST_F(Cli, RenderSaysWhatTheDepthLimitCutsOff) {
   const std::string milk =
-      "Film \"rgb\" \"integer xresolution\" 8 \"integer yresolution\" 8\nWorldBegin\nLightSource \"infinite\"\n"
-      "MakeNamedMedium \"milk\" \"string type\" \"homogeneous\" \"rgb sigma_s\" [9 9 9] \"rgb sigma_a\" [0 0 0]\n"
-      "MediumInterface \"milk\" \"\"\nMaterial \"interface\"\nTranslate 0 0 3\nShape \"sphere\"\n";
-  dir_.write("file.pbrt", "Integrator \"path\" \"integer maxdepth\" 4\n" + milk);
+      R"(Film "rgb" "integer xresolution" 8 "integer yresolution" 8
+WorldBegin
+LightSource "infinite"
+MakeNamedMedium "milk" "string type" "homogeneous" "rgb sigma_s" [9 9 9] "rgb sigma_a" [0 0 0]
+MediumInterface "milk" ""
+Material "interface"
+Translate 0 0 3
+Shape "sphere"
+)";
+  dir_.write("file.pbrt", R"(Integrator "path" "integer maxdepth" 4
+)" + milk);
   dir_.write("milk.pbrt", milk);
   const auto render_milk = [&](const std::string& scene, const Words& options) {
     return succeed(Words{"render", scene, "-i", "path", "-p", "2", "-q", "--color", "rgb"} + options);
@@ -88,7 +101,7 @@ TEST_F(Cli, RenderSaysWhatTheDepthLimitCutsOff) {
   EXPECT_EQ(limit["eye"]["paths"], 128);
   for (const char* file : {"a.state", "a.exr"}) {
     EXPECT_TRUE(contains(succeed({"info", file}).out, "depth      ended paths that still had ")) << file;
-    EXPECT_TRUE(contains(succeed({"info", file, "--json"}).out, "\"cut_share\"")) << file;
+    EXPECT_TRUE(contains(succeed({"info", file, "--json"}).out, R"("cut_share")")) << file;
   }
   // No warning if the user chose the limit.
   EXPECT_EQ(render_milk("file.pbrt", {"-o", "b.state", "-d", "3"}).err, "");
@@ -319,13 +332,17 @@ TEST_F(Cli, RendersByEveryIntegratorToEveryKindOfFile) {
 
 // The media radius of the last pass; it shrinks according to the estimator's dimension.
 TEST_F(Cli, ReportsTheRadiusInMedia) {
-  dir_.write(
-      "fog.pbrt",
-      "LookAt 0 0 -3  0 0 0  0 1 0\nMediumInterface \"\" \"fog\"\nCamera \"perspective\"\n"
-      "Film \"rgb\" \"integer xresolution\" [8] \"integer yresolution\" [8]\n"
-      "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [0 0 0] \"rgb sigma_s\" [.3 .3 .3]\n"
-      "WorldBegin\nMediumInterface \"fog\" \"fog\"\nLightSource \"point\" \"point3 from\" [0 1 0]\n"
-      "Shape \"sphere\" \"float radius\" [4]\n");
+  dir_.write("fog.pbrt",
+             R"(LookAt 0 0 -3  0 0 0  0 1 0
+MediumInterface "" "fog"
+Camera "perspective"
+Film "rgb" "integer xresolution" [8] "integer yresolution" [8]
+MakeNamedMedium "fog" "string type" "homogeneous" "rgb sigma_a" [0 0 0] "rgb sigma_s" [.3 .3 .3]
+WorldBegin
+MediumInterface "fog" "fog"
+LightSource "point" "point3 from" [0 1 0]
+Shape "sphere" "float radius" [4]
+)");
   const auto radius = [&](const std::string& integrator, const Words& more) {
     succeed(Words{"render", "fog.pbrt", "-q", "-n", "500", "-i", integrator, "-o", "a.exr", "--json", "a.json"} + more);
     return json("a.json")["volume_radius"].get<double>();
@@ -374,9 +391,9 @@ TEST_F(Cli, WritesPhotons) {
 
 // If few photons land in view, methods aim them; the default method does so, too.
 TEST_F(Cli, PhotonsOfTheDefaultMethodAreThoseOfVcm) {
-  dir_.write("large.pbrt", tiny_scene + std::string("LightSource \"distant\" \"point3 from\" [1 3 2]\nShape "
-                                                    "\"bilinearmesh\" \"point3 P\" [-300 -1 -300 300 -1 -300 -300 "
-                                                    "-1 300 300 -1 300]\n"));
+  dir_.write("large.pbrt", tiny_scene + std::string(R"(LightSource "distant" "point3 from" [1 3 2]
+Shape "bilinearmesh" "point3 P" [-300 -1 -300 300 -1 -300 -300 -1 300 300 -1 300]
+)"));
   const Words photons{"photons", "large.pbrt", "-n", "5000", "-o"};
   succeed(photons + Words{"default.ply"});
   succeed(photons + Words{"vcm.ply", "-i", "vcm"});
@@ -419,7 +436,7 @@ TEST_F(Cli, RendersModelsWithoutCameraOrLight) {
     EXPECT_NE(picture.pixels[0], picture.pixels[3 * (8 * 16 + 8)]);  // the background differs from the model
     EXPECT_TRUE(contains(succeed({"info", name}).out, "1280 x 720 pixels"));
   }
-  dir_.write("broken.gltf", "{\"asset\": {\"version\": \"2.0\"}, \"scene\": 4}");
+  dir_.write("broken.gltf", R"({"asset": {"version": "2.0"}, "scene": 4})");
   dir_.write("model.stl", "solid");
   refuse({"render", "broken.gltf", "-o", "a.png"}, "broken.gltf#/scene: is 4, but there are 0 scenes");
   dir_.write("ring.blend", "BLENDER");
@@ -452,14 +469,14 @@ TEST_F(Cli, SceneErrorsNameFileLineAndColumn) {
     const char *line, *place, *says;
   };
   // The directive is inserted at line 5.
-  const Case cases[]{{"  Shap \"sphere\"", "bad.pbrt:5:3: ", "Shap"},
-                     {"Shape \"sphere\" \"float radius\" [1", "bad.pbrt:", ""},
-                     {"Shape \"sphere\" \"float radius\" [\"x\"]", "bad.pbrt:5:", "expected a number"},
+  const Case cases[]{{R"(  Shap "sphere")", "bad.pbrt:5:3: ", "Shap"},
+                     {R"(Shape "sphere" "float radius" [1)", "bad.pbrt:", ""},
+                     {R"(Shape "sphere" "float radius" ["x"])", "bad.pbrt:5:", "expected a number"},
                      {"AttributeEnd", "bad.pbrt:5:1: ", "AttributeEnd"},
-                     {"Material \"diffuse\" \"texture reflectance\" \"nosuch\"", "bad.pbrt:5:", "nosuch"},
-                     {"Shape \"plymesh\" \"string filename\" \"nosuch.ply\"", "bad.pbrt:5:", "nosuch.ply"},
-                     {"Include \"nosuch.pbrt\"", "bad.pbrt:5:", "nosuch.pbrt"},
-                     {"Shape \"sphere\" \"flaot radius\" [1]", "bad.pbrt:5:", "flaot"}};
+                     {R"(Material "diffuse" "texture reflectance" "nosuch")", "bad.pbrt:5:", "nosuch"},
+                     {R"(Shape "plymesh" "string filename" "nosuch.ply")", "bad.pbrt:5:", "nosuch.ply"},
+                     {R"(Include "nosuch.pbrt")", "bad.pbrt:5:", "nosuch.pbrt"},
+                     {R"(Shape "sphere" "flaot radius" [1])", "bad.pbrt:5:", "flaot"}};
   for (const Case& c : cases) {
     std::string text = tiny_scene;
     text.insert(text.find("AttributeBegin"), std::string(c.line) + "\n");
@@ -468,7 +485,8 @@ TEST_F(Cli, SceneErrorsNameFileLineAndColumn) {
     EXPECT_TRUE(message.starts_with(std::string("lanthorn: ") + c.place)) << c.line << '\n' << message;
   }
   dir_.write("part.pbrt", "\n\n Nonsense");
-  dir_.write("bad.pbrt", std::string(tiny_scene) + "Include \"part.pbrt\"\n");
+  dir_.write("bad.pbrt", std::string(tiny_scene) + R"(Include "part.pbrt"
+)");
   EXPECT_TRUE(contains(refuse({"info", "bad.pbrt"}, "Nonsense"), "part.pbrt:3:2: ")) << "the place is in the part";
 }
 
@@ -577,14 +595,16 @@ const char* const wall =
     "-1 0 -1\n1 0 -1\n1 2 -1\n3 0 1 2\n";
 const char* const floor_part =
     "Import \"parts/caf\xe9.pbrt\"\n"
-    "Shape \"trianglemesh\" \"integer indices\" [0 1 2] \"point3 P\" [-1 0 1 1 0 1 1 0 -1]\n";
+    R"(Shape "trianglemesh" "integer indices" [0 1 2] "point3 P" [-1 0 1 1 0 1 1 0 -1]
+)";
 
 TEST_F(Cli, AChangeOfAnyFileOfTheSceneIsRefused) {
   const std::map<std::string, std::string> content{{"lamp.spd", "400 1\n700 2\n"},
                                                    {"image.pfm", "Pf\n1 1\n-1.0\n" + std::string("\0\0\0\x3f", 4)},
                                                    {"parts/floor.pbrt", floor_part},
                                                    {"parts/wall.ply", wall},
-                                                   {"parts/caf\xe9.pbrt", "Material \"diffuse\"\n"}};
+                                                   {"parts/caf\xe9.pbrt", R"(Material "diffuse"
+)"}};
   // Additions that change the file's hash.
   const std::map<std::string, std::string> more{{"lamp.spd", "710 3\n"},
                                                 {"image.pfm", " "},

@@ -71,7 +71,9 @@ TEST_F(FirstSight, PicturesThatAreTooDarkSayHowToSeeThem) {
   const std::string exposure = said.substr(said.find(before) + before.size(), 3);
   EXPECT_FALSE(contains(run(words + Words{"--exposure", exposure}).err, "nearly black"));
   // A room without light is black, and no exposure changes that.
-  dir_.write("dark.pbrt", "WorldBegin\nShape \"sphere\"\n");
+  dir_.write("dark.pbrt", R"(WorldBegin
+Shape "sphere"
+)");
   EXPECT_FALSE(contains(run({"render", "dark.pbrt", "-r", "16x16", "-p", "1", "-o", "b.png"}).err, "nearly black"));
 }
 
@@ -122,13 +124,12 @@ TEST_F(FirstSight, TheReasonForAHugeExposureIsSaid) {
   EXPECT_TRUE(contains(of_faint, huge) && contains(of_faint, "the lights are faint, or far")) << of_faint;
   EXPECT_FALSE(contains(said("dim.gltf", dim_model), huge));
   // A lamp that faces away from the floor lights it by way of a distant, nearly black ceiling.
-  const std::string of_hidden =
-      said("hidden.pbrt",
-           "LookAt 0 1 0  0 0 .1  0 0 1 Camera \"perspective\" WorldBegin\n"
-           "AttributeBegin Translate 0 2 0 Rotate -90 1 0 0 AreaLightSource \"diffuse\" Shape \"disk\" AttributeEnd\n"
-           "AttributeBegin Translate 0 50 0 Rotate 90 1 0 0 Material \"diffuse\" \"rgb reflectance\" [.001 .001 .001] "
-           "Shape \"disk\" \"float radius\" 50 AttributeEnd\n"
-           "Rotate -90 1 0 0 Shape \"disk\" \"float radius\" 20\n");
+  const std::string of_hidden = said("hidden.pbrt",
+                                     R"(LookAt 0 1 0  0 0 .1  0 0 1 Camera "perspective" WorldBegin
+AttributeBegin Translate 0 2 0 Rotate -90 1 0 0 AreaLightSource "diffuse" Shape "disk" AttributeEnd
+AttributeBegin Translate 0 50 0 Rotate 90 1 0 0 Material "diffuse" "rgb reflectance" [.001 .001 .001] Shape "disk" "float radius" 50 AttributeEnd
+Rotate -90 1 0 0 Shape "disk" "float radius" 20
+)");
   EXPECT_TRUE(contains(of_hidden, huge) && contains(of_hidden, "no light is in sight")) << of_hidden;
 }
 
@@ -179,17 +180,28 @@ TEST_F(FirstSight, BlackPicturesSayWhy) {
     const std::size_t at = said.find(before);
     return at == said.npos ? "" : said.substr(at + before.size(), said.find('\n', at) - at - before.size());
   };
-  const std::string look = "LookAt 0 0 -5  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" 40\nWorldBegin\n";
-  const std::string lamp = "LightSource \"point\" \"point3 from\" [0 5 -5]\n", ball = "Shape \"sphere\"\n";
+  const std::string look = R"(LookAt 0 0 -5  0 0 0  0 1 0
+Camera "perspective" "float fov" 40
+WorldBegin
+)";
+  const std::string lamp = R"(LightSource "point" "point3 from" [0 5 -5]
+)",
+                    ball = R"(Shape "sphere"
+)";
   EXPECT_EQ(reason(test::file_bytes(LANTHORN_SOURCE_DIR "/tests/scenes/models/nolight.pbrt")),
             "the scene has no light");
   EXPECT_EQ(reason(look + lamp + ball), "");
   EXPECT_EQ(reason(look + ball), "the scene has no light");
-  EXPECT_EQ(reason(look + "LightSource \"point\" \"float scale\" 0\n" + ball), "the scene's light has no power");
-  EXPECT_EQ(
-      reason(look + "LightSource \"point\" \"float scale\" 0\nLightSource \"infinite\" \"float scale\" 0\n" + ball),
-      "none of the scene's lights has any power");
-  EXPECT_EQ(reason("Film \"rgb\" \"float iso\" 1e-44\n" + look + lamp + ball), "the film's exposure is 0");
+  EXPECT_EQ(reason(look + R"(LightSource "point" "float scale" 0
+)" + ball),
+            "the scene's light has no power");
+  EXPECT_EQ(reason(look + R"(LightSource "point" "float scale" 0
+LightSource "infinite" "float scale" 0
+)" + ball),
+            "none of the scene's lights has any power");
+  EXPECT_EQ(reason(R"(Film "rgb" "float iso" 1e-44
+)" + look + lamp + ball),
+            "the film's exposure is 0");
   EXPECT_EQ(reason(look + lamp + "Translate 0 9 0\n" + ball),
             "no surface is in the camera's view; --look-at places the camera");
   EXPECT_EQ(
@@ -198,7 +210,9 @@ TEST_F(FirstSight, BlackPicturesSayWhy) {
       "picture); --look-at places the camera");
   EXPECT_EQ(reason(look + lamp + ball, {"--look-at", "0,0,0.5,0,0,1,0,1,0"}).substr(0, 40),
             "the camera is inside of closed surfaces ");
-  EXPECT_EQ(reason(look + "LightSource \"point\" \"point3 from\" [0 0 5]\nShape \"sphere\" \"float radius\" 3\n"),
+  EXPECT_EQ(reason(look + R"(LightSource "point" "point3 from" [0 0 5]
+Shape "sphere" "float radius" 3
+)"),
             "no light reaches what the camera sees");
   EXPECT_EQ(reason(look + lamp + ball, {"--quiet"}), "");
 }
@@ -232,8 +246,12 @@ TEST_F(FirstSight, ExposureIsMeasuredForPbrtOnDemandAlone) {
 }
 
 TEST_F(FirstSight, ScenesThatWillBeBlackSayWhy) {
-  dir_.write("dark.pbrt", "WorldBegin\nShape \"sphere\"\n");
-  dir_.write("empty.pbrt", "WorldBegin\nLightSource \"infinite\"\n");
+  dir_.write("dark.pbrt", R"(WorldBegin
+Shape "sphere"
+)");
+  dir_.write("empty.pbrt", R"(WorldBegin
+LightSource "infinite"
+)");
   EXPECT_TRUE(
       contains(succeed({"info", "dark.pbrt"}).out, "dark.pbrt: the scene has no light: the picture will be black"));
   EXPECT_TRUE(contains(succeed({"info", "empty.pbrt"}).out, "empty.pbrt: the scene has no shapes"));
@@ -242,10 +260,16 @@ TEST_F(FirstSight, ScenesThatWillBeBlackSayWhy) {
 }
 
 TEST_F(FirstSight, LightThatAMethodHardlyFindsIsNamed) {
-  const std::string lit = "WorldBegin\nMaterial \"diffuse\"\nShape \"sphere\" \"float radius\" 3\n";
-  dir_.write("glass.pbrt",
-             lit + "LightSource \"point\"\nMaterial \"dielectric\"\nShape \"sphere\" \"float radius\" .5\n");
-  dir_.write("bare.pbrt", lit + "LightSource \"point\"\n");
+  const std::string lit = R"(WorldBegin
+Material "diffuse"
+Shape "sphere" "float radius" 3
+)";
+  dir_.write("glass.pbrt", lit + R"(LightSource "point"
+Material "dielectric"
+Shape "sphere" "float radius" .5
+)");
+  dir_.write("bare.pbrt", lit + R"(LightSource "point"
+)");
   const Words words{"-r", "8x8", "-p", "1", "-o", "a.exr", "-i"};
   const std::string hint = "comes by glass or mirrors from small lights";
   EXPECT_TRUE(contains(run(Words{"render", "glass.pbrt"} + words + Words{"path"}).err, hint));
@@ -263,30 +287,32 @@ TEST_F(FirstSight, ALimitOfPathsIsPartOfThePicture) {
 }
 
 TEST_F(FirstSight, AllMissingFilesAreNamedAtOnce) {
-  dir_.write("a.pbrt",
-             tiny_scene + std::string("Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"no.png\"\n"
-                                      "Material \"diffuse\" \"texture reflectance\" \"t\"\n"
-                                      "Shape \"plymesh\" \"string filename\" \"no.ply\"\n"
-                                      "Shape \"sphere\" \"float radius\" .1\n"
-                                      "LightSource \"infinite\" \"string filename\" \"sky.exr\"\n"));
+  dir_.write("a.pbrt", tiny_scene + std::string(R"(Texture "t" "spectrum" "imagemap" "string filename" "no.png"
+Material "diffuse" "texture reflectance" "t"
+Shape "plymesh" "string filename" "no.ply"
+Shape "sphere" "float radius" .1
+LightSource "infinite" "string filename" "sky.exr"
+)"));
   const std::string said = refuse({"info", "a.pbrt"}, "3 files are missing, the first of them here: ");
   EXPECT_TRUE(said.starts_with("lanthorn: a.pbrt:18:")) << said;
-  for (const char* name : {"\"no.png\"", "\"no.ply\"", "\"sky.exr\"", "--missing skip"})
+  for (const char* name : {R"("no.png")", R"("no.ply")", R"("sky.exr")", "--missing skip"})
     EXPECT_TRUE(contains(said, name)) << said;
   const Ending ending = run({"render", "a.pbrt", "--missing", "skip", "-i", "path", "-p", "1", "-o", "a.exr"});
   EXPECT_EQ(ending.exit_code, 0) << ending.err;
-  for (const char* name : {"a.pbrt:18:", "3 files are missing", "\"no.png\"", "\"no.ply\"", "\"sky.exr\""})
+  for (const char* name : {"a.pbrt:18:", "3 files are missing", R"("no.png")", R"("no.ply")", R"("sky.exr")"})
     EXPECT_TRUE(contains(ending.err, name)) << ending.err;
   refuse({"info", "a.pbrt", "--missing", "perhaps"}, "--missing");
 }
 
 TEST_F(FirstSight, TheColourModeIsSaid) {
   const auto said = [&](const std::string& material, const Words& more) {
-    dir_.write("a.pbrt", tiny_scene + ("Material " + material + "\nShape \"sphere\" \"float radius\" .1\n"));
+    dir_.write("a.pbrt", tiny_scene + ("Material " + material + R"(
+Shape "sphere" "float radius" .1
+)"));
     return run(Words{"render", "a.pbrt", "-r", "8x8", "-p", "1", "-o", "a.exr"} + more).err;
   };
-  const std::string gold = "\"conductor\" \"spectrum eta\" \"metal-Au-eta\" \"spectrum k\" \"metal-Au-k\"";
-  const std::string flint = "\"dielectric\" \"spectrum eta\" \"glass-F11\"";
+  const std::string gold = R"("conductor" "spectrum eta" "metal-Au-eta" "spectrum k" "metal-Au-k")";
+  const std::string flint = R"("dielectric" "spectrum eta" "glass-F11")";
   EXPECT_TRUE(contains(said(gold, {}), "color rgb: nothing in the scene disperses light"));
   EXPECT_TRUE(contains(said(flint, {}), "color spectral: glass disperses light"));
   EXPECT_FALSE(contains(said(gold, {"--color", "rgb"}), "color rgb"));
@@ -302,9 +328,13 @@ int count_of(const std::string& text, const std::string& part) {
 }
 
 TEST_F(FirstSight, AutoInPlaceOfTheFilesIntegratorIsSaidOnce) {
-  dir_.write("sppm.pbrt", std::string("Integrator \"sppm\" \"integer maxdepth\" 9\n") + tiny_scene);
-  dir_.write("vcm.pbrt", std::string("Integrator \"vcm\"\n") + tiny_scene);
-  const std::string line = "\nmethod auto: in place of pbrt's \"sppm\", which the file names (-i sppm: that method)\n";
+  dir_.write("sppm.pbrt", std::string(R"(Integrator "sppm" "integer maxdepth" 9
+)") + tiny_scene);
+  dir_.write("vcm.pbrt", std::string(R"(Integrator "vcm"
+)") + tiny_scene);
+  const std::string line = R"(
+method auto: in place of pbrt's "sppm", which the file names (-i sppm: that method)
+)";
   const auto said = [&](const std::string& scene, const Words& more) {
     return "\n" + succeed(Words{"render", scene, "-r", "8x8", "-p", "1"} + more).err;
   };

@@ -67,8 +67,9 @@ TEST_F(Lens, FocusesOnWhatTheMiddleSees) {
   const SharedScene tiny = scene("tiny.pbrt");
   // The eye is at z = 4.4 and looks through y = 1 at the wall at z = -1; below that, at the front of the glass ball.
   EXPECT_NEAR(lens_of(changed(*tiny, {.aperture = 8.0f})).focal_distance, 5.4f, 1e-4f);
-  dir_.write("ball.pbrt", std::string("LookAt 0.2 .4 4.2  0.2 .4 0  0 1 0\nCamera \"perspective\"\n") +
-                              std::string(tiny_scene).substr(std::string(tiny_scene).find("Film")));
+  dir_.write("ball.pbrt", std::string(R"(LookAt 0.2 .4 4.2  0.2 .4 0  0 1 0
+Camera "perspective"
+)") + std::string(tiny_scene).substr(std::string(tiny_scene).find("Film")));
   EXPECT_NEAR(lens_of(changed(*scene("ball.pbrt"), {.aperture = 8.0f})).focal_distance, 3.6f, 1e-4f);
   // A framed model, in units of the camera.
   const ViewDescription bar = changed(*scene("bar.obj"), {.aperture = 8.0f, .focus = LensChanges::Focus()});
@@ -162,7 +163,11 @@ TEST_F(Lens, GroundsAreNotFramed) {
 }
 
 TEST_F(Lens, BadOptionsSayWhatWasExpected) {
-  dir_.write("flat.pbrt", "Camera \"orthographic\"\nWorldBegin\nLightSource \"infinite\"\nShape \"sphere\"\n");
+  dir_.write("flat.pbrt", R"(Camera "orthographic"
+WorldBegin
+LightSource "infinite"
+Shape "sphere"
+)");
   refuse(quick("flat.pbrt", {"--fov", "30", "-o", "a.png"}), "--fov: the scene's camera is not a perspective camera");
   refuse(quick("flat.pbrt", {"--aperture", "8", "-o", "a.png"}), "--aperture: the scene's camera is not a perspective");
   refuse(quick("tiny.pbrt", {"--focus", "3", "-o", "a.png"}), "add --aperture");
@@ -173,7 +178,7 @@ TEST_F(Lens, BadOptionsSayWhatWasExpected) {
          "--variant: only glTF files have variants of their materials");
   refuse(quick("moves.gltf", {"--variant", "red", "-o", "a.png"}), "the file has no variants of its materials");
   refuse(quick("moves.gltf", {"--camera", "close-up", "-o", "a.png"}),
-         "--camera close-up: the file has \"Wide\", \"Close-up\"; did you mean Close-up?");
+         R"(--camera close-up: the file has "Wide", "Close-up"; did you mean Close-up?)");
 }
 
 TEST_F(Lens, CamerasAreChosenByName) {
@@ -187,7 +192,7 @@ TEST_F(Lens, CamerasAreChosenByName) {
   EXPECT_EQ(picture({"--camera", "1"}), wide);
   EXPECT_EQ(picture({"--camera", "2"}), close);
   EXPECT_EQ(picture({"--camera", "Close-up.lens"}), close);
-  EXPECT_TRUE(contains(succeed({"info", "moves.gltf"}).out, "--camera takes another of \"Wide\", \"Close-up\""));
+  EXPECT_TRUE(contains(succeed({"info", "moves.gltf"}).out, R"(--camera takes another of "Wide", "Close-up")"));
 }
 
 TEST_F(Lens, FramesAreThePicturesOfTheirMoments) {
@@ -208,9 +213,14 @@ double brightness(const Image& image) {
 // A ball lit from behind the camera; its dark side is not brightened.
 TEST_F(Lens, PicturesOfATurntableHaveOneExposure) {
   dir_.write("moon.pbrt",
-             "LookAt 0 0 5  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" 30\nFilm \"rgb\"\nWorldBegin\n"
-             "LightSource \"distant\" \"point3 from\" [0 0 1] \"point3 to\" [0 0 0] \"rgb L\" [8 8 8]\n"
-             "LightSource \"infinite\" \"rgb L\" [.1 .1 .1]\nShape \"sphere\"\n");
+             R"(LookAt 0 0 5  0 0 0  0 1 0
+Camera "perspective" "float fov" 30
+Film "rgb"
+WorldBegin
+LightSource "distant" "point3 from" [0 0 1] "point3 to" [0 0 0] "rgb L" [8 8 8]
+LightSource "infinite" "rgb L" [.1 .1 .1]
+Shape "sphere"
+)");
   Words words = quick("moon.pbrt", {"--turntable", "2", "--exposure", "auto", "-o", "m.#.png"});
   std::erase(words, "-q");
   const std::string said = succeed(words).out;
@@ -318,8 +328,11 @@ TEST_F(Lens, PicturesForADisplayHaveManyFormats) {
 
 TEST_F(Lens, AWidthHasItsHeightByTheShape) {
   dir_.write("wide.pbrt",
-             "Film \"rgb\" \"integer xresolution\" [300] \"integer yresolution\" [200]\nWorldBegin\n"
-             "LightSource \"infinite\"\nShape \"sphere\"\n");
+             R"(Film "rgb" "integer xresolution" [300] "integer yresolution" [200]
+WorldBegin
+LightSource "infinite"
+Shape "sphere"
+)");
   succeed({"render", "wide.pbrt", "-i", "path", "-p", "1", "-r", "30", "-q", "-o", "a.exr"});
   const Image image = read_image(path("a.exr"));
   EXPECT_EQ(image.width, 30);

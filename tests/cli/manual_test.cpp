@@ -51,10 +51,10 @@ class Manual : public Cli {
   /// The completions that bash offers for the last word.
   Words complete(const Words& words) const {
     const std::string script =
-        "source share/bash-completion/completions/lanthorn || exit 1\n"
-        "COMP_WORDS=(\"$@\"); COMP_CWORD=$(($# - 1))\n"
-        "_lanthorn\n"
-        "[ ${#COMPREPLY[@]} = 0 ] || printf '%s\\n' \"${COMPREPLY[@]}\"";
+        R"(source share/bash-completion/completions/lanthorn || exit 1
+COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1))
+_lanthorn
+[ ${#COMPREPLY[@]} = 0 ] || printf '%s\n' "${COMPREPLY[@]}")";
     const Ending ending =
         ChildProcess("/bin/bash", Words{"--norc", "-c", script, "bash", "lanthorn"} + words, dir_.path()).wait();
     EXPECT_EQ(ending.exit_code, 0) << ending.err;

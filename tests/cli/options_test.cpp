@@ -139,8 +139,10 @@ TEST_F(CliOptions, OutputsAreNoInputsByAnyName) {
   succeed(quick({"-o", "texture.exr", "-o", "a.png"}));
   std::string scene = tiny_scene;
   scene.insert(scene.find("AttributeBegin"),
-               "Include \"part.pbrt\"\nShape \"plymesh\" \"string filename\" \"wall.ply\"\n"
-               "Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"texture.exr\"\n");
+               R"(Include "part.pbrt"
+Shape "plymesh" "string filename" "wall.ply"
+Texture "t" "spectrum" "imagemap" "string filename" "texture.exr"
+)");
   dir_.write("part.pbrt", "# nothing\n");
   dir_.write("s.pbrt", scene);
   fs::create_symlink("s.pbrt", path("link.json"));
@@ -246,14 +248,16 @@ TEST_F(CliOptions, MessagesNameOptions) {
   refuse_resume({"-i", "path", "-r", "8x8", "-n", "3k"}, "--photons (100000 and 3000)");
   refuse_resume({"-i", "path", "-r", "8x8", "--set", "roulette-depth=5"}, "--set roulette-depth (");
   std::string cropped = tiny_scene;
-  cropped.insert(cropped.find("\"integer xresolution\""), "\"float cropwindow\" [0.2 0.4 0.2 0.4] ");
+  cropped.insert(cropped.find(R"("integer xresolution")"), R"("float cropwindow" [0.2 0.4 0.2 0.4] )");
   dir_.write("cropped.pbrt", cropped);
   refuse({"render", "cropped.pbrt", "-r", "2x1", "-o", "a.exr"}, "--resolution 2x1: the crop window");
 }
 
 TEST_F(CliOptions, ReproducibleFilesHoldNoFoldersAndDependOnNone) {
   std::string scene = tiny_scene;
-  scene += "Include \"parts/part.pbrt\"\nInclude \"" + path("private/outside.pbrt").string() + "\"\n";
+  scene += R"(Include "parts/part.pbrt"
+Include ")" +
+           path("private/outside.pbrt").string() + "\"\n";
   dir_.write("private/outside.pbrt", "# nothing\n");
   for (const char* folder : {"one", "two/deep"}) {
     dir_.write(std::string(folder) + "/s.pbrt", scene);
@@ -292,8 +296,9 @@ TEST_F(CliOptions, CropWindowsHoldThePixelsOfTheWholePicture) {
 TEST_F(CliOptions, CropWindowsHoldThePixelsOfTheWholePictureInLargeWorlds) {
   std::string large = tiny_scene;
   large +=
-      "Shape \"bilinearmesh\" \"point3 P\" [-300 -1 -300 300 -1 -300 -300 -1 300 300 -1 300]\n"
-      "LightSource \"distant\" \"point3 from\" [1 3 2]\n";
+      R"(Shape "bilinearmesh" "point3 P" [-300 -1 -300 300 -1 -300 -300 -1 300 300 -1 300]
+LightSource "distant" "point3 from" [1 3 2]
+)";
   dir_.write("large.pbrt", large);
   for (const std::string name : {"vcm", "bpm", "probppm", "sppm", "ppm", "photonmap", "reversephotonmap"})
     expect_pixels_of_whole({"render", "large.pbrt", "-q", "-i", name, "-n", "5000"},
@@ -334,17 +339,17 @@ TEST_F(CliOptions, InfoTellsWhatStatesAndPicturesHold) {
 
 TEST_F(CliOptions, IndicesOfRefractionAreMoreThanZero) {
   const std::vector<std::pair<std::string, std::string>> materials{
-      {"\"dielectric\" \"float eta\" [0]", "eta"},
-      {"\"dielectric\" \"float eta\" [-1.5]", "eta"},
-      {"\"dielectric\" \"spectrum eta\" [400 1.5 600 0]", "eta"},
-      {"\"thindielectric\" \"float eta\" [0]", "eta"},
-      {"\"coateddiffuse\" \"float eta\" [-1]", "eta"},
-      {"\"coatedconductor\" \"float interface.eta\" [0]", "interface.eta"},
-      {"\"subsurface\" \"float eta\" [0]", "eta"},
-      {"\"hair\" \"float eta\" [0]", "eta"},
-      {"\"conductor\" \"spectrum eta\" [400 -1 600 1]", "eta"},
-      {"\"conductor\" \"spectrum k\" [400 -1 600 1]", "k"},
-      {"\"dielectric\" \"float eta\" [nan]", "nan"}};
+      {R"("dielectric" "float eta" [0])", "eta"},
+      {R"("dielectric" "float eta" [-1.5])", "eta"},
+      {R"("dielectric" "spectrum eta" [400 1.5 600 0])", "eta"},
+      {R"("thindielectric" "float eta" [0])", "eta"},
+      {R"("coateddiffuse" "float eta" [-1])", "eta"},
+      {R"("coatedconductor" "float interface.eta" [0])", "interface.eta"},
+      {R"("subsurface" "float eta" [0])", "eta"},
+      {R"("hair" "float eta" [0])", "eta"},
+      {R"("conductor" "spectrum eta" [400 -1 600 1])", "eta"},
+      {R"("conductor" "spectrum k" [400 -1 600 1])", "k"},
+      {R"("dielectric" "float eta" [nan])", "nan"}};
   for (const auto& [material, says] : materials) {
     std::string text = tiny_scene;
     text.insert(text.find("AttributeBegin"), "Material " + material + "\n");

@@ -56,8 +56,9 @@ class Printable : public Cli {
     scene.replace(scene.find("tiny.exr"), 8, "out\x1b[31m\x7f.exr");
     const std::string first_line = evil.substr(0, evil.find('\r'));  // strings end with lines
     dir_.write("evil.pbrt", "Integrator \"" + first_line + "\"\n" + scene + "AttributeBegin\nMakeNamedMaterial \"" +
-                                first_line + "\" \"string type\" \"diffuse\" \"string " + first_line + "\" \"" +
-                                first_line + "\"\nNamedMaterial \"" + first_line + "\"\nAttributeEnd\n");
+                                first_line + R"(" "string type" "diffuse" "string )" + first_line + R"(" ")" +
+                                first_line + R"("
+NamedMaterial ")" + first_line + "\"\nAttributeEnd\n");
   }
 };
 

@@ -24,17 +24,30 @@ using Robustness = Cli;
 TEST_F(Robustness, InstancesOfAnyScaleRenderWithEveryMethod) {
   std::string scene(tiny_scene);
   scene +=
-      "ObjectBegin \"o\"\nShape \"sphere\" \"float radius\" [0.1]\n"
-      "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0] \"integer indices\" [0 1 2]\nObjectEnd\n";
+      R"(ObjectBegin "o"
+Shape "sphere" "float radius" [0.1]
+Shape "trianglemesh" "point3 P" [0 0 0 1 0 0 0 1 0] "integer indices" [0 1 2]
+ObjectEnd
+)";
   for (const char* scale : {"0", "1e-38", "1e-20", "1e-18", "1e-17", "1e-15", "1e-12", "1e12", "1e30"})
     for (const char* factors : {" {} {} {}", " {} 1 1", " -{} {} 1"}) {
       std::string text(factors);
       for (std::size_t at; (at = text.find("{}")) != std::string::npos;) text.replace(at, 2, scale);
-      scene += "AttributeBegin\nTranslate 0 1 0\nScale" + text + "\nObjectInstance \"o\"\n" +
-               "ActiveTransform EndTime\nTranslate 0 0.1 0\nScale 2 -1 1\nActiveTransform All\nObjectInstance \"o\"\n" +
-               "Shape \"sphere\" \"float radius\" 0.1\nAttributeEnd\n";
+      scene += "AttributeBegin\nTranslate 0 1 0\nScale" + text + R"(
+ObjectInstance "o"
+)" +
+               R"(ActiveTransform EndTime
+Translate 0 0.1 0
+Scale 2 -1 1
+ActiveTransform All
+ObjectInstance "o"
+)" +
+               R"(Shape "sphere" "float radius" 0.1
+AttributeEnd
+)";
     }
-  dir_.write("scales.pbrt", "Camera \"perspective\" \"float shutterclose\" [1]\n" + scene);
+  dir_.write("scales.pbrt", R"(Camera "perspective" "float shutterclose" [1]
+)" + scene);
   for (const std::string& method : integrators) {
     const Ending ending = succeed({"render", "scales.pbrt", "-o", "a.png", "-p", "1", "-n", "300", "-r", "8x8", "-i",
                                    method, "-q", "--json", "a.json"});

@@ -170,7 +170,9 @@ TEST_F(Safety, AThirdSignalEndsTheProgram) {
 TEST_F(Safety, SignalsWhileTheSceneIsLoadedEndTheProgramAndSaySo) {
   std::ofstream scene(path("large.pbrt"));
   scene << tiny_scene;
-  for (int i = 0; i < 300'000; ++i) scene << "Shape \"sphere\" \"float radius\" [0.001]\n";
+  for (int i = 0; i < 300'000; ++i)
+    scene << R"(Shape "sphere" "float radius" [0.001]
+)";
   scene.close();
   ChildProcess child = start({"render", "large.pbrt", "-o", "a.exr"});
   const auto catches_signals = [&] {

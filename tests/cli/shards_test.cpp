@@ -43,7 +43,8 @@ TEST_F(Shards, TheScriptRendersWhatOneProcessDoes) {
   const std::string script = succeed({"shards", "it's tiny.pbrt", "-i", "path", "-r", "12", "-p", "7", "--shards", "3",
                                       "-o", "all of it.state"})
                                  .out;
-  dir_.write("all.sh", "lanthorn() { '" LANTHORN_PROGRAM "' \"$@\" --reproducible; }\n" + script);
+  dir_.write("all.sh", "lanthorn() { '" LANTHORN_PROGRAM R"(' "$@" --reproducible; }
+)" + script);
   const Ending ending = run_shell("sh all.sh");
   ASSERT_EQ(ending.exit_code, 0) << ending.err;
   succeed({"render", "it's tiny.pbrt", "-i", "path", "-r", "12", "-p", "7", "-o", "alone.state", "--reproducible"});
@@ -64,13 +65,15 @@ TEST_F(Shards, JsonHasACommandForEachShardAndOneThatMerges) {
 // A replacement for Slurm that runs the jobs one after the other.
 TEST_F(Shards, TheScriptForSlurmSubmitsAnArrayAndAMerge) {
   dir_.write("all.sh", succeed(shards({"--format", "slurm"})).out);
-  const Ending ending = run_shell(
-      "mkdir bin; ln -s " LANTHORN_PROGRAM
-      " bin/lanthorn; cat > bin/sbatch <<'END'\n#!/bin/bash\n"
-      "echo \"$@\" >> calls; script=$(cat)\n"
-      "case \"$*\" in *--array=0-2*) for i in 0 1 2; do SLURM_ARRAY_TASK_ID=$i bash -c \"$script\" || exit; done;;\n"
-      "  *) bash -c \"$script\" ;; esac 1>&2\necho 17\nEND\n"
-      "chmod +x bin/sbatch; PATH=$PWD/bin:$PATH bash all.sh --partition=long");
+  const Ending ending = run_shell("mkdir bin; ln -s " LANTHORN_PROGRAM
+                                  R"( bin/lanthorn; cat > bin/sbatch <<'END'
+#!/bin/bash
+echo "$@" >> calls; script=$(cat)
+case "$*" in *--array=0-2*) for i in 0 1 2; do SLURM_ARRAY_TASK_ID=$i bash -c "$script" || exit; done;;
+  *) bash -c "$script" ;; esac 1>&2
+echo 17
+END
+chmod +x bin/sbatch; PATH=$PWD/bin:$PATH bash all.sh --partition=long)");
   ASSERT_EQ(ending.exit_code, 0) << ending.err;
   const std::string calls = bytes("calls");
   EXPECT_TRUE(contains(calls, "--array=0-2 --requeue")) << calls;
@@ -91,7 +94,8 @@ TEST_F(Shards, WhatCannotBeSharedIsRefused) {
     refuse({"shards", "tiny.pbrt", "-i", method, "-p", "4", "--shards", "2", "-o", "a.exr"},
            "--shards: each pass of " + method + " " + depends);
   std::string by_ppm = bytes("tiny.pbrt");
-  by_ppm.insert(by_ppm.find("WorldBegin"), "Integrator \"ppm\"\n");
+  by_ppm.insert(by_ppm.find("WorldBegin"), R"(Integrator "ppm"
+)");
   dir_.write("ppm.pbrt", by_ppm);
   refuse({"shards", "ppm.pbrt", "-p", "4", "--shards", "2", "-o", "a.exr"}, depends);
   succeed({"shards", "ppm.pbrt", "-i", "path", "-p", "4", "--shards", "2", "-o", "a.exr"});

@@ -81,25 +81,34 @@ TEST_F(View, WithoutDisplayItNamesTheBrowser) {
 // The program explains surprising pictures.
 TEST_F(View, DarkPicturesAreExplained) {
   const auto warnings = [&](const std::string& content) {
-    std::ofstream(path("dark.pbrt")) << "LookAt 0 0 3  0 0 0  0 1 0\nCamera \"perspective\"\nFilm \"rgb\" \"integer "
-                                        "xresolution\" [8] \"integer yresolution\" [8]\nWorldBegin\n"
-                                     << content << "Shape \"sphere\"\n";
+    std::ofstream(path("dark.pbrt")) << R"(LookAt 0 0 3  0 0 0  0 1 0
+Camera "perspective"
+Film "rgb" "integer xresolution" [8] "integer yresolution" [8]
+WorldBegin
+)" << content << R"(Shape "sphere"
+)";
     return run({"view", "dark.pbrt", "--headless", "--passes", "1", "-n", "500", "-o", "dark.png"}).err;
   };
   const std::string unlit = warnings("");
   if (contains(unlit, "OpenGL 4.5 core is needed")) GTEST_SKIP() << "SKIPPED, NOT TESTED: no OpenGL 4.5";
   EXPECT_TRUE(contains(unlit, "the scene has no lights")) << unlit;
-  const std::string sky = "LightSource \"infinite\"\n";
+  const std::string sky = R"(LightSource "infinite"
+)";
   EXPECT_EQ(warnings(sky), "");
-  const std::string metal = warnings(sky + "Material \"conductor\" \"float roughness\" [.1]\n");
+  const std::string metal = warnings(sky + R"(Material "conductor" "float roughness" [.1]
+)");
   EXPECT_TRUE(contains(metal, "appear slowly")) << metal;
-  const std::string mirror = warnings(sky + "Material \"conductor\" \"float roughness\" [.01]\n");
+  const std::string mirror = warnings(sky + R"(Material "conductor" "float roughness" [.01]
+)");
   // A single frame of a mirror may be too bright in places; that is the only warning allowed.
   EXPECT_TRUE(mirror.empty() || contains(mirror, "brighter than white")) << mirror;
   EXPECT_LE(std::count(mirror.begin(), mirror.end(), '\n'), 1) << mirror;
   std::ofstream(path("slide.ppm")) << "P3 2 1 255  255 0 0  0 0 255\n";
-  EXPECT_EQ(warnings("AreaLightSource \"diffuse\" \"string filename\" \"slide.ppm\"\n"), "");
-  const std::string goniometric = warnings(sky + "LightSource \"goniometric\" \"string filename\" \"slide.ppm\"\n");
+  EXPECT_EQ(warnings(R"(AreaLightSource "diffuse" "string filename" "slide.ppm"
+)"),
+            "");
+  const std::string goniometric = warnings(sky + R"(LightSource "goniometric" "string filename" "slide.ppm"
+)");
   EXPECT_TRUE(contains(goniometric, "goniometric lights")) << goniometric;
 }
 

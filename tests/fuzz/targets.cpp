@@ -29,9 +29,9 @@ using namespace description;
 // All existing files.
 std::string file_in_memory(const std::filesystem::path& path) {
   const std::string name = path.filename().string();
-  if (name == "a.pbrt") return "AttributeBegin Translate 1 0 0 Shape \"sphere\" AttributeEnd";
+  if (name == "a.pbrt") return R"(AttributeBegin Translate 1 0 0 Shape "sphere" AttributeEnd)";
   if (name == "b.pbrt") return "AttributeEnd";
-  if (name == "c.pbrt") return "Include \"a.pbrt\" Include \"t.pbrt\"";
+  if (name == "c.pbrt") return R"(Include "a.pbrt" Include "t.pbrt")";
   if (name == "a.spd") return "400 1\n500 2 # end";
   if (name == "a.ply")
     return "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement "
@@ -139,9 +139,9 @@ void read_tables(std::string_view text) {
       return std::optional<SceneDescription>();
     }
   };
-  if (const auto scene = read("Camera \"realistic\" \"string lensfile\" \"t.dat\" WorldBegin"))
+  if (const auto scene = read(R"(Camera "realistic" "string lensfile" "t.dat" WorldBegin)"))
     check_lens(std::get<RealisticCamera>(scene->view.camera.node));
-  if (const auto scene = read("WorldBegin LightSource \"point\" \"spectrum I\" \"t.spd\""))
+  if (const auto scene = read(R"(WorldBegin LightSource "point" "spectrum I" "t.spd")"))
     check_spectrum(std::get<SampledSpectrum>(std::get<PointLight>(scene->lights.front().node).intensity.spectrum));
 }
 

@@ -141,7 +141,7 @@ TEST_F(Serve, AnswersHoldNoControlCharacters) {
   std::uint32_t size = 0;
   std::memcpy(&size, seen.body.data(), 4);
   const std::vector<std::string> answers{seen.body.substr(4, size), get("").body, get("scene").body,
-                                         client().post(root_ + "edit", "{\"lights\":{\"\\u001b\\u009b\":1}}").body};
+                                         client().post(root_ + "edit", R"({"lights":{"\u001b\u009b":1}})").body};
   for (const std::string& text : answers) {
     EXPECT_FALSE(text.empty());
     EXPECT_TRUE(test::is_printable(text)) << text;
@@ -490,8 +490,10 @@ TEST_F(Serve, WithoutOutputASignalJustEndsIt) {
 }
 
 TEST_F(Serve, SaysThatAutoTakesThePlaceOfTheFilesIntegrator) {
-  dir_.write("volpath.pbrt", std::string("Integrator \"volpath\"\n") + tiny_scene);
-  const std::string line = "method auto: in place of pbrt's \"volpath\", which the file names (-i path: that method)\n";
+  dir_.write("volpath.pbrt", std::string(R"(Integrator "volpath"
+)") + tiny_scene);
+  const std::string line = R"(method auto: in place of pbrt's "volpath", which the file names (-i path: that method)
+)";
   const auto said = [&](const Words& more) {
     ChildProcess process(LANTHORN_PROGRAM, Words{"serve", "volpath.pbrt", "--port", "0", "-n", "300"} + more,
                          dir_.path());

@@ -15,7 +15,8 @@ namespace lanthorn::test {
 
 /// A scene with these directives in its world block; `head` precedes WorldBegin.
 inline Scene world(const std::string& directives, const std::string& head = "", const std::string& folder = ".") {
-  const std::string film = "Film \"rgb\" \"integer xresolution\" 64 \"integer yresolution\" 48\n";
+  const std::string film = R"(Film "rgb" "integer xresolution" 64 "integer yresolution" 48
+)";
   return Scene(read_pbrt_string(film + head + "\nWorldBegin\n" + directives, folder, "test scene"));
 }
 

@@ -32,38 +32,51 @@ const std::string overview = "LookAt 0 1 4.4  0 1 0  0 1 0\n";
 // A view so close to the ball that its facets cover whole tiles.
 const std::string close_up = "LookAt 0.1 0.6 1.7  0.1 0.6 0  0 1 0\n";
 const std::string film =
-    "Camera \"perspective\" \"float fov\" [36]\n"
-    "Film \"rgb\" \"integer xresolution\" [48] \"integer yresolution\" [48]\n"
-    "PixelFilter \"gaussian\"\nWorldBegin\n";
+    R"(Camera "perspective" "float fov" [36]
+Film "rgb" "integer xresolution" [48] "integer yresolution" [48]
+PixelFilter "gaussian"
+WorldBegin
+)";
 const std::string area_light =
-    "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [17 12 4]\nTranslate 0 1.7 0\n"
-    "Shape \"sphere\" \"float radius\" [0.2]\nAttributeEnd\n";
+    R"(AttributeBegin
+AreaLightSource "diffuse" "rgb L" [17 12 4]
+Translate 0 1.7 0
+Shape "sphere" "float radius" [0.2]
+AttributeEnd
+)";
 const std::string small_lights =
-    "LightSource \"point\" \"rgb I\" [0.6 0.5 0.4] \"point3 from\" [-0.6 1.6 0.3]\n"
-    "LightSource \"spot\" \"rgb I\" [6 6 7] \"point3 from\" [0.7 1.9 0.7] \"point3 to\" [0.3 0 -0.2] \"float "
-    "coneangle\" [24] "
-    "\"float conedeltaangle\" [6]\n"
-    "LightSource \"distant\" \"rgb L\" [0.8 0.7 0.5] \"point3 from\" [-0.4 0.5 1] \"point3 to\" [0 0 0]\n";
+    R"(LightSource "point" "rgb I" [0.6 0.5 0.4] "point3 from" [-0.6 1.6 0.3]
+LightSource "spot" "rgb I" [6 6 7] "point3 from" [0.7 1.9 0.7] "point3 to" [0.3 0 -0.2] "float coneangle" [24] "float conedeltaangle" [6]
+LightSource "distant" "rgb L" [0.8 0.7 0.5] "point3 from" [-0.4 0.5 1] "point3 to" [0 0 0]
+)";
 const std::string walls =
-    "Material \"diffuse\" \"rgb reflectance\" [0.725 0.71 0.68]\n" + test::quad("-1 0 1  1 0 1  1 0 -1  -1 0 -1") +
-    test::quad("-1 0 -1  1 0 -1  1 2 -1  -1 2 -1") + "Material \"diffuse\" \"rgb reflectance\" [0.63 0.065 0.05]\n" +
-    test::quad("-1 0 1  -1 0 -1  -1 2 -1  -1 2 1");
+    R"(Material "diffuse" "rgb reflectance" [0.725 0.71 0.68]
+)" + test::quad("-1 0 1  1 0 1  1 0 -1  -1 0 -1") +
+    test::quad("-1 0 -1  1 0 -1  1 2 -1  -1 2 -1") + R"(Material "diffuse" "rgb reflectance" [0.63 0.065 0.05]
+)" + test::quad("-1 0 1  -1 0 -1  -1 2 -1  -1 2 1");
 const std::string from_above = "LookAt 0 2.6 2.2  0 0 0  0 1 0\n";
 // Smooth varnish, rough varnish and metal.
 const std::string varnished_floor =
-    "Material \"coateddiffuse\" \"rgb reflectance\" [0.6 0.3 0.2] \"float roughness\" [0]\n" +
-    test::patch("-1 0.01 -1  -0.4 0.01 -1  -1 0.01 1  -0.4 0.01 1") +
-    "Material \"coateddiffuse\" \"rgb reflectance\" [0.2 0.3 0.6] \"float roughness\" [0.02]\n" +
-    test::patch("-0.4 0.01 -1  0.2 0.01 -1  -0.4 0.01 1  0.2 0.01 1") +
-    "Material \"conductor\" \"float roughness\" [0.06]\n" + test::patch("0.2 0.01 -1  1 0.01 -1  0.2 0.01 1  1 0.01 1");
+    R"(Material "coateddiffuse" "rgb reflectance" [0.6 0.3 0.2] "float roughness" [0]
+)" + test::patch("-1 0.01 -1  -0.4 0.01 -1  -1 0.01 1  -0.4 0.01 1") +
+    R"(Material "coateddiffuse" "rgb reflectance" [0.2 0.3 0.6] "float roughness" [0.02]
+)" + test::patch("-0.4 0.01 -1  0.2 0.01 -1  -0.4 0.01 1  0.2 0.01 1") +
+    R"(Material "conductor" "float roughness" [0.06]
+)" + test::patch("0.2 0.01 -1  1 0.01 -1  0.2 0.01 1  1 0.01 1");
 // A metal surface on which both photons and walks find half of the light, lit only by a ceiling: the lamp shines up.
 const std::string metal_room =
-    "Material \"diffuse\" \"rgb reflectance\" [0.8 0.8 0.8]\n" + test::patch("-1 2 -1  1 2 -1  -1 2 1  1 2 1") +
-    "Material \"conductor\" \"float roughness\" [0.06]\n" + test::patch("-1 0 1  1 0 1  -1 0 -1  1 0 -1") +
+    R"(Material "diffuse" "rgb reflectance" [0.8 0.8 0.8]
+)" + test::patch("-1 2 -1  1 2 -1  -1 2 1  1 2 1") +
+    R"(Material "conductor" "float roughness" [0.06]
+)" + test::patch("-1 0 1  1 0 1  -1 0 -1  1 0 -1") +
     test::patch("-1 0 -1  1 0 -1  -1 2 -1  1 2 -1") + test::patch("-1 0 1  -1 0 -1  -1 2 1  -1 2 -1") +
     test::patch("1 0 1  1 0 -1  1 2 1  1 2 -1") +
-    "AreaLightSource \"diffuse\" \"rgb L\" [17 12 4]\nMaterial \"diffuse\" \"rgb reflectance\" [0 0 0]\n"
-    "Translate 0 1.7 0\nRotate -90 1 0 0\nShape \"disk\" \"float radius\" [0.3]\n";
+    R"(AreaLightSource "diffuse" "rgb L" [17 12 4]
+Material "diffuse" "rgb reflectance" [0 0 0]
+Translate 0 1.7 0
+Rotate -90 1 0 0
+Shape "disk" "float radius" [0.3]
+)";
 // A tessellated ball with interpolated normals: light paths agree only with the adjoint of shading normals.
 const std::string smooth_ball_material = "Translate 0.1 0.6 0\nScale 0.5 0.5 0.5\n";
 
@@ -72,10 +85,9 @@ std::string icosahedron() {
   const char* const points =
       "[0 0.5257 0.8507  0 -0.5257 0.8507  0 0.5257 -0.8507  0 -0.5257 -0.8507  0.5257 0.8507 0  -0.5257 0.8507 0 "
       "0.5257 -0.8507 0  -0.5257 -0.8507 0  0.8507 0 0.5257  -0.8507 0 0.5257  0.8507 0 -0.5257  -0.8507 0 -0.5257]";
-  return std::string("Shape \"trianglemesh\" \"point3 P\" ") + points + " \"normal N\" " + points +
-         " \"integer indices\" [0 1 8 0 8 4 0 4 5 0 5 9 0 9 1 1 6 8 8 6 10 8 10 4 4 10 2 4 2 5 5 2 11 5 11 9 9 11 7 9 "
-         "7 "
-         "1 1 7 6 3 6 7 3 7 11 3 11 2 3 2 10 3 10 6]\n";
+  return std::string(R"(Shape "trianglemesh" "point3 P" )") + points + R"( "normal N" )" + points +
+         R"( "integer indices" [0 1 8 0 8 4 0 4 5 0 5 9 0 9 1 1 6 8 8 6 10 8 10 4 4 10 2 4 2 5 5 2 11 5 11 9 9 11 7 9 7 1 1 7 6 3 6 7 3 7 11 3 11 2 3 2 10 3 10 6]
+)";
 }
 
 // The same body with the normals of each facet mirrored in the facet's own: it looks dented, and no ray leaves it from
@@ -102,18 +114,19 @@ std::string dented_ball() {
       }
   std::string indices;
   for (int i = 0; i < 60; ++i) indices += fmt::format("{} ", i);
-  return "Shape \"trianglemesh\" \"point3 P\" [" + points + "] \"normal N\" [" + normals + "] \"integer indices\" [" +
+  return R"(Shape "trianglemesh" "point3 P" [)" + points + R"(] "normal N" [)" + normals + R"(] "integer indices" [)" +
          indices + "]\n";
 }
 
 // A loose ball of hairs in all directions.
 std::string hairs() {
-  std::string text = "Material \"hair\" \"rgb color\" [0.9 0.5 0.1] \"float beta_m\" [0.8] \"float beta_n\" [0.3]\n";
+  std::string text = R"(Material "hair" "rgb color" [0.9 0.5 0.1] "float beta_m" [0.8] "float beta_n" [0.3]
+)";
   HashRng rng(1);
   for (int i = 0; i < 400; ++i) {
     const Vec3 along = 0.12f * sample_uniform_sphere(rng.next2());
     const Vec3 middle = Vec3(0, 0.7f, 0) + 0.4f * std::cbrt(rng.next()) * sample_uniform_sphere(rng.next2());
-    text += "Shape \"curve\" \"float width\" [0.01] \"point3 P\" [";
+    text += R"(Shape "curve" "float width" [0.01] "point3 P" [)";
     for (const float t : {-3.0f, -1.0f, 1.0f, 3.0f}) {
       const Vec3 p = middle + t * along;
       text += fmt::format("{} {} {} ", p.x, p.y, p.z);
@@ -131,9 +144,11 @@ std::string large_texture() {
   for (int y = 0; y < side; ++y)
     for (int x = 0; x < side; ++x) image.append(3, (x + y) % (x / 256 % 2 == 0 ? 2 : 5) == 0 ? '\x20' : '\xe0');
   static const test::TemporaryDir folder;
-  return "Texture \"large\" \"spectrum\" \"imagemap\" \"string filename\" \"" +
-         folder.write("large.ppm", image).string() + "\"\nMaterial \"diffuse\" \"texture reflectance\" \"large\"\n" +
-         test::patch("-1 0 -1  1 0 -1  -1 0 1  1 0 1") + test::patch("-1 0 -1  1 0 -1  -1 2 -1  1 2 -1");
+  return R"(Texture "large" "spectrum" "imagemap" "string filename" ")" + folder.write("large.ppm", image).string() +
+         R"("
+Material "diffuse" "texture reflectance" "large"
+)" + test::patch("-1 0 -1  1 0 -1  -1 0 1  1 0 1") +
+         test::patch("-1 0 -1  1 0 -1  -1 2 -1  1 2 -1");
 }
 
 // The radius is as small as the other methods' radii.
@@ -153,40 +168,52 @@ const std::map<std::string, std::string>& scenes() {
     return "AttributeBegin\n" + material + smooth_ball_material + shape + "AttributeEnd\n";
   };
   const auto ball = [&](const std::string& material) { return placed(material, icosahedron()); };
-  const std::string ochre = "Material \"diffuse\" \"rgb reflectance\" [0.6 0.6 0.2]\n";
+  const std::string ochre = R"(Material "diffuse" "rgb reflectance" [0.6 0.6 0.2]
+)";
   const std::string diffuse_ball = placed(ochre, dented_ball());
   const std::string under_lamp = overview + film + area_light + walls;
   // A lamp in a glass globe: all light comes from photons, and illuminates a ball whose shading normals differ much
   // from its facets'.
   const std::string globe =
-      "AttributeBegin\nMaterial \"dielectric\" \"float eta\" [1.5]\nTranslate 0 1.7 0\n"
-      "Shape \"sphere\" \"float radius\" [0.3]\nAttributeEnd\n";
+      R"(AttributeBegin
+Material "dielectric" "float eta" [1.5]
+Translate 0 1.7 0
+Shape "sphere" "float radius" [0.3]
+AttributeEnd
+)";
   static const std::map<std::string, std::string> all{
       {"shading_normals", under_lamp + diffuse_ball},
       // Facets that stand in for a surface which bulges out: eye paths alone find the light that they themselves would
       // block.
       {"smooth_ball", under_lamp + ball(ochre)},
       {"small_lights", overview + film + small_lights + walls + diffuse_ball},
-      {"rough_glass", under_lamp + ball("Material \"dielectric\" \"float eta\" [1.5] \"float roughness\" [0.3]\n")},
-      {"rough_metal", under_lamp + ball("Material \"conductor\" \"float roughness\" [0.3]\n")},
+      {"rough_glass", under_lamp + ball(R"(Material "dielectric" "float eta" [1.5] "float roughness" [0.3]
+)")},
+      {"rough_metal", under_lamp + ball(R"(Material "conductor" "float roughness" [0.3]
+)")},
       // Narrow lobes, over wide ones and alone. Photons and eye paths share their indirect light, and both techniques
       // find their direct light.
       {"varnish", from_above + film + area_light + walls + diffuse_ball + varnished_floor},
-      {"varnish_under_sky",
-       from_above + film + "LightSource \"infinite\" \"rgb L\" [0.3 0.4 0.6]\n" + walls + varnished_floor},
+      {"varnish_under_sky", from_above + film + R"(LightSource "infinite" "rgb L" [0.3 0.4 0.6]
+)" + walls + varnished_floor},
       {"metal_room", overview + film + metal_room},
-      {"leaf", under_lamp + ball("Material \"diffusetransmission\" \"rgb reflectance\" [0.3 0.3 0.1] \"rgb "
-                                 "transmittance\" [0.2 0.6 0.2]\n")},
-      {"sky", overview + film + "LightSource \"infinite\" \"rgb L\" [0.3 0.4 0.6]\n" + walls + diffuse_ball},
+      {"leaf",
+       under_lamp +
+           ball(R"(Material "diffusetransmission" "rgb reflectance" [0.3 0.3 0.1] "rgb transmittance" [0.2 0.6 0.2]
+)")},
+      {"sky", overview + film + R"(LightSource "infinite" "rgb L" [0.3 0.4 0.6]
+)" + walls + diffuse_ball},
       // A sky seen through an opening. Most lines through the world's origin in the direction of the light miss the
       // opening.
-      {"window", overview + film +
-                     "LightSource \"infinite\" \"rgb L\" [3 4 6] \"point3 portal\" [1 0.5 -0.5  1 0.5 0.5  1 1.5 0.5  "
-                     "1 1.5 -0.5]\n" +
-                     walls + diffuse_ball},
+      {"window",
+       overview + film +
+           R"(LightSource "infinite" "rgb L" [3 4 6] "point3 portal" [1 0.5 -0.5  1 0.5 0.5  1 1.5 0.5  1 1.5 -0.5]
+)" + walls +
+           diffuse_ball},
       // Light through clear glass with strongly interpolated normals: photons must carry the adjoint of shading
       // normals. (Light tracing cannot find what the eye sees through clear glass.)
-      {"clear_glass", close_up + film + area_light + walls + ball("Material \"dielectric\" \"float eta\" [1.5]\n")},
+      {"clear_glass", close_up + film + area_light + walls + ball(R"(Material "dielectric" "float eta" [1.5]
+)")},
       {"lamp_in_glass", close_up + film + area_light + globe + diffuse_ball},
       // Hair, with a different normal for each ray: light passes from strand to strand.
       {"hair", under_lamp + hairs()},
@@ -366,7 +393,7 @@ INSTANTIATE_TEST_SUITE_P(Nightly, Agreement, testing::ValuesIn(nightly_cases), c
 
 std::string room_with_emissive_fog() {
   std::string text = test::varied_room;
-  return text.insert(text.find("\"rgb sigma_a\""), "\"rgb Le\" [1 2 3] ");
+  return text.insert(text.find(R"("rgb sigma_a")"), R"("rgb Le" [1 2 3] )");
 }
 
 // With one seed; each strategy shows some light.
@@ -465,10 +492,16 @@ TEST(Layers, DispersedCausticsAreOfPureColors) {
 // of the light that the camera sees is its caustic.
 TEST(Layers, AgreeWithPath) {
   const Scene scene = test::scene_from_text(
-      "LookAt 0 1 1.4  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [36]\n"
-      "Film \"rgb\" \"integer xresolution\" [16] \"integer yresolution\" [16]\nWorldBegin\n" +
-      area_light + walls +
-      "Material \"dielectric\" \"float eta\" [1.5]\nTranslate 0 0.4 0\nShape \"sphere\" \"float radius\" [0.3]\n");
+      R"(LookAt 0 1 1.4  0 0 0  0 1 0
+Camera "perspective" "float fov" [36]
+Film "rgb" "integer xresolution" [16] "integer yresolution" [16]
+WorldBegin
+)" + area_light +
+      walls +
+      R"(Material "dielectric" "float eta" [1.5]
+Translate 0 0.4 0
+Shape "sphere" "float radius" [0.3]
+)");
   const auto render_runs = [&](const std::string& integrator, std::uint64_t passes, std::uint64_t first_seed) {
     RenderOptions options = test::options_for(integrator, passes);
     options.max_depth = 4;

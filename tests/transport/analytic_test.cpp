@@ -28,25 +28,34 @@ double lit_sphere(int depth) { return depth == 0 ? 0 : 0.5 * (1 - std::pow(0.5, 
 double under_sky(int depth) { return depth == 0 ? 0 : 0.7; }
 
 const char* const camera =
-    "Camera \"perspective\" \"float fov\" [40]\n"
-    "Film \"rgb\" \"integer xresolution\" [16] \"integer yresolution\" [16]\n"
-    "PixelFilter \"box\" \"float xradius\" [0.5] \"float yradius\" [0.5]\nWorldBegin\n";
+    R"(Camera "perspective" "float fov" [40]
+Film "rgb" "integer xresolution" [16] "integer yresolution" [16]
+PixelFilter "box" "float xradius" [0.5] "float yradius" [0.5]
+WorldBegin
+)";
 
 std::vector<AnalyticScene> scenes() {
   return {{"furnace",
            std::string("LookAt 0 0 0.3  0 0 -1  0 1 0\n") + camera +
-               "AreaLightSource \"diffuse\" \"rgb L\" [0.5 0.5 0.5]\n"
-               "Material \"diffuse\" \"rgb reflectance\" [0.5 0.5 0.5]\nReverseOrientation\nShape \"sphere\"\n",
+               R"(AreaLightSource "diffuse" "rgb L" [0.5 0.5 0.5]
+Material "diffuse" "rgb reflectance" [0.5 0.5 0.5]
+ReverseOrientation
+Shape "sphere"
+)",
            furnace},
           {"point light in a sphere",
            std::string("LookAt 0 0 0.3  0 0 -1  0 1 0\n") + camera +
-               "LightSource \"point\" \"rgb I\" [3.14159265 3.14159265 3.14159265]\n"
-               "Material \"diffuse\" \"rgb reflectance\" [0.5 0.5 0.5]\nShape \"sphere\"\n",
+               R"(LightSource "point" "rgb I" [3.14159265 3.14159265 3.14159265]
+Material "diffuse" "rgb reflectance" [0.5 0.5 0.5]
+Shape "sphere"
+)",
            lit_sphere},
           {"disk under a uniform sky",
            std::string("LookAt 0 0 2  0 0 0  0 1 0\n") + camera +
-               "LightSource \"infinite\" \"rgb L\" [1 1 1]\n"
-               "Material \"diffuse\" \"rgb reflectance\" [0.7 0.7 0.7]\nShape \"disk\" \"float radius\" [1.5]\n",
+               R"(LightSource "infinite" "rgb L" [1 1 1]
+Material "diffuse" "rgb reflectance" [0.7 0.7 0.7]
+Shape "disk" "float radius" [1.5]
+)",
            under_sky}};
 }
 

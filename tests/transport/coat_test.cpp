@@ -15,10 +15,15 @@ namespace lanthorn::coat_test {
 namespace {
 
 /// Everywhere above, or only within 45 degrees of the zenith.
-const std::string sky = "LightSource \"infinite\" \"rgb L\" [1 1 1]\n";
+const std::string sky = R"(LightSource "infinite" "rgb L" [1 1 1]
+)";
 const std::string lamp =
-    "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [1 1 1]\nReverseOrientation\n"
-    "Shape \"disk\" \"float radius\" [1000] \"float height\" [1000]\nAttributeEnd\n";
+    R"(AttributeBegin
+AreaLightSource "diffuse" "rgb L" [1 1 1]
+ReverseOrientation
+Shape "disk" "float radius" [1000] "float height" [1000]
+AttributeEnd
+)";
 
 struct Coat {
   std::string name;
@@ -32,14 +37,14 @@ struct Coat {
   std::string prefix{};  ///< of the coat's parameters
 };
 
-std::string diffuse(const std::string& rgb) { return "\"diffuse\" \"rgb reflectance\" [" + rgb + "] "; }
-std::string coated(const std::string& rgb) { return "\"coateddiffuse\" \"rgb reflectance\" [" + rgb + "] "; }
+std::string diffuse(const std::string& rgb) { return R"("diffuse" "rgb reflectance" [)" + rgb + "] "; }
+std::string coated(const std::string& rgb) { return R"("coateddiffuse" "rgb reflectance" [)" + rgb + "] "; }
 // Of index 0.3 + 4.5 i outside; in the layer relative to it.
 const std::string metal_below =
-    "\"conductor\" \"spectrum eta\" [300 0.2 900 0.2] \"spectrum k\" [300 3 900 3] \"float roughness\" [0.4] ";
+    R"("conductor" "spectrum eta" [300 0.2 900 0.2] "spectrum k" [300 3 900 3] "float roughness" [0.4] )";
 const std::string metal_with_coat =
-    "\"coatedconductor\" \"spectrum conductor.eta\" [300 0.3 900 0.3] \"spectrum conductor.k\" [300 4.5 900 4.5] "
-    "\"float conductor.roughness\" [0.4] ";
+    R"("coatedconductor" "spectrum conductor.eta" [300 0.3 900 0.3] "spectrum conductor.k" [300 4.5 900 4.5] )"
+    R"("float conductor.roughness" [0.4] )";
 
 std::vector<Coat> coats() {
   const std::string grey = "0.8 0.8 0.8", red = "0.9 0.4 0.1";
@@ -57,33 +62,45 @@ std::vector<Coat> coats() {
 std::string view(int degrees) {
   const double theta = degrees * 0.017453292519943295;
   return fmt::format(
-      "LookAt {} 0 {}  0 0 1  0 1 0\nCamera \"orthographic\" \"float screenwindow\" [-0.1 0.1 -0.1 0.1]\n"
-      "Film \"rgb\" \"integer xresolution\" [8] \"integer yresolution\" [8]\nPixelFilter \"box\"\n",
+      R"(LookAt {} 0 {}  0 0 1  0 1 0
+Camera "orthographic" "float screenwindow" [-0.1 0.1 -0.1 0.1]
+Film "rgb" "integer xresolution" [8] "integer yresolution" [8]
+PixelFilter "box"
+)",
       10 * std::sin(theta), 1 + 10 * std::cos(theta));
 }
 
 std::string plane(int height) {
-  return fmt::format("Shape \"disk\" \"float radius\" [1000] \"float height\" [{}]\n", height);
+  return fmt::format(R"(Shape "disk" "float radius" [1000] "float height" [{}]
+)",
+                     height);
 }
 
 Scene as_closure(const Coat& c, int degrees) {
-  return test::scene_from_text(view(degrees) + "WorldBegin\n" + c.light + "Material " + c.closure +
-                               fmt::format("\"float {0}roughness\" [{1}] \"float thickness\" [{2}] \"rgb albedo\" [{3} "
-                                           "{3} {3}] \"float g\" [{4}] \"integer maxdepth\" [200]\n",
-                                           c.prefix, c.roughness, c.thickness, c.albedo, c.g) +
-                               plane(1));
+  return test::scene_from_text(
+      view(degrees) + "WorldBegin\n" + c.light + "Material " + c.closure +
+      fmt::format(
+          R"("float {0}roughness" [{1}] "float thickness" [{2}] "rgb albedo" [{3} {3} {3}] "float g" [{4}] "integer maxdepth" [200]
+)",
+          c.prefix, c.roughness, c.thickness, c.albedo, c.g) +
+      plane(1));
 }
 
 Scene as_geometry(const Coat& c, int degrees) {
   const double scattered = c.thickness * c.albedo, absorbed = c.thickness - scattered;
   return test::scene_from_text(
       view(degrees) + "WorldBegin\n" + c.light +
-      fmt::format("MakeNamedMedium \"layer\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [{0} {0} {0}] "
-                  "\"rgb sigma_s\" [{1} {1} {1}] \"float g\" [{2}]\n",
-                  absorbed, scattered, c.g) +
-      "AttributeBegin\nMediumInterface \"layer\" \"layer\"\nMaterial " + c.base + "\n" + plane(0) + "AttributeEnd\n" +
-      fmt::format("MediumInterface \"layer\" \"\"\nMaterial \"dielectric\" \"float eta\" [1.5] \"float roughness\" "
-                  "[{}]\n",
+      fmt::format(
+          R"(MakeNamedMedium "layer" "string type" "homogeneous" "rgb sigma_a" [{0} {0} {0}] "rgb sigma_s" [{1} {1} {1}] "float g" [{2}]
+)",
+          absorbed, scattered, c.g) +
+      R"(AttributeBegin
+MediumInterface "layer" "layer"
+Material )" +
+      c.base + "\n" + plane(0) + "AttributeEnd\n" +
+      fmt::format(R"(MediumInterface "layer" ""
+Material "dielectric" "float eta" [1.5] "float roughness" [{}]
+)",
                   c.roughness) +
       plane(1));
 }

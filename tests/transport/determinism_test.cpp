@@ -45,10 +45,14 @@ Shape "trianglemesh" "integer indices" [{}] "point3 P" [{}] "point2 uv" [{}]
 
 // An emissive medium, which every method finds by light paths and eye paths.
 const std::string flame =
-    "AttributeBegin\nTranslate 0.5 0.6 0.3\nMakeNamedMedium \"flame\" \"string type\" \"uniformgrid\" "
-    "\"point3 p0\" [-0.1 -0.2 -0.1] \"point3 p1\" [0.1 0.2 0.1] \"integer nx\" 1 \"integer ny\" 3 \"integer nz\" 1 "
-    "\"float density\" [1 2 0.5] \"rgb sigma_a\" [1 1 2] \"rgb sigma_s\" [0.5 0.2 0.1] \"rgb Le\" [20 10 5]\n"
-    "MediumInterface \"flame\" \"\"\nMaterial \"interface\"\nShape \"sphere\" \"float radius\" [0.2]\nAttributeEnd\n";
+    R"(AttributeBegin
+Translate 0.5 0.6 0.3
+MakeNamedMedium "flame" "string type" "uniformgrid" "point3 p0" [-0.1 -0.2 -0.1] "point3 p1" [0.1 0.2 0.1] "integer nx" 1 "integer ny" 3 "integer nz" 1 "float density" [1 2 0.5] "rgb sigma_a" [1 1 2] "rgb sigma_s" [0.5 0.2 0.1] "rgb Le" [20 10 5]
+MediumInterface "flame" ""
+Material "interface"
+Shape "sphere" "float radius" [0.2]
+AttributeEnd
+)";
 
 const Scene& test_scene() {
   static const Scene s = test::scene_from_text(varied_room + flame + rippled_floor());
@@ -57,7 +61,7 @@ const Scene& test_scene() {
 
 const Scene& scene_with_spectral_film() {
   std::string text = varied_room;
-  text.replace(text.find("\"rgb\" \"integer xres"), 5, "\"spectral\"");
+  text.replace(text.find(R"("rgb" "integer xres)"), 5, R"("spectral")");
   static const Scene s = test::scene_from_text(text + rippled_floor());
   return s;
 }

@@ -14,10 +14,15 @@ namespace {
 
 // A lone clear ball under a white sky is invisible, whatever its index of refraction. It fills the picture.
 const std::string ball_in_white_sky =
-    "LookAt 0 0 -8  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [8]\nPixelFilter \"box\"\n"
-    "Film \"rgb\" \"integer xresolution\" [12] \"integer yresolution\" [12]\nWorldBegin\n"
-    "LightSource \"infinite\" \"rgb L\" [1 1 1]\nMaterial \"dielectric\" \"spectrum eta\" \"glass-BK7\"\n"
-    "Shape \"sphere\"\n";
+    R"(LookAt 0 0 -8  0 0 0  0 1 0
+Camera "perspective" "float fov" [8]
+PixelFilter "box"
+Film "rgb" "integer xresolution" [12] "integer yresolution" [12]
+WorldBegin
+LightSource "infinite" "rgb L" [1 1 1]
+Material "dielectric" "spectrum eta" "glass-BK7"
+Shape "sphere"
+)";
 
 std::array<double, 3> mean_of(const Image& image) {
   std::array<double, 3> mean{};
@@ -59,12 +64,17 @@ class DispersedLight : public testing::TestWithParam<const char*> {};
 
 TEST_P(DispersedLight, IsWhiteAfterOnePass) {
   const Scene scene = test::scene_from_text(
-      "LookAt 0 0 1.8  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [60]\n"
-      "Film \"rgb\" \"integer xresolution\" [16] \"integer yresolution\" [16]\nWorldBegin\n"
-      "LightSource \"distant\" \"rgb L\" [1 1 1] \"point3 from\" [0 0 1] \"point3 to\" [0 0 0]\n"
-      "Material \"diffuse\" \"rgb reflectance\" [0.5 0.5 0.5]\n"
-      "Shape \"bilinearmesh\" \"point3 P\" [-1.5 -1.5 0  1.5 -1.5 0  -1.5 1.5 0  1.5 1.5 0]\n"
-      "Translate 0 0 3\nMaterial \"dielectric\" \"spectrum eta\" \"glass-BK7\"\nShape \"sphere\"\n");
+      R"(LookAt 0 0 1.8  0 0 0  0 1 0
+Camera "perspective" "float fov" [60]
+Film "rgb" "integer xresolution" [16] "integer yresolution" [16]
+WorldBegin
+LightSource "distant" "rgb L" [1 1 1] "point3 from" [0 0 1] "point3 to" [0 0 0]
+Material "diffuse" "rgb reflectance" [0.5 0.5 0.5]
+Shape "bilinearmesh" "point3 P" [-1.5 -1.5 0  1.5 -1.5 0  -1.5 1.5 0  1.5 1.5 0]
+Translate 0 0 3
+Material "dielectric" "spectrum eta" "glass-BK7"
+Shape "sphere"
+)");
   RenderOptions options = test::options_for(GetParam(), 1);
   options.color = ColorMode::spectral;
   options.photons = 100'000;
@@ -87,8 +97,9 @@ class DispersedTwice : public testing::TestWithParam<const char*> {};
 
 TEST_P(DispersedTwice, FurnaceIsWhite) {
   const Scene scene = test::scene_from_text(ball_in_white_sky +
-                                            "Material \"diffuse\" \"rgb reflectance\" [1 1 1]\n"
-                                            "Shape \"sphere\" \"float radius\" [0.9]\n");
+                                            R"(Material "diffuse" "rgb reflectance" [1 1 1]
+Shape "sphere" "float radius" [0.9]
+)");
   RenderOptions options = test::options_for(GetParam(), 2);
   options.color = ColorMode::spectral;
   options.photons = 20'000;

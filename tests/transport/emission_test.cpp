@@ -28,31 +28,66 @@ namespace {
 
 // Mirrors and glass of all kinds of shapes, some of them instanced, and matte objects, far smaller than the lit region.
 const std::string things =
-    "Material \"diffuse\"\n" + test::patch("-2 0 -2  2 0 -2  -2 0 2  2 0 2") +
-    "Material \"conductor\" \"float roughness\" [0]\n"
-    "AttributeBegin\nTranslate 0.7 0.5 0\nShape \"sphere\" \"float radius\" [0.2]\nAttributeEnd\n"
-    "Shape \"trianglemesh\" \"integer indices\" [0 1 2] \"point3 P\" [-1 0.1 0  -0.6 0.5 0.1  -1 0.6 -0.2]\n"
-    "Material \"dielectric\"\nObjectBegin \"disk\"\nShape \"disk\" \"float radius\" [0.2]\nObjectEnd\n"
-    "AttributeBegin\nTranslate 0 0.3 0.8\nRotate 70 1 2 0\nObjectInstance \"disk\"\nAttributeEnd\n"
-    "Material \"diffuse\"\n";
-const std::string emitter = "AttributeBegin\nAreaLightSource \"diffuse\"\n";
+    R"(Material "diffuse"
+)" + test::patch("-2 0 -2  2 0 -2  -2 0 2  2 0 2") +
+    R"(Material "conductor" "float roughness" [0]
+AttributeBegin
+Translate 0.7 0.5 0
+Shape "sphere" "float radius" [0.2]
+AttributeEnd
+Shape "trianglemesh" "integer indices" [0 1 2] "point3 P" [-1 0.1 0  -0.6 0.5 0.1  -1 0.6 -0.2]
+Material "dielectric"
+ObjectBegin "disk"
+Shape "disk" "float radius" [0.2]
+ObjectEnd
+AttributeBegin
+Translate 0 0.3 0.8
+Rotate 70 1 2 0
+ObjectInstance "disk"
+AttributeEnd
+Material "diffuse"
+)";
+const std::string emitter = R"(AttributeBegin
+AreaLightSource "diffuse"
+)";
 
 struct LitScene {
   std::string name, light;
   float largest_share;  ///< of the light's photons that may start towards mirrors and glass
 };
 const std::vector<LitScene> lit_scenes{
-    {"triangle", emitter + "Shape \"trianglemesh\" \"point3 P\" [0 2 0  0.3 2 0  0 2.1 0.3]\nAttributeEnd\n", 0.3f},
-    {"two-sided patch",
-     "AttributeBegin\nAreaLightSource \"diffuse\" \"bool twosided\" true\n" +
-         test::patch("0 2 0  0.3 2 0  0 2.1 0.3  0.3 2.1 0.3") + "AttributeEnd\n",
+    {"triangle", emitter + R"(Shape "trianglemesh" "point3 P" [0 2 0  0.3 2 0  0 2.1 0.3]
+AttributeEnd
+)",
      0.3f},
-    {"sphere", emitter + "Translate 0 2 0\nShape \"sphere\" \"float radius\" [0.2]\nAttributeEnd\n", 0.15f},
-    {"cylinder", emitter + "Translate 0 2 0\nShape \"cylinder\" \"float radius\" [0.1]\nAttributeEnd\n", 1},
-    {"point", "LightSource \"point\" \"point3 from\" [0.1 2 0]\n", 0.1f},
-    {"spot", "LightSource \"spot\" \"point3 from\" [0.1 2 0] \"point3 to\" [0 0 0] \"float coneangle\" [60]\n", 0.3f},
-    {"distant", "LightSource \"distant\" \"point3 from\" [1 3 0]\n", 0.1f},
-    {"sky", "LightSource \"infinite\"\n", 2},
+    {"two-sided patch",
+     R"(AttributeBegin
+AreaLightSource "diffuse" "bool twosided" true
+)" + test::patch("0 2 0  0.3 2 0  0 2.1 0.3  0.3 2.1 0.3") +
+         "AttributeEnd\n",
+     0.3f},
+    {"sphere", emitter + R"(Translate 0 2 0
+Shape "sphere" "float radius" [0.2]
+AttributeEnd
+)",
+     0.15f},
+    {"cylinder", emitter + R"(Translate 0 2 0
+Shape "cylinder" "float radius" [0.1]
+AttributeEnd
+)",
+     1},
+    {"point", R"(LightSource "point" "point3 from" [0.1 2 0]
+)",
+     0.1f},
+    {"spot", R"(LightSource "spot" "point3 from" [0.1 2 0] "point3 to" [0 0 0] "float coneangle" [60]
+)",
+     0.3f},
+    {"distant", R"(LightSource "distant" "point3 from" [1 3 0]
+)",
+     0.1f},
+    {"sky", R"(LightSource "infinite"
+)",
+     2},
 };
 
 // No part that a light's photons can hit is classified as empty, and the rest is small.
@@ -85,8 +120,10 @@ TEST(ProjectionMap, MissesNothing) {
 
 // Lights that cannot reach any target get few photons, and a scene without targets is lit as before.
 TEST(ProjectionMap, SharesPhotonsAmongLights) {
-  const std::string up_lights = "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [100 100 100]\n" +
-                                test::patch("0 3 0  0 3 1  1 3 0  1 3 1") + "AttributeEnd\n";
+  const std::string up_lights = R"(AttributeBegin
+AreaLightSource "diffuse" "rgb L" [100 100 100]
+)" + test::patch("0 3 0  0 3 1  1 3 0  1 3 1") +
+                                "AttributeEnd\n";
   const Scene scene = test::world(things + lit_scenes[0].light + up_lights);
   const EmissionGuide guide = make_projection_map(scene, PhotonTarget::specular);
   ASSERT_EQ(guide.lights.size(), 2u);
@@ -100,26 +137,42 @@ TEST(ProjectionMap, SharesPhotonsAmongLights) {
     for (const PhotonAllocation::Share& share : allocation.shares())
       EXPECT_NEAR(share.weight * static_cast<float>(share.count), 1, 1.5f / static_cast<float>(share.count));
   }
-  const Scene matte = test::world("Material \"diffuse\"\nShape \"sphere\"\n" + lit_scenes[4].light);
+  const Scene matte = test::world(R"(Material "diffuse"
+Shape "sphere"
+)" + lit_scenes[4].light);
   EXPECT_EQ(make_projection_map(matte, PhotonTarget::specular).lights[0].numbers.size(), 0u);
 }
 
 // A glass ball and its surroundings, which fill the view, on a large plane under a lamp and a sky that light the whole
 // plane uniformly.
-const std::string view_of_the_ball = "LookAt 0 0.5 1  0 0.05 0  0 1 0\nCamera \"perspective\" \"float fov\" [45]\n";
+const std::string view_of_the_ball = R"(LookAt 0 0.5 1  0 0.05 0  0 1 0
+Camera "perspective" "float fov" [45]
+)";
 std::string corner_of_a_plain(const std::string& lamp) {
-  return "Film \"rgb\" \"integer xresolution\" [24] \"integer yresolution\" [24]\nPixelFilter \"box\"\nWorldBegin\n"
-         "LightSource \"infinite\" \"rgb L\" [0.01 0.01 0.01]\n"
-         "AttributeBegin\nAreaLightSource \"diffuse\" " +
+  return R"(Film "rgb" "integer xresolution" [24] "integer yresolution" [24]
+PixelFilter "box"
+WorldBegin
+LightSource "infinite" "rgb L" [0.01 0.01 0.01]
+AttributeBegin
+AreaLightSource "diffuse" )" +
          lamp +
-         "AttributeEnd\n"
-         "Material \"diffuse\" \"rgb reflectance\" [0.5 0.5 0.5]\n" +
-         test::patch("-20 0 20  20 0 20  -20 0 -20  20 0 -20") +
-         "Material \"dielectric\"\nTranslate 0 0.25 0\nShape \"sphere\" \"float radius\" [0.1]\n";
+         R"(AttributeEnd
+Material "diffuse" "rgb reflectance" [0.5 0.5 0.5]
+)" + test::patch("-20 0 20  20 0 20  -20 0 -20  20 0 -20") +
+         R"(Material "dielectric"
+Translate 0 0.25 0
+Shape "sphere" "float radius" [0.1]
+)";
 }
-const std::string near_lamp = "\"rgb L\" [5000 5000 5000]\nTranslate 3 8 2\nShape \"sphere\" \"float radius\" [0.2]\n",
+const std::string near_lamp = R"("rgb L" [5000 5000 5000]
+Translate 3 8 2
+Shape "sphere" "float radius" [0.2]
+)",
                   far_lamp =
-                      "\"rgb L\" [50000 50000 50000]\nTranslate 300 800 200\nShape \"sphere\" \"float radius\" [6]\n";
+                      R"("rgb L" [50000 50000 50000]
+Translate 300 800 200
+Shape "sphere" "float radius" [6]
+)";
 
 std::vector<Image> layers_of(const Scene& scene, const std::string& layer, const std::string& integrator, bool learned,
                              std::uint64_t runs) {
@@ -185,9 +238,13 @@ TEST(LearnedEmission, LeavesDirectLightToNextEventEstimation) {
 // The visible part of a large plane under a single lamp.
 std::string on_a_plain(const std::string& lamp, const std::string& things_there) {
   return view_of_the_ball +
-         "Film \"rgb\" \"integer xresolution\" [24] \"integer yresolution\" [24]\nPixelFilter \"box\"\nWorldBegin\n" +
-         lamp + "Material \"diffuse\" \"rgb reflectance\" [0.8 0.8 0.8]\n" +
-         test::patch("-20 0 20  20 0 20  -20 0 -20  20 0 -20") + things_there;
+         R"(Film "rgb" "integer xresolution" [24] "integer yresolution" [24]
+PixelFilter "box"
+WorldBegin
+)" + lamp +
+         R"(Material "diffuse" "rgb reflectance" [0.8 0.8 0.8]
+)" + test::patch("-20 0 20  20 0 20  -20 0 -20  20 0 -20") +
+         things_there;
 }
 const std::string walls = test::patch("-.3 0 -.2  .3 0 -.2  -.3 .3 -.2  .3 .3 -.2") +
                           test::patch("-.3 0 -.2  -.3 0 .2  -.3 .3 -.2  -.3 .3 .2");
@@ -197,7 +254,7 @@ std::string curves() {
   for (int i = 0; i < 8; ++i) {
     const std::string z = " " + std::to_string(0.01 * i) + "  ";
     result +=
-        "Shape \"curve\" \"float width\" .03 \"point3 P\" [-.3 0" + z + "-.1 .2" + z + ".1 .2" + z + ".3 0" + z + "]\n";
+        R"(Shape "curve" "float width" .03 "point3 P" [-.3 0)" + z + "-.1 .2" + z + ".1 .2" + z + ".3 0" + z + "]\n";
   }
   return result;
 }
@@ -206,15 +263,18 @@ std::string curves() {
 // rare here, so that connections provide the light that path tracing leaves to other techniques. When weights on flat
 // curves used the guided density, indirect light was 6 % too bright, and 27 % on hair.
 TEST(NightlyLearnedEmission, KeepsIndirectLight) {
-  const std::string lamp = "AttributeBegin\nAreaLightSource \"diffuse\" " + near_lamp + "AttributeEnd\n";
+  const std::string lamp = R"(AttributeBegin
+AreaLightSource "diffuse" )" +
+                           near_lamp + "AttributeEnd\n";
   struct Plain {
     std::string name, text;
     std::uint64_t passes;
     double noise;
   };
-  std::vector<Plain> plains{
-      {"flat curves", on_a_plain(lamp, curves()), 64, 0.2},
-      {"hair", on_a_plain(lamp, "Material \"hair\" \"rgb color\" [.8 .6 .4]\n" + curves()), 64, 0.2}};
+  std::vector<Plain> plains{{"flat curves", on_a_plain(lamp, curves()), 64, 0.2},
+                            {"hair", on_a_plain(lamp, R"(Material "hair" "rgb color" [.8 .6 .4]
+)" + curves()),
+                             64, 0.2}};
   for (const LitScene& lit : lit_scenes) plains.push_back({lit.name, on_a_plain(lit.light, walls), 16, 0.08});
   for (const Plain& plain : plains) {
     const Scene scene = test::scene_from_text(plain.text);
@@ -234,14 +294,18 @@ TEST(NightlyLearnedEmission, KeepsIndirectLight) {
 
 // A sky whose light passes through the ball to the plane. Few pixels determine where its photons must start.
 TEST(LearnedEmission, AimsSkyLightAtGlass) {
-  const Scene scene = test::scene_from_text(
-      view_of_the_ball +
-      "Film \"rgb\" \"integer xresolution\" [24] \"integer yresolution\" [24]\nPixelFilter \"box\"\nWorldBegin\n"
-      "LightSource \"infinite\" \"rgb L\" [0.6 0.6 0.6]\n"
-      "LightSource \"distant\" \"point3 from\" [3 9 -2] \"point3 to\" [0 0 0] \"rgb L\" [12 12 12]\n"
-      "Material \"diffuse\" \"rgb reflectance\" [0.5 0.5 0.5]\n" +
-      test::patch("-20 0 20  20 0 20  -20 0 -20  20 0 -20") +
-      "Material \"dielectric\"\nTranslate 0 0.25 0\nShape \"sphere\" \"float radius\" [0.1]\n");
+  const Scene scene = test::scene_from_text(view_of_the_ball +
+                                            R"(Film "rgb" "integer xresolution" [24] "integer yresolution" [24]
+PixelFilter "box"
+WorldBegin
+LightSource "infinite" "rgb L" [0.6 0.6 0.6]
+LightSource "distant" "point3 from" [3 9 -2] "point3 to" [0 0 0] "rgb L" [12 12 12]
+Material "diffuse" "rgb reflectance" [0.5 0.5 0.5]
+)" + test::patch("-20 0 20  20 0 20  -20 0 -20  20 0 -20") +
+                                            R"(Material "dielectric"
+Translate 0 0.25 0
+Shape "sphere" "float radius" [0.1]
+)");
   for (const char* const integrator : {"probppm", "bpm", "sppm"}) {
     RenderOptions options = test::options_for(integrator, 4);
     options.set["emission"] = "learned";
@@ -281,9 +345,9 @@ EmissionGuide learned_for_caustics(const Scene& scene) {
 // The picture shows a part of the caustic. Directions that no pilot photon has taken are also sampled often, because
 // they may matter: otherwise a few photons of huge flux would dominate the picture.
 TEST(LearnedEmission, LeavesNoWayThroughGlassToChance) {
-  const Scene scene =
-      test::scene_from_text("LookAt -0.1 0.5 -0.2  -0.1 0 -0.1  0 1 0\nCamera \"perspective\" \"float fov\" [10]\n" +
-                            corner_of_a_plain(near_lamp));
+  const Scene scene = test::scene_from_text(R"(LookAt -0.1 0.5 -0.2  -0.1 0 -0.1  0 1 0
+Camera "perspective" "float fov" [10]
+)" + corner_of_a_plain(near_lamp));
   const std::vector<float> found = densities_towards(scene, learned_for_caustics(scene), {0, 0.25f, 0});
   EXPECT_TRUE(test::below(5000 / found.back(), 1));  // 1.5 to 8 million
   // Of 10 000 directions all but a few at the rim of the ball (25 in a million): 151 to 179 over seeds.
@@ -292,11 +356,11 @@ TEST(LearnedEmission, LeavesNoWayThroughGlassToChance) {
 
 // Two equal balls cast caustics; a spot light outshines one of them.
 TEST(LearnedEmission, SparesWhatIsOutshone) {
-  const Scene scene = test::scene_from_text(
-      view_of_the_ball + corner_of_a_plain(near_lamp) +
-      "Translate 0.5 0 0\nShape \"sphere\" \"float radius\" [0.1]\n"
-      "LightSource \"spot\" \"point3 from\" [-0.1 3 -0.07] \"point3 to\" [-0.1 0 -0.07] \"float coneangle\" [5] "
-      "\"float conedeltaangle\" [1] \"float scale\" [2000]\n");
+  const Scene scene = test::scene_from_text(view_of_the_ball + corner_of_a_plain(near_lamp) +
+                                            R"(Translate 0.5 0 0
+Shape "sphere" "float radius" [0.1]
+LightSource "spot" "point3 from" [-0.1 3 -0.07] "point3 to" [-0.1 0 -0.07] "float coneangle" [5] "float conedeltaangle" [1] "float scale" [2000]
+)");
   const EmissionGuide guide = learned_for_caustics(scene);
   // The ratio of the medians is 20, with a standard deviation of 2 over seeds.
   const auto median_towards = [&](const Point& ball) { return densities_towards(scene, guide, ball)[5000]; };
@@ -305,15 +369,21 @@ TEST(LearnedEmission, SparesWhatIsOutshone) {
 
 // A court between walls with a ball in it, alone or in a large world, under a sun and a sky.
 std::string court(bool in_a_large_world) {
-  return "Film \"rgb\" \"integer xresolution\" [24] \"integer yresolution\" [18]\nPixelFilter \"box\"\n"
-         "LookAt -3.4 1.7 -3.4  1 1.2 1  0 1 0\nCamera \"perspective\" \"float fov\" [65]\nWorldBegin\n"
-         "LightSource \"infinite\" \"rgb L\" [0.6 0.6 0.6]\n"
-         "LightSource \"distant\" \"point3 from\" [3 9 -2] \"point3 to\" [0 0 0] \"rgb L\" [12 12 12]\n"
-         "Material \"diffuse\" \"rgb reflectance\" [0.6 0.6 0.6]\nShape \"trianglemesh\" \"integer indices\" "
-         "[0 1 2 1 3 2  0 4 1 1 4 5  2 3 6 3 7 6  0 2 4 2 6 4  1 5 3 3 5 7]\n"
-         "  \"point3 P\" [-4 0 -4  4 0 -4  -4 0 4  4 0 4  -4 9 -4  4 9 -4  -4 9 4  4 9 4]\n"
-         "AttributeBegin\nTranslate 1.5 0.6 1\nShape \"sphere\" \"float radius\" [0.6]\nAttributeEnd\n" +
-         std::string(in_a_large_world ? test::patch("-300 -0.1 -300  300 -0.1 -300  -300 -0.1 300  300 -0.1 300") : "");
+  return R"(Film "rgb" "integer xresolution" [24] "integer yresolution" [18]
+PixelFilter "box"
+LookAt -3.4 1.7 -3.4  1 1.2 1  0 1 0
+Camera "perspective" "float fov" [65]
+WorldBegin
+LightSource "infinite" "rgb L" [0.6 0.6 0.6]
+LightSource "distant" "point3 from" [3 9 -2] "point3 to" [0 0 0] "rgb L" [12 12 12]
+Material "diffuse" "rgb reflectance" [0.6 0.6 0.6]
+Shape "trianglemesh" "integer indices" [0 1 2 1 3 2  0 4 1 1 4 5  2 3 6 3 7 6  0 2 4 2 6 4  1 5 3 3 5 7]
+  "point3 P" [-4 0 -4  4 0 -4  -4 0 4  4 0 4  -4 9 -4  4 9 -4  -4 9 4  4 9 4]
+AttributeBegin
+Translate 1.5 0.6 1
+Shape "sphere" "float radius" [0.6]
+AttributeEnd
+)" + std::string(in_a_large_world ? test::patch("-300 -0.1 -300  300 -0.1 -300  -300 -0.1 300  300 -0.1 300") : "");
 }
 
 // In the large world, one photon in 10 000 starts towards the court.
@@ -329,12 +399,18 @@ TEST(AutomaticEmission, AimsWherePhotonsAreFew) {
 
 // A small isolated ball of fog, in a lamp's wide light, which fills the view.
 const std::string ball_of_fog =
-    "LookAt 0 0.25 2  0 0.25 0  0 1 0\nCamera \"perspective\" \"float fov\" [8]\n"
-    "Film \"rgb\" \"integer xresolution\" [24] \"integer yresolution\" [24]\nPixelFilter \"box\"\nWorldBegin\n"
-    "LightSource \"point\" \"point3 from\" [1.5 1 1]\n"
-    "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_s\" [20 20 20] \"rgb sigma_a\" [0 0 0]\n"
-    "MediumInterface \"fog\" \"\"\nMaterial \"interface\"\nTranslate 0 0.25 0\n"
-    "Shape \"sphere\" \"float radius\" [0.1]\n";
+    R"(LookAt 0 0.25 2  0 0.25 0  0 1 0
+Camera "perspective" "float fov" [8]
+Film "rgb" "integer xresolution" [24] "integer yresolution" [24]
+PixelFilter "box"
+WorldBegin
+LightSource "point" "point3 from" [1.5 1 1]
+MakeNamedMedium "fog" "string type" "homogeneous" "rgb sigma_s" [20 20 20] "rgb sigma_a" [0 0 0]
+MediumInterface "fog" ""
+Material "interface"
+Translate 0 0.25 0
+Shape "sphere" "float radius" [0.1]
+)";
 
 // Fraction of a guide's photons that hit the ball; 0.0008 without a guide.
 double share_towards_fog(const EmissionGuide& guide, const Scene& scene) {
@@ -365,10 +441,12 @@ TEST(MediaAsTargets, GuidesAimAtThem) {
 
 // No part of unbounded fog is aimed at, and no photon is omitted.
 TEST(MediaAsTargets, FogWithoutEndIsEverywhere) {
-  const Scene scene =
-      test::scene_from_text("MediumInterface \"\" \"fog\"\n" + ball_of_fog +
-                            "MakeNamedMedium \"thin\" \"string type\" \"homogeneous\"\n"
-                            "MediumInterface \"thin\" \"fog\"\nShape \"sphere\" \"float radius\" [0.2]\n");
+  const Scene scene = test::scene_from_text(R"(MediumInterface "" "fog"
+)" + ball_of_fog +
+                                            R"(MakeNamedMedium "thin" "string type" "homogeneous"
+MediumInterface "thin" "fog"
+Shape "sphere" "float radius" [0.2]
+)");
   EXPECT_FALSE(scene.scattering_boxes());
   EXPECT_EQ(make_projection_map(scene, PhotonTarget::surfaces_and_media).lights[0].numbers.size(), 0u);
 }
@@ -376,8 +454,13 @@ TEST(MediaAsTargets, FogWithoutEndIsEverywhere) {
 // One block under the sun: nothing visible is lit indirectly.
 TEST(AutomaticEmission, DoesNotAimForNothing) {
   const Scene scene = test::scene_from_text(
-      "Film \"rgb\" \"integer xresolution\" [24] \"integer yresolution\" [18]\nLookAt 3 3 3  0 0 0  0 1 0\n"
-      "Camera \"perspective\"\nWorldBegin\nLightSource \"distant\" \"point3 from\" [1 2 3]\nShape \"sphere\"\n");
+      R"(Film "rgb" "integer xresolution" [24] "integer yresolution" [18]
+LookAt 3 3 3  0 0 0  0 1 0
+Camera "perspective"
+WorldBegin
+LightSource "distant" "point3 from" [1 2 3]
+Shape "sphere"
+)");
   const RenderPlan plan = test::plan_render(scene, test::options_for("probppm", 1));
   const Emission emission = choose_emission(EmissionChoice::automatic, PhotonUse::indirect, plan.job(scene));
   EXPECT_FALSE(emission.guide);
@@ -387,9 +470,17 @@ TEST(AutomaticEmission, DoesNotAimForNothing) {
 // Eye paths that leave a block reach only the sky. They miss small glass objects, but projection maps find these.
 TEST(LearnedEmission, TracesLightOnlyIfItCanAddToThePicture) {
   const std::string block =
-      "Film \"rgb\" \"integer xresolution\" [12] \"integer yresolution\" [9]\nLookAt 3 3 3  0 0 0  0 1 0\n"
-      "Camera \"perspective\"\nWorldBegin\nLightSource \"distant\" \"point3 from\" [1 2 3]\nShape \"sphere\"\n";
-  const std::string glass = "Material \"dielectric\"\nTranslate 1 2 3\nShape \"sphere\" \"float radius\" [0.02]\n";
+      R"(Film "rgb" "integer xresolution" [12] "integer yresolution" [9]
+LookAt 3 3 3  0 0 0  0 1 0
+Camera "perspective"
+WorldBegin
+LightSource "distant" "point3 from" [1 2 3]
+Shape "sphere"
+)";
+  const std::string glass = R"(Material "dielectric"
+Translate 1 2 3
+Shape "sphere" "float radius" [0.02]
+)";
   const auto has_guide = [](const std::string& text) {
     const Scene scene = test::scene_from_text(text);
     const RenderPlan plan = test::plan_render(scene, test::options_for("probppm", 1));
@@ -401,13 +492,27 @@ TEST(LearnedEmission, TracesLightOnlyIfItCanAddToThePicture) {
 
 // A guide that has nothing to learn leaves photons unguided.
 TEST(LearnedEmission, LeavesScenesAloneWhereThereIsNothingToLearn) {
-  const std::string film = "Film \"rgb\" \"integer xresolution\" [8] \"integer yresolution\" [6]\n";
-  const std::string towards_origin = "LookAt 3 3 3  0 0 0  0 1 0\nCamera \"perspective\"\nWorldBegin\n";
-  const std::string away = "LookAt 3 3 3  6 6 6  0 1 0\nCamera \"perspective\"\nWorldBegin\n";
-  const std::string ball = "Shape \"sphere\"\n", sun = "LightSource \"distant\" \"point3 from\" [1 2 3]\n";
-  const std::string black_sun = "LightSource \"distant\" \"rgb L\" [0 0 0]\n";
-  const std::string black_lamp = "AreaLightSource \"diffuse\" \"rgb L\" [0 0 0]\n" + ball;
-  const std::string glass = "Material \"dielectric\"\nTranslate 1 2 3\n" + ball;
+  const std::string film = R"(Film "rgb" "integer xresolution" [8] "integer yresolution" [6]
+)";
+  const std::string towards_origin = R"(LookAt 3 3 3  0 0 0  0 1 0
+Camera "perspective"
+WorldBegin
+)";
+  const std::string away = R"(LookAt 3 3 3  6 6 6  0 1 0
+Camera "perspective"
+WorldBegin
+)";
+  const std::string ball = R"(Shape "sphere"
+)",
+                    sun = R"(LightSource "distant" "point3 from" [1 2 3]
+)";
+  const std::string black_sun = R"(LightSource "distant" "rgb L" [0 0 0]
+)";
+  const std::string black_lamp = R"(AreaLightSource "diffuse" "rgb L" [0 0 0]
+)" + ball;
+  const std::string glass = R"(Material "dielectric"
+Translate 1 2 3
+)" + ball;
   const std::array<std::pair<const char*, std::string>, 6> scenes{
       {{"without lights", film + towards_origin + ball + glass},
        {"with black lights", film + towards_origin + black_sun + ball + black_lamp + glass},
@@ -445,16 +550,19 @@ TEST(AutomaticEmission, ShowsAPlaceInALargeWorldAsPathTracingDoes) {
 
 // A room with a window onto sunlit ground, seen from inside.
 const std::string room_with_a_window =
-    "Film \"rgb\" \"integer xresolution\" [48] \"integer yresolution\" [27]\nPixelFilter \"box\"\n"
-    "LookAt 0.5 1.6 -2.8  3 1.2 2.5  0 1 0\nCamera \"perspective\" \"float fov\" [60]\nWorldBegin\n"
-    "LightSource \"distant\" \"point3 from\" [-5 8 -3] \"point3 to\" [0 0 0] \"rgb L\" [12 12 12]\n"
-    "Material \"diffuse\" \"rgb reflectance\" [0.4 0.4 0.4]\n" +
-    test::patch("-30 -0.01 -30  30 -0.01 -30  -30 -0.01 30  30 -0.01 30") +
-    "Material \"diffuse\" \"rgb reflectance\" [0.75 0.75 0.75]\nShape \"trianglemesh\" \"point3 P\" "
-    "[0 0 -3  4 0 -3  0 0 3  4 0 3  0 2.7 -3  4 2.7 -3  0 2.7 3  4 2.7 3  4 0.9 -0.5  4 0.9 1.2  4 2.1 -0.5  4 2.1 "
-    "1.2]\n"
-    "\"integer indices\" [0 1 2 1 3 2  4 5 6 5 7 6  0 1 4 1 5 4  2 3 6 3 7 6  0 2 4 2 6 4\n"
-    "  1 3 8 3 9 8  3 7 9 7 11 9  7 5 11 5 10 11  5 1 10 1 8 10]\n";
+    R"(Film "rgb" "integer xresolution" [48] "integer yresolution" [27]
+PixelFilter "box"
+LookAt 0.5 1.6 -2.8  3 1.2 2.5  0 1 0
+Camera "perspective" "float fov" [60]
+WorldBegin
+LightSource "distant" "point3 from" [-5 8 -3] "point3 to" [0 0 0] "rgb L" [12 12 12]
+Material "diffuse" "rgb reflectance" [0.4 0.4 0.4]
+)" + test::patch("-30 -0.01 -30  30 -0.01 -30  -30 -0.01 30  30 -0.01 30") +
+    R"(Material "diffuse" "rgb reflectance" [0.75 0.75 0.75]
+Shape "trianglemesh" "point3 P" [0 0 -3  4 0 -3  0 0 3  4 0 3  0 2.7 -3  4 2.7 -3  0 2.7 3  4 2.7 3  4 0.9 -0.5  4 0.9 1.2  4 2.1 -0.5  4 2.1 1.2]
+"integer indices" [0 1 2 1 3 2  4 5 6 5 7 6  0 1 4 1 5 4  2 3 6 3 7 6  0 2 4 2 6 4
+  1 3 8 3 9 8  3 7 9 7 11 9  7 5 11 5 10 11  5 1 10 1 8 10]
+)";
 
 // Guided light paths bring many more photons into the room. (agreement_test.cpp checks that the mean is the same.)
 TEST(LearnedDirections, LeadThroughTheWindow) {
@@ -534,47 +642,79 @@ TEST(GuidedDensity, IsThatOfThePhotons) {
 }
 
 double rare_share(const std::string& lights_and_shapes) {
-  const Scene scene = test::world("Material \"diffuse\"\n" + test::patch("-3 -1 1  3 -1 1  -3 -1 7  3 -1 7") +
+  const Scene scene = test::world(R"(Material "diffuse"
+)" + test::patch("-3 -1 1  3 -1 1  -3 -1 7  3 -1 7") +
                                   test::patch("-3 -1 7  3 -1 7  -3 3 7  3 3 7") + lights_and_shapes);
   return rare_light_share(test::plan_render(scene, test::options_for("path", 1)).job(scene));
 }
 
 const std::string lamp =
-    "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [100 100 100]\nTranslate 0 2 4\n"
-    "Shape \"sphere\" \"float radius\" [0.05]\nAttributeEnd\n";
+    R"(AttributeBegin
+AreaLightSource "diffuse" "rgb L" [100 100 100]
+Translate 0 2 4
+Shape "sphere" "float radius" [0.05]
+AttributeEnd
+)";
 
 // Path tracing finds the light of small lights behind glass only rarely.
 TEST(RareLight, IsThatOfSmallLightsBehindGlass) {
-  const std::string glass = "Material \"dielectric\"\n";
+  const std::string glass = R"(Material "dielectric"
+)";
   const std::string around_the_lamp = glass +
-                                      "AttributeBegin\nTranslate 0 2 4\nShape \"sphere\" \"float radius\" [0.3]\n"
-                                      "AttributeEnd\n";
-  const std::string beside =
-      glass + "AttributeBegin\nTranslate 2 -0.5 5\nShape \"sphere\" \"float radius\" [0.2]\nAttributeEnd\n";
-  const std::string pane = "Material \"thindielectric\"\n" + test::patch("-9 3.5 -9  9 3.5 -9  -9 3.5 9  9 3.5 9");
+                                      R"(AttributeBegin
+Translate 0 2 4
+Shape "sphere" "float radius" [0.3]
+AttributeEnd
+)";
+  const std::string beside = glass + R"(AttributeBegin
+Translate 2 -0.5 5
+Shape "sphere" "float radius" [0.2]
+AttributeEnd
+)";
+  const std::string pane = R"(Material "thindielectric"
+)" + test::patch("-9 3.5 -9  9 3.5 -9  -9 3.5 9  9 3.5 9");
   EXPECT_TRUE(test::below(0.8 / rare_share(lamp + around_the_lamp), 1));
-  EXPECT_TRUE(test::below(0.4 / rare_share("LightSource \"distant\" \"point3 from\" [0 9 -2]\n" + pane), 1));
+  EXPECT_TRUE(test::below(0.4 / rare_share(R"(LightSource "distant" "point3 from" [0 9 -2]
+)" + pane),
+                          1));
   EXPECT_TRUE(test::below(rare_share(lamp + beside), 0.1));
-  EXPECT_TRUE(test::below(rare_share("LightSource \"infinite\"\n" + pane), 0.05));
+  EXPECT_TRUE(test::below(rare_share(R"(LightSource "infinite"
+)" + pane),
+                          0.05));
   EXPECT_EQ(rare_share(lamp), 0);
 }
 
 // Milk in front of the camera: next-event estimation inside it sees the lamp unless there is an interface.
 TEST(RareLight, IsInMediaToo) {
   const std::string milk =
-      "MakeNamedMedium \"milk\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [0 0 0] \"rgb sigma_s\" [9 9 9]\n"
-      "AttributeBegin\nMediumInterface \"milk\" \"\"\nTranslate 0 0 4\nShape \"sphere\" \"float radius\" [1.5]\n"
-      "AttributeEnd\n";
+      R"(MakeNamedMedium "milk" "string type" "homogeneous" "rgb sigma_a" [0 0 0] "rgb sigma_s" [9 9 9]
+AttributeBegin
+MediumInterface "milk" ""
+Translate 0 0 4
+Shape "sphere" "float radius" [1.5]
+AttributeEnd
+)";
   const auto lamp_of = [](const char* radius) {
-    return std::string("AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [9 9 9]\nTranslate 0 4 4\n") +
-           "Shape \"sphere\" \"float radius\" [" + radius + "]\nAttributeEnd\n";
+    return std::string(R"(AttributeBegin
+AreaLightSource "diffuse" "rgb L" [9 9 9]
+Translate 0 4 4
+)") + R"(Shape "sphere" "float radius" [)" +
+           radius + "]\nAttributeEnd\n";
   };
-  EXPECT_GT(rare_share(lamp_of("0.01") + "Material \"dielectric\"\n" + milk), 0.1);
-  EXPECT_EQ(rare_share(lamp_of("0.01") + "Material \"interface\"\n" + milk), 0);
+  EXPECT_GT(rare_share(lamp_of("0.01") + R"(Material "dielectric"
+)" + milk),
+            0.1);
+  EXPECT_EQ(rare_share(lamp_of("0.01") + R"(Material "interface"
+)" + milk),
+            0);
   // About one direction in 200 hits this lamp: not rare, but the variance of a pass is 200. Probabilities below 0.001
   // alone account for .034; found: .094.
-  EXPECT_GT(rare_share(lamp_of("0.2") + "Material \"dielectric\"\n" + milk), 0.065);
-  EXPECT_EQ(rare_share(lamp_of("0.2") + "Material \"interface\"\n" + milk), 0);
+  EXPECT_GT(rare_share(lamp_of("0.2") + R"(Material "dielectric"
+)" + milk),
+            0.065);
+  EXPECT_EQ(rare_share(lamp_of("0.2") + R"(Material "interface"
+)" + milk),
+            0);
 }
 
 }  // namespace

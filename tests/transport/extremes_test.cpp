@@ -43,33 +43,33 @@ Texts materials() {
   const auto add = [&](const Texts& more) { all.insert(all.end(), more.begin(), more.end()); };
   const Texts widths = combined({values("float uroughness", {"0", ".001", ".46", "10"}),
                                  values("float vroughness", {"0", ".857"}),
-                                 {" \"bool remaproughness\" [false]"}});
+                                 {R"( "bool remaproughness" [false])"}});
   const Texts indices = values("float eta", {"1", "1.0000001", "8.6", "1e10", "1e-10"});
-  add(combined({{"\"diffuse\""}, values("rgb reflectance", {white, black})}));
-  add(combined({{"\"diffusetransmission\" \"float scale\" [.5]"}, values("rgb transmittance", {white, black})}));
-  add(combined({{"\"conductor\""}, widths, values("rgb reflectance", {white, black, "1 0 .999999"})}));
-  add(combined({{"\"conductor\""},
+  add(combined({{R"("diffuse")"}, values("rgb reflectance", {white, black})}));
+  add(combined({{R"("diffusetransmission" "float scale" [.5])"}, values("rgb transmittance", {white, black})}));
+  add(combined({{R"("conductor")"}, widths, values("rgb reflectance", {white, black, "1 0 .999999"})}));
+  add(combined({{R"("conductor")"},
                 widths,
                 values("rgb eta", {black, "1e-10 1e-10 1e-10", "1e10 1 1e30"}),
                 values("rgb k", {black, "1e10 1e30 0"})}));
-  add(combined({{"\"dielectric\""}, widths, indices}));
-  add(combined({{"\"thindielectric\""}, indices}));
-  add(combined({{"\"coateddiffuse\""},
+  add(combined({{R"("dielectric")"}, widths, indices}));
+  add(combined({{R"("thindielectric")"}, indices}));
+  add(combined({{R"("coateddiffuse")"},
                 widths,
                 values("float eta", {"1", "1.5", "8.6", "1e6"}),
                 values("float thickness", {"0", "1e10"}),
                 values("rgb reflectance", {white, black})}));
-  add(combined({{"\"coateddiffuse\" \"float uroughness\" .1 \"float vroughness\" .3"},
+  add(combined({{R"("coateddiffuse" "float uroughness" .1 "float vroughness" .3)"},
                 values("float thickness", {".1", "1e6"}),
                 values("rgb albedo", {white, ".5 .5 .5"}),
                 values("float g", {"-1", ".5", ".9999999"}),
                 values("integer maxdepth", {"1", "100"})}));
-  add(combined({{"\"coatedconductor\" \"float interface.vroughness\" .3"},
+  add(combined({{R"("coatedconductor" "float interface.vroughness" .3)"},
                 values("float interface.uroughness", {"0", "1"}),
                 values("float interface.eta", {"1", "8.6"}),
                 values("float conductor.uroughness", {"0", "1"}),
                 values("rgb reflectance", {"", white, black})}));
-  add(combined({{"\"hair\""},
+  add(combined({{R"("hair")"},
                 values("rgb sigma_a", {black, "1e10 1 1e-10"}),
                 values("float beta_m", {"0", "1"}),
                 values("float beta_n", {"0", "1"}),
@@ -79,7 +79,7 @@ Texts materials() {
 }
 
 Texts media() {
-  return combined({{"\"string type\" \"homogeneous\""},
+  return combined({{R"("string type" "homogeneous")"},
                    values("float g", {"-.9999999", "-.99999", "1e-10", ".9999", ".99999", ".9999999"}),
                    values("rgb sigma_s", {"3 3 3", "1e-10 1000 0"}),
                    values("rgb sigma_a", {black, "1e6 0 1"})});
@@ -89,21 +89,21 @@ Texts lights() {
   Texts all;
   const auto add = [&](const Texts& more) { all.insert(all.end(), more.begin(), more.end()); };
   const Texts strengths{"1e-30 1e-30 1e-30", "1 0 1", "1e12 0 1"};
-  add(combined({{"LightSource \"point\""}, values("rgb I", strengths), values("point3 from", {"0 2 0", "0 0 0"})}));
-  add(combined({{"LightSource \"distant\" \"point3 from\" [0 1 0]"}, values("rgb L", strengths)}));
-  add(combined({{"LightSource \"infinite\""}, values("rgb L", strengths)}));
-  add(combined({{"LightSource \"spot\" \"point3 from\" [0 2 0] \"point3 to\" [0 0 0]"},
+  add(combined({{R"(LightSource "point")"}, values("rgb I", strengths), values("point3 from", {"0 2 0", "0 0 0"})}));
+  add(combined({{R"(LightSource "distant" "point3 from" [0 1 0])"}, values("rgb L", strengths)}));
+  add(combined({{R"(LightSource "infinite")"}, values("rgb L", strengths)}));
+  add(combined({{R"(LightSource "spot" "point3 from" [0 2 0] "point3 to" [0 0 0])"},
                 values("rgb I", {white}),
                 values("float coneangle", {".001", "90", "179.9"}),
                 values("float conedeltaangle", {"0", ".001"})}));
   const Texts sizes = values("float radius", {"1e-10", ".0001", "10000", "1e7"});
   for (const char* shape :
-       {"Shape \"sphere\"", "Shape \"disk\"", "Shape \"cylinder\"", "Scale 1 .001 1000 Shape \"sphere\"",
-        "Shape \"sphere\" \"float zmax\" 0 \"float phimax\" .001"})
-    add(combined({{std::string("Translate 0 1.8 0 AreaLightSource \"diffuse\" ") + shape}, sizes}));
-  for (const char* shape : {"\"bilinearmesh\"", "\"trianglemesh\" \"integer indices\" [0 1 2 1 3 2]"})
+       {R"(Shape "sphere")", R"(Shape "disk")", R"(Shape "cylinder")", R"(Scale 1 .001 1000 Shape "sphere")",
+        R"(Shape "sphere" "float zmax" 0 "float phimax" .001)"})
+    add(combined({{std::string(R"(Translate 0 1.8 0 AreaLightSource "diffuse" )") + shape}, sizes}));
+  for (const char* shape : {R"("bilinearmesh")", R"("trianglemesh" "integer indices" [0 1 2 1 3 2])"})
     add(combined(
-        {{std::string("AreaLightSource \"diffuse\" Shape ") + shape},
+        {{std::string(R"(AreaLightSource "diffuse" Shape )") + shape},
          values("point3 P",
                 {"-1e-9 1.9 -.4 1e-9 1.9 -.4 -.4 1.9 .4 .4 1.9 .4", "-.4 1.9 -.4 .4 1.9 -.4 .4 1.9 .4 -.4 1.9 .4",
                  "-.4 1.9 -.4 .4 1 -.4 -.4 1.5 .4 .4 3 .4", "0 1.9 0 0 1.9 0 0 1.9 0 .4 1.9 .4"})}));
@@ -113,7 +113,7 @@ Texts lights() {
 const std::string look = "LookAt 0 1 4.4  0 1 0  0 1 0 ";
 
 Texts cameras() {
-  const std::string perspective = look + "Camera \"perspective\"";
+  const std::string perspective = look + R"(Camera "perspective")";
   Texts all;
   const auto add = [&](const Texts& more) { all.insert(all.end(), more.begin(), more.end()); };
   add(combined({{perspective}, values("float fov", {"1e-6", ".001", "179.9", "179.99999"})}));
@@ -121,40 +121,49 @@ Texts cameras() {
                 values("float lensradius", {"1e-10", "1", "10000"}),
                 values("float focaldistance", {"1e-6", "4", "1e12"})}));
   add(combined({{perspective}, values("float frameaspectratio", {"1e-6", "1e6"})}));
-  add(combined({{look + "Camera \"spherical\""}, values("string mapping", {"\"equalarea\"", "\"equirectangular\""})}));
-  add(combined({{"Scale 1e-6 1e-6 1e-6 ", "Scale 1e6 1e6 1e6 "}, {look + "Camera \"orthographic\""}}));
-  add({"LookAt .2 .6 .2  0 1 0  0 1 0 Camera \"perspective\"", "LookAt 0 0 0  0 1 0  1 0 0 Camera \"perspective\"",
-       "LookAt 0 1.9 0  0 0 0  1 0 0 Camera \"perspective\" \"float lensradius\" .5 \"float focaldistance\" 1.9"});
+  add(combined(
+      {{look + R"(Camera "spherical")"}, values("string mapping", {R"("equalarea")", R"("equirectangular")"})}));
+  add(combined({{"Scale 1e-6 1e-6 1e-6 ", "Scale 1e6 1e6 1e6 "}, {look + R"(Camera "orthographic")"}}));
+  add({R"(LookAt .2 .6 .2  0 1 0  0 1 0 Camera "perspective")", R"(LookAt 0 0 0  0 1 0  1 0 0 Camera "perspective")",
+       R"(LookAt 0 1.9 0  0 0 0  1 0 0 Camera "perspective" "float lensradius" .5 "float focaldistance" 1.9)"});
   return all;
 }
 
-const std::string film = "Film \"rgb\" \"integer xresolution\" 16 \"integer yresolution\" 12\n";
-const std::string camera = look + "Camera \"perspective\" \"float fov\" 40\n";
+const std::string film = R"(Film "rgb" "integer xresolution" 16 "integer yresolution" 12
+)";
+const std::string camera = look + R"(Camera "perspective" "float fov" 40
+)";
 const std::string lamps =
-    "AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [17 12 4] Shape \"bilinearmesh\" \"point3 P\" "
-    "[-.4 1.9 -.4 .4 1.9 -.4 -.4 1.9 .4 .4 1.9 .4] AttributeEnd\nLightSource \"infinite\" \"rgb L\" [.1 .2 .3]\n"
-    "LightSource \"spot\" \"rgb I\" [1 2 3] \"point3 from\" [0 1.8 .9] \"point3 to\" [0 0 0]\n";
-const std::string floor = "Material \"diffuse\" Shape \"bilinearmesh\" \"point3 P\" [-1 0 1 1 0 1 -1 0 -1 1 0 -1]\n";
+    R"(AttributeBegin AreaLightSource "diffuse" "rgb L" [17 12 4] Shape "bilinearmesh" "point3 P" [-.4 1.9 -.4 .4 1.9 -.4 -.4 1.9 .4 .4 1.9 .4] AttributeEnd
+LightSource "infinite" "rgb L" [.1 .2 .3]
+LightSource "spot" "rgb I" [1 2 3] "point3 from" [0 1.8 .9] "point3 to" [0 0 0]
+)";
+const std::string floor = R"(Material "diffuse" Shape "bilinearmesh" "point3 P" [-1 0 1 1 0 1 -1 0 -1 1 0 -1]
+)";
 
 std::string things_of(const std::string& material) {
   return "Material " + material +
-         "\nAttributeBegin Translate .2 .6 .2 Shape \"sphere\" \"float radius\" .5 AttributeEnd\n" +
-         "AttributeBegin Translate -.5 .5 0 Scale .4 .4 .4 Shape \"bilinearmesh\" \"point3 P\" "
-         "[-1 -1 0 1 -1 0 -1 1 0 1 1 .5] AttributeEnd\n";
+         R"(
+AttributeBegin Translate .2 .6 .2 Shape "sphere" "float radius" .5 AttributeEnd
+)" +
+         R"(AttributeBegin Translate -.5 .5 0 Scale .4 .4 .4 Shape "bilinearmesh" "point3 P" [-1 -1 0 1 -1 0 -1 1 0 1 1 .5] AttributeEnd
+)";
 }
 
 Texts scenes() {
   Texts all;
   for (const std::string& m : materials()) all.push_back(film + camera + "WorldBegin\n" + lamps + floor + things_of(m));
   for (const std::string& m : media())
-    for (const char* boundary : {"\"interface\"", "\"dielectric\""})
-      all.push_back(film + camera + "WorldBegin\nMakeNamedMedium \"m\" " + m + "\n" + lamps + floor +
-                    "MediumInterface \"m\" \"\" Material " + boundary +
-                    " Translate 0 .7 0 Shape \"sphere\" \"float radius\" .6\n");
+    for (const char* boundary : {R"("interface")", R"("dielectric")"})
+      all.push_back(film + camera + R"(WorldBegin
+MakeNamedMedium "m" )" +
+                    m + "\n" + lamps + floor + R"(MediumInterface "m" "" Material )" + boundary +
+                    R"( Translate 0 .7 0 Shape "sphere" "float radius" .6
+)");
   for (const std::string& light : lights())
-    all.push_back(film + camera + "WorldBegin\n" + floor + things_of("\"dielectric\"") + light + "\n");
+    all.push_back(film + camera + "WorldBegin\n" + floor + things_of(R"("dielectric")") + light + "\n");
   for (const std::string& c : cameras())
-    all.push_back(film + c + "\nWorldBegin\n" + lamps + floor + things_of("\"dielectric\""));
+    all.push_back(film + c + "\nWorldBegin\n" + lamps + floor + things_of(R"("dielectric")"));
   return all;
 }
 

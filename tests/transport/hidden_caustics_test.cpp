@@ -14,27 +14,38 @@
 namespace lanthorn::hidden_caustics_test {
 namespace {
 
-const std::string film = "Film \"rgb\" \"integer xresolution\" 48 \"integer yresolution\" 36\nPixelFilter \"box\"\n";
-const std::string grey = "Material \"diffuse\" \"rgb reflectance\" [.6 .6 .6]\n";
+const std::string film = R"(Film "rgb" "integer xresolution" 48 "integer yresolution" 36
+PixelFilter "box"
+)";
+const std::string grey = R"(Material "diffuse" "rgb reflectance" [.6 .6 .6]
+)";
 
 std::string glass_ball(const std::string& at, float radius) {
   return fmt::format(
-      "AttributeBegin\nMaterial \"dielectric\"\nTranslate {}\nShape \"sphere\" \"float radius\" {}\nAttributeEnd\n", at,
-      radius);
+      R"(AttributeBegin
+Material "dielectric"
+Translate {}
+Shape "sphere" "float radius" {}
+AttributeEnd
+)",
+      at, radius);
 }
 
 std::string spot(const std::string& from, const std::string& to, float intensity, float angle) {
   return fmt::format(
-      "LightSource \"spot\" \"rgb I\" [{0} {0} {0}] \"point3 from\" [{1}] \"point3 to\" [{2}] "
-      "\"float coneangle\" {3} \"float conedeltaangle\" 1\n",
+      R"(LightSource "spot" "rgb I" [{0} {0} {0}] "point3 from" [{1}] "point3 to" [{2}] "float coneangle" {3} "float conedeltaangle" 1
+)",
       intensity, from, to, angle);
 }
 
 // Three spot lights, each above a glass ball, behind a black wall from 47 others, which no ball sees.
 std::string fifty_lamps(float strength) {
-  std::string text = film + "LookAt 0 -4 5  0 0 0  0 0 1\nCamera \"perspective\" \"float fov\" 40\nWorldBegin\n" +
-                     grey + test::quad("-2 -2 0  2 -2 0  2 2 0  -2 2 0") +
-                     "Material \"diffuse\" \"rgb reflectance\" [0 0 0]\n" + test::quad("0 -2 0  0 2 0  0 2 2  0 -2 2");
+  std::string text = film + R"(LookAt 0 -4 5  0 0 0  0 0 1
+Camera "perspective" "float fov" 40
+WorldBegin
+)" + grey + test::quad("-2 -2 0  2 -2 0  2 2 0  -2 2 0") +
+                     R"(Material "diffuse" "rgb reflectance" [0 0 0]
+)" + test::quad("0 -2 0  0 2 0  0 2 2  0 -2 2");
   for (const float y : {-1.0f, 0.0f, 1.0f}) {
     text += glass_ball(fmt::format("1 {} .3", y), 0.15f);
     text += spot(fmt::format("1 {} 2", y), fmt::format("1 {} 0", y), 1, 12);
@@ -48,36 +59,57 @@ std::string fifty_lamps(float strength) {
 
 // Sunlight falls through a window on the floor; a candle stands beside a glass ball in the shade.
 const std::string sunlit_room =
-    film + "LookAt 1.8 -1.8 1.4  -.5 .5 .2  0 0 1\nCamera \"perspective\" \"float fov\" 60\nWorldBegin\n" +
-    "LightSource \"distant\" \"rgb L\" [30 28 24] \"point3 from\" [3 0 2] \"point3 to\" [0 0 0]\n" + grey +
+    film + R"(LookAt 1.8 -1.8 1.4  -.5 .5 .2  0 0 1
+Camera "perspective" "float fov" 60
+WorldBegin
+)" +
+    R"(LightSource "distant" "rgb L" [30 28 24] "point3 from" [3 0 2] "point3 to" [0 0 0]
+)" + grey +
     test::quad("-2 -2 0  2 -2 0  2 2 0  -2 2 0") + test::quad("-2 -2 2  2 -2 2  2 2 2  -2 2 2") +
     test::quad("-2 2 0  2 2 0  2 2 2  -2 2 2") + test::quad("-2 -2 0  2 -2 0  2 -2 2  -2 -2 2") +
     test::quad("-2 -2 0  -2 2 0  -2 2 2  -2 -2 2") + test::quad("2 -2 0  2 -1.5 0  2 -1.5 2  2 -2 2") +
     test::quad("2 -.5 0  2 2 0  2 2 2  2 -.5 2") + test::quad("2 -1.5 0  2 -.5 0  2 -.5 1  2 -1.5 1") +
     glass_ball("-1 1 .3", 0.2f) +
-    "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [20 15 8]\nTranslate -.5 1.2 .45\n"
-    "Shape \"sphere\" \"float radius\" .03\nAttributeEnd\n";
+    R"(AttributeBegin
+AreaLightSource "diffuse" "rgb L" [20 15 8]
+Translate -.5 1.2 .45
+Shape "sphere" "float radius" .03
+AttributeEnd
+)";
 
 // A spot light that points up lights the floor at (1.5, 0, 0) only via two mirrors. Another one lights it directly.
 const std::string two_mirrors = film +
-                                "LookAt 0 -4 4  .5 0 0  0 0 1\nCamera \"perspective\" \"float fov\" 45\nWorldBegin\n" +
-                                grey + test::quad("-3 -2 0  3 -2 0  3 2 0  -3 2 0") + spot("-1 0 .4", "-1 0 2", 20, 8) +
-                                spot("2 1 3", "-1 1 0", 20, 40) + "Material \"conductor\" \"float roughness\" 0\n" +
-                                test::quad("-1.3 -.3 1.7  -.7 -.3 2.3  -.7 .3 2.3  -1.3 .3 1.7") +
+                                R"(LookAt 0 -4 4  .5 0 0  0 0 1
+Camera "perspective" "float fov" 45
+WorldBegin
+)" + grey + test::quad("-3 -2 0  3 -2 0  3 2 0  -3 2 0") +
+                                spot("-1 0 .4", "-1 0 2", 20, 8) + spot("2 1 3", "-1 1 0", 20, 40) +
+                                R"(Material "conductor" "float roughness" 0
+)" + test::quad("-1.3 -.3 1.7  -.7 -.3 2.3  -.7 .3 2.3  -1.3 .3 1.7") +
                                 test::quad("1.2 -.3 2.3  1.8 -.3 1.7  1.8 .3 1.7  1.2 .3 2.3");
 
 // A glass ball focuses a spot light in a block of fog.
 const std::string fog =
-    "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_s\" [.1 .1 .1] \"rgb sigma_a\" [.1 .1 .1]\n" +
-    film + "LookAt 0 -4 1  0 0 1  0 0 1\nCamera \"perspective\" \"float fov\" 40\nWorldBegin\n" +
-    spot("0 0 3", "0 0 0", 10, 10) + glass_ball("0 0 2.2", 0.25f) +
-    "AttributeBegin\nMediumInterface \"fog\" \"\"\nMaterial \"interface\"\nTranslate 0 0 1\n"
-    "Shape \"sphere\" \"float radius\" .9\nAttributeEnd\n" +
-    grey + test::quad("-2 -2 0  2 -2 0  2 2 0  -2 2 0");
+    R"(MakeNamedMedium "fog" "string type" "homogeneous" "rgb sigma_s" [.1 .1 .1] "rgb sigma_a" [.1 .1 .1]
+)" + film +
+    R"(LookAt 0 -4 1  0 0 1  0 0 1
+Camera "perspective" "float fov" 40
+WorldBegin
+)" + spot("0 0 3", "0 0 0", 10, 10) +
+    glass_ball("0 0 2.2", 0.25f) +
+    R"(AttributeBegin
+MediumInterface "fog" ""
+Material "interface"
+Translate 0 0 1
+Shape "sphere" "float radius" .9
+AttributeEnd
+)" + grey +
+    test::quad("-2 -2 0  2 -2 0  2 2 0  -2 2 0");
 
 // A glass of water at the edge of a stadium: one photon in ten million hits it.
 const std::string lectures = std::string(LANTHORN_SOURCE_DIR) + "/scenes/lectures";
-const std::string stadium = "Include \"stadium.pbrt\"\n";
+const std::string stadium = R"(Include "stadium.pbrt"
+)";
 
 struct Case {
   const char* name;
@@ -131,11 +163,17 @@ INSTANTIATE_TEST_SUITE_P(Cases, HiddenCaustic, testing::ValuesIn(cases), [](cons
 
 // Without a caustic, "auto" is path tracing: the same samples, and the same light.
 TEST(HiddenCaustic, WhereThereIsNoneAutoIsPathTracing) {
-  const Scene scene = test::scene_from_text(
-      film + "LookAt 0 -4 2  0 0 .5  0 0 1\nCamera \"perspective\" \"float fov\" 50\nWorldBegin\n" + grey +
-      test::quad("-2 -2 0  2 -2 0  2 2 0  -2 2 0") + test::quad("-2 2 0  2 2 0  2 2 2  -2 2 2") +
-      "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [5 5 5]\nTranslate 0 0 2\n"
-      "Shape \"disk\" \"float radius\" .3\nAttributeEnd\n");
+  const Scene scene = test::scene_from_text(film + R"(LookAt 0 -4 2  0 0 .5  0 0 1
+Camera "perspective" "float fov" 50
+WorldBegin
+)" + grey + test::quad("-2 -2 0  2 -2 0  2 2 0  -2 2 0") +
+                                            test::quad("-2 2 0  2 2 0  2 2 2  -2 2 2") +
+                                            R"(AttributeBegin
+AreaLightSource "diffuse" "rgb L" [5 5 5]
+Translate 0 0 2
+Shape "disk" "float radius" .3
+AttributeEnd
+)");
   const RenderState found = test::render_state(scene, test::options_for("auto", 4));
   ASSERT_TRUE(found.record.findings);
   EXPECT_EQ(found.record.findings->light_paths_per_pixel, 0);

@@ -17,82 +17,115 @@ namespace lanthorn::isolated_terms_test {
 namespace {
 
 const std::string film =
-    "Film \"rgb\" \"integer xresolution\" [16] \"integer yresolution\" [16]\n"
-    "PixelFilter \"box\" \"float xradius\" [0.5] \"float yradius\" [0.5]\nWorldBegin\n";
+    R"(Film "rgb" "integer xresolution" [16] "integer yresolution" [16]
+PixelFilter "box" "float xradius" [0.5] "float yradius" [0.5]
+WorldBegin
+)";
 
 // The camera sees a floor lit only by a panel above it; the spot light's cone misses the floor. The panel's shading
 // normal n_s is tilted by 50 degrees from its geometric normal n_g, towards the light: photons that leave it along w
 // need the factor |l.n_s| |w.n_g| / (|l.n_g| |w.n_s|) (Veach 1997, eq. 5.19). Integrated over the panel, omitting it
 // leaves 0.24 (left) to 0.56 (right) of the floor's light.
 const std::string tilted_panel =
-    "LookAt 0 1.3 2.2  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [24]\n" + film +
-    "LightSource \"spot\" \"rgb I\" [50 50 50] \"point3 from\" [1.685 0.086 0] \"point3 to\" [0 1.5 0] \"float "
-    "coneangle\" [20] \"float conedeltaangle\" [0.1]\n"
-    "Material \"diffuse\" \"rgb reflectance\" [0.8 0.8 0.8]\n" +
-    test::quad("-3 0 3  3 0 3  3 0 -3  -3 0 -3") +
-    "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3]\n"
-    "  \"point3 P\" [-0.5 1.5 -0.5  0.5 1.5 -0.5  0.5 1.5 0.5  -0.5 1.5 0.5]\n"
-    "  \"normal N\" [0.766 -0.643 0  0.766 -0.643 0  0.766 -0.643 0  0.766 -0.643 0]\n";
+    R"(LookAt 0 1.3 2.2  0 0 0  0 1 0
+Camera "perspective" "float fov" [24]
+)" + film +
+    R"(LightSource "spot" "rgb I" [50 50 50] "point3 from" [1.685 0.086 0] "point3 to" [0 1.5 0] "float coneangle" [20] "float conedeltaangle" [0.1]
+Material "diffuse" "rgb reflectance" [0.8 0.8 0.8]
+)" + test::quad("-3 0 3  3 0 3  3 0 -3  -3 0 -3") +
+    R"(Shape "trianglemesh" "integer indices" [0 1 2 0 2 3]
+  "point3 P" [-0.5 1.5 -0.5  0.5 1.5 -0.5  0.5 1.5 0.5  -0.5 1.5 0.5]
+  "normal N" [0.766 -0.643 0  0.766 -0.643 0  0.766 -0.643 0  0.766 -0.643 0]
+)";
 
 // The same with a mirroring panel, and a lamp behind a screen, so that the floor gets only the panel's reflection. By
 // the shading normal alone, some of the reflected directions lead below the panel's surface; the surface's plane
 // reflects these once more.
 std::string tilted(const std::string& material) {
-  return "LookAt 0 1.3 2.2  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [24]\n" + film +
-         "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [20 20 20]\n" +
-         test::quad("3 0.75 -1  3 0.75 1  3 1.35 1  3 1.35 -1") +
-         "AttributeEnd\nMaterial \"diffuse\" \"rgb reflectance\" [0 0 0]\n" +
-         test::quad("2 -1 -4  2 -1 4  2 0.95 4  2 0.95 -4") +
-         "Material \"diffuse\" \"rgb reflectance\" [0.8 0.8 0.8]\n" +
-         test::quad("-1.9 0 3  1.9 0 3  1.9 0 -3  -1.9 0 -3") + material +
-         "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3]\n"
-         "  \"point3 P\" [-0.5 1.5 -0.5  0.5 1.5 -0.5  0.5 1.5 0.5  -0.5 1.5 0.5]\n"
-         "  \"normal N\" [0.766 -0.643 0  0.766 -0.643 0  0.766 -0.643 0  0.766 -0.643 0]\n";
+  return R"(LookAt 0 1.3 2.2  0 0 0  0 1 0
+Camera "perspective" "float fov" [24]
+)" + film +
+         R"(AttributeBegin
+AreaLightSource "diffuse" "rgb L" [20 20 20]
+)" + test::quad("3 0.75 -1  3 0.75 1  3 1.35 1  3 1.35 -1") +
+         R"(AttributeEnd
+Material "diffuse" "rgb reflectance" [0 0 0]
+)" + test::quad("2 -1 -4  2 -1 4  2 0.95 4  2 0.95 -4") +
+         R"(Material "diffuse" "rgb reflectance" [0.8 0.8 0.8]
+)" + test::quad("-1.9 0 3  1.9 0 3  1.9 0 -3  -1.9 0 -3") +
+         material +
+         R"(Shape "trianglemesh" "integer indices" [0 1 2 0 2 3]
+  "point3 P" [-0.5 1.5 -0.5  0.5 1.5 -0.5  0.5 1.5 0.5  -0.5 1.5 0.5]
+  "normal N" [0.766 -0.643 0  0.766 -0.643 0  0.766 -0.643 0  0.766 -0.643 0]
+)";
 }
-const std::string tilted_mirror = tilted("Material \"conductor\" \"rgb reflectance\" [0.8 0.8 0.8]\n");
+const std::string tilted_mirror = tilted(R"(Material "conductor" "rgb reflectance" [0.8 0.8 0.8]
+)");
 const std::string tilted_metal = tilted(
-    "Material \"conductor\" \"rgb reflectance\" [0.8 0.8 0.8] \"float roughness\" [0.2] \"bool remaproughness\" "
-    "[false]\n");
+    R"(Material "conductor" "rgb reflectance" [0.8 0.8 0.8] "float roughness" [0.2] "bool remaproughness" [false]
+)");
 const std::string tilted_coat =
-    tilted("Material \"coateddiffuse\" \"rgb reflectance\" [0.05 0.05 0.05] \"float roughness\" [0]\n");
+    tilted(R"(Material "coateddiffuse" "rgb reflectance" [0.05 0.05 0.05] "float roughness" [0]
+)");
 
 // A mirror inside a white emitting sphere. Via the mirror, the eye path has already scattered once before it gathers;
 // photons that have scattered max_depth times exceed the limit by one. With them, the light of depth 2 (emission
 // reflected once) would be 0.8² / (1 + 0.8) = 36 % too bright, that of depth 3 21 %.
 const std::string mirror_in_white_sphere =
-    "LookAt 0 0 0.3  0 0 -1  0 1 0\nCamera \"perspective\" \"float fov\" [40]\n" + film +
-    "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [0.5 0.5 0.5]\n"
-    "Material \"diffuse\" \"rgb reflectance\" [0.8 0.8 0.8]\nReverseOrientation\nShape \"sphere\"\nAttributeEnd\n"
-    "Material \"conductor\" \"rgb reflectance\" [0.9 0.9 0.9]\nTranslate 0 0 -0.5\n"
-    "Shape \"disk\" \"float radius\" [0.5]\n";
+    R"(LookAt 0 0 0.3  0 0 -1  0 1 0
+Camera "perspective" "float fov" [40]
+)" + film +
+    R"(AttributeBegin
+AreaLightSource "diffuse" "rgb L" [0.5 0.5 0.5]
+Material "diffuse" "rgb reflectance" [0.8 0.8 0.8]
+ReverseOrientation
+Shape "sphere"
+AttributeEnd
+Material "conductor" "rgb reflectance" [0.9 0.9 0.9]
+Translate 0 0 -0.5
+Shape "disk" "float radius" [0.5]
+)";
 
 // A metal at whose roughness gathering and walking on are equally likely, under a large light. The walk's hits of the
 // light have most of the MIS weight where the lobe (peak density 1 / (4 pi alpha²) = 8 per steradian, half of it in the
 // weight) is denser than next-event estimation (about 2 per steradian), and carry half of the light unless their share
 // is removed again: the image would be 14 % darker (measured).
 const std::string rough_metal_under_light =
-    "LookAt 0 0 2  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [36]\n" + film +
-    "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [1 1 1]\n" + test::quad("-1 1 3  1 1 3  1 -1 3  -1 -1 3") +
-    "AttributeEnd\n"
-    "Material \"conductor\" \"float roughness\" [0.1] \"bool remaproughness\" [false]\n" +
-    test::quad("-2 -2 0  2 -2 0  2 2 0  -2 2 0");
+    R"(LookAt 0 0 2  0 0 0  0 1 0
+Camera "perspective" "float fov" [36]
+)" + film +
+    R"(AttributeBegin
+AreaLightSource "diffuse" "rgb L" [1 1 1]
+)" + test::quad("-1 1 3  1 1 3  1 -1 3  -1 -1 3") +
+    R"(AttributeEnd
+Material "conductor" "float roughness" [0.1] "bool remaproughness" [false]
+)" + test::quad("-2 -2 0  2 -2 0  2 2 0  -2 2 0");
 
 // A lamp near the floor of a white box: photons are 20 times as dense below it as at the camera's left, and the radii
 // of pixels differ accordingly. At least half of the light is indirect.
 const std::string lamp_near_floor =
-    "LookAt 0 0.9 0.9  0 0 -0.2  0 1 0\nCamera \"perspective\" \"float fov\" [70]\n" + film +
-    "Material \"diffuse\" \"rgb reflectance\" [0.8 0.8 0.8]\n"
-    "AttributeBegin\nReverseOrientation\nShape \"sphere\" \"float radius\" [1.5]\nAttributeEnd\n" +
-    test::quad("-2 0 2  2 0 2  2 0 -2  -2 0 -2") +
-    "AreaLightSource \"diffuse\" \"rgb L\" [20 20 20]\nTranslate 0.4 0.3 -0.3\nShape \"sphere\" \"float radius\" "
-    "[0.05]\n";
+    R"(LookAt 0 0.9 0.9  0 0 -0.2  0 1 0
+Camera "perspective" "float fov" [70]
+)" + film +
+    R"(Material "diffuse" "rgb reflectance" [0.8 0.8 0.8]
+AttributeBegin
+ReverseOrientation
+Shape "sphere" "float radius" [1.5]
+AttributeEnd
+)" + test::quad("-2 0 2  2 0 2  2 0 -2  -2 0 -2") +
+    R"(AreaLightSource "diffuse" "rgb L" [20 20 20]
+Translate 0.4 0.3 -0.3
+Shape "sphere" "float radius" [0.05]
+)";
 
 // When the shutter opens, a lid hides the lamp from everything but itself; when it closes, the lid is gone: the floor
 // gets part of the unobstructed light, but none from light paths that all use the first moment.
-const std::string moving_lid = "LookAt 0 1.5 2.2  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [30]\n" + film +
-                               "LightSource \"point\" \"rgb I\" [2 2 2] \"point3 from\" [0 1.2 0]\n"
-                               "Material \"diffuse\" \"rgb reflectance\" [0.8 0.8 0.8]\n" +
-                               test::quad("-2 0 2  2 0 2  2 0 -2  -2 0 -2") +
+const std::string moving_lid = R"(LookAt 0 1.5 2.2  0 0 0  0 1 0
+Camera "perspective" "float fov" [30]
+)" + film +
+                               R"(LightSource "point" "rgb I" [2 2 2] "point3 from" [0 1.2 0]
+Material "diffuse" "rgb reflectance" [0.8 0.8 0.8]
+)" + test::quad("-2 0 2  2 0 2  2 0 -2  -2 0 -2") +
                                "ActiveTransform EndTime\nTranslate 2 0 0\nActiveTransform All\n" +
                                test::quad("-1 1 1  1 1 1  1 1 -1  -1 1 -1");
 
@@ -100,12 +133,22 @@ const std::string moving_lid = "LookAt 0 1.5 2.2  0 0 0  0 1 0\nCamera \"perspec
 // the sphere, 2 of 2.5, must be found by the walk.
 std::string sphere_behind_panes() {
   std::string scene =
-      "LookAt 0 0 0.3  0 0 -1  0 1 0\nCamera \"perspective\" \"float fov\" [40]\n" + film +
-      "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [0.5 0.5 0.5]\n"
-      "Material \"diffuse\" \"rgb reflectance\" [0.8 0.8 0.8]\nReverseOrientation\nShape \"sphere\"\nAttributeEnd\n"
-      "Material \"thindielectric\" \"float eta\" [1]\nTranslate 0 0 0.298\n";
+      R"(LookAt 0 0 0.3  0 0 -1  0 1 0
+Camera "perspective" "float fov" [40]
+)" + film +
+      R"(AttributeBegin
+AreaLightSource "diffuse" "rgb L" [0.5 0.5 0.5]
+Material "diffuse" "rgb reflectance" [0.8 0.8 0.8]
+ReverseOrientation
+Shape "sphere"
+AttributeEnd
+Material "thindielectric" "float eta" [1]
+Translate 0 0 0.298
+)";
   for (int i = 0; i < PhotonFlags::most_eye_scatterings + 2; ++i)
-    scene += "Translate 0 0 -0.002\nShape \"disk\" \"float radius\" [0.1]\n";
+    scene += R"(Translate 0 0 -0.002
+Shape "disk" "float radius" [0.1]
+)";
   return scene;
 }
 

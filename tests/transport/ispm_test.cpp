@@ -40,13 +40,16 @@ Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [1 0 -1  1 0 1  
   static const std::string back_wall =
       R"(Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-1 0 1  1 0 1  1 2 1  -1 2 1])"
       "\n";
-  static const std::string white = "Material \"diffuse\" \"rgb reflectance\" [.7 .7 .65]\n";
+  static const std::string white = R"(Material "diffuse" "rgb reflectance" [.7 .7 .65]
+)";
   static const std::string metal =
-      "Material \"conductor\" \"spectrum eta\" \"metal-Cu-eta\" \"spectrum k\" \"metal-Cu-k\" \"float roughness\" "
-      "[.3]\n";
+      R"(Material "conductor" "spectrum eta" "metal-Cu-eta" "spectrum k" "metal-Cu-k" "float roughness" [.3]
+)";
   static const std::string coated =
-      "Material \"coateddiffuse\" \"rgb reflectance\" [.6 .6 .6] \"float roughness\" [0]\n";
-  static const std::string mirror = "Material \"conductor\" \"float roughness\" [0]\n";
+      R"(Material "coateddiffuse" "rgb reflectance" [.6 .6 .6] "float roughness" [0]
+)";
+  static const std::string mirror = R"(Material "conductor" "float roughness" [0]
+)";
   static const std::string glass_pane =
       R"(Material "dielectric" "float eta" [1.5]
 Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [.2 .2 -.9  .9 .2 -.7  .9 1.4 -.7  .2 1.4 -.9]
@@ -109,8 +112,11 @@ Material "diffuse" "rgb reflectance" [.6 .6 .2]
 Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [.1 .7 -.6  .9 .7 -.6  .9 .9 .6  .1 .9 .6] "point2 uv" [0 0 1 0 1 1 0 1] "texture alpha" "holes"
 )" + white + back_wall +
                        box_walls},
-      {"hair", open_scene + block + "Translate 1.6 .5 0\nMaterial \"hair\" \"float eumelanin\" [.3]\n" +
-                   "Shape \"sphere\" \"float radius\" [.5]\n"},
+      {"hair", open_scene + block + R"(Translate 1.6 .5 0
+Material "hair" "float eumelanin" [.3]
+)" +
+                   R"(Shape "sphere" "float radius" [.5]
+)"},
       {"patterned_metal", R"(
 LookAt 0 1 -3  0 .5 0  0 1 0
 Camera "perspective" "float fov" [40]
@@ -155,10 +161,15 @@ std::vector<Image> renders(const Scene& scene, const std::string& method, std::u
 // A ball of dispersive glass in a white environment is white. A common wavelength for all paths made it green.
 TEST_F(Ispm, DispersiveGlassIsClear) {
   const Scene scene = test::scene_from_text(
-      "LookAt 0 0 -8  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [8]\nPixelFilter \"box\"\n"
-      "Film \"rgb\" \"integer xresolution\" [16] \"integer yresolution\" [16]\nWorldBegin\n"
-      "LightSource \"infinite\" \"rgb L\" [1 1 1]\n"
-      "Material \"dielectric\" \"spectrum eta\" \"glass-F11\"\nShape \"sphere\"\n");
+      R"(LookAt 0 0 -8  0 0 0  0 1 0
+Camera "perspective" "float fov" [8]
+PixelFilter "box"
+Film "rgb" "integer xresolution" [16] "integer yresolution" [16]
+WorldBegin
+LightSource "infinite" "rgb L" [1 1 1]
+Material "dielectric" "spectrum eta" "glass-F11"
+Shape "sphere"
+)");
   for (const char* method : {"ispm", "voxelcones"}) {
     const Image image = *select_layer(test::render_image(scene, options_for(method, 16)), "color");
     std::array<double, 3> mean{};

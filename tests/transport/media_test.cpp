@@ -21,11 +21,12 @@ namespace lanthorn::media_test {
 namespace {
 
 const std::string film =
-    "Film \"rgb\" \"integer xresolution\" [8] \"integer yresolution\" [8]\n"
-    "PixelFilter \"box\" \"float xradius\" [0.5] \"float yradius\" [0.5]\n";
+    R"(Film "rgb" "integer xresolution" [8] "integer yresolution" [8]
+PixelFilter "box" "float xradius" [0.5] "float yradius" [0.5]
+)";
 
 std::string fog(const std::string& coefficients, const std::string& type = "homogeneous") {
-  return "MakeNamedMedium \"fog\" \"string type\" \"" + type + "\" " + coefficients + "\n";
+  return R"(MakeNamedMedium "fog" "string type" ")" + type + "\" " + coefficients + "\n";
 }
 
 RenderOptions options(const std::string& integrator, std::uint64_t passes) {
@@ -44,11 +45,14 @@ test::Mean mean(const Scene& scene, const RenderOptions& o) { return test::mean_
 
 // A ball of purely scattering fog under light of radiance 1 from everywhere is invisible.
 TEST(Media, WhiteFurnace) {
-  const Scene scene = test::scene_from_text("LookAt 0 0 3  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [30]\n" +
-                                            film + "WorldBegin\n" +
-                                            fog("\"rgb sigma_a\" [0 0 0] \"rgb sigma_s\" [2 1 0.5] \"float g\" [0.4]") +
-                                            "LightSource \"infinite\" \"rgb L\" [1 1 1]\n"
-                                            "MediumInterface \"fog\" \"\"\nMaterial \"interface\"\nShape \"sphere\"\n");
+  const Scene scene = test::scene_from_text(R"(LookAt 0 0 3  0 0 0  0 1 0
+Camera "perspective" "float fov" [30]
+)" + film + "WorldBegin\n" + fog(R"("rgb sigma_a" [0 0 0] "rgb sigma_s" [2 1 0.5] "float g" [0.4])") +
+                                            R"(LightSource "infinite" "rgb L" [1 1 1]
+MediumInterface "fog" ""
+Material "interface"
+Shape "sphere"
+)");
   for (const char* integrator : {"path", "probppm"})
     EXPECT_TRUE(test::runs_agree(mean(scene, options(integrator, 8)), 1, 0, 0.05, test::false_alarm_rate / 2));
 }
@@ -58,10 +62,15 @@ TEST(Media, WhiteFurnace) {
 // but needs a hundred times as many passes to show it.)
 TEST(Media, WhiteFurnaceOfMilk) {
   const Scene scene = test::scene_from_text(
-      "LookAt 0 0 -8  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [8]\n" + film + "WorldBegin\n" +
-      fog("\"rgb sigma_a\" [0 0 0] \"rgb sigma_s\" [40 40 40]") +
-      "LightSource \"infinite\" \"rgb L\" [1 1 1]\nMaterial \"interface\"\nMediumInterface \"fog\" \"\"\n"
-      "Shape \"sphere\" \"float radius\" .8\n");
+      R"(LookAt 0 0 -8  0 0 0  0 1 0
+Camera "perspective" "float fov" [8]
+)" + film +
+      "WorldBegin\n" + fog(R"("rgb sigma_a" [0 0 0] "rgb sigma_s" [40 40 40])") +
+      R"(LightSource "infinite" "rgb L" [1 1 1]
+Material "interface"
+MediumInterface "fog" ""
+Shape "sphere" "float radius" .8
+)");
   const auto expect_white = [&](const std::string& integrator, double noise) {
     RenderOptions o = test::options_for(integrator, 8, 1);
     o.photons = 16'000;
@@ -73,11 +82,14 @@ TEST(Media, WhiteFurnaceOfMilk) {
 
 // The light that the limit of scattering events cuts off is counted, independent of threads and shards.
 TEST(Media, CutPathsAreCounted) {
-  const Scene scene =
-      test::scene_from_text("LookAt 0 0 3  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [30]\n" + film +
-                            "WorldBegin\n" + fog("\"rgb sigma_a\" [0 0 0] \"rgb sigma_s\" [20 20 20]") +
-                            "LightSource \"infinite\" \"rgb L\" [1 1 1]\n"
-                            "MediumInterface \"fog\" \"\"\nMaterial \"interface\"\nShape \"sphere\"\n");
+  const Scene scene = test::scene_from_text(R"(LookAt 0 0 3  0 0 0  0 1 0
+Camera "perspective" "float fov" [30]
+)" + film + "WorldBegin\n" + fog(R"("rgb sigma_a" [0 0 0] "rgb sigma_s" [20 20 20])") +
+                                            R"(LightSource "infinite" "rgb L" [1 1 1]
+MediumInterface "fog" ""
+Material "interface"
+Shape "sphere"
+)");
   RenderOptions o = options("path", 64);
   o.max_depth = 8;
   const RenderState state = test::render_state(scene, o);
@@ -105,15 +117,23 @@ TEST(Media, CutPathsAreCounted) {
 // estimation at scattering points finds it with one path in fifty.
 TEST(Media, NarrowBeamInThinFog) {
   const std::string scene_text =
-      "Film \"rgb\" \"integer xresolution\" 24 \"integer yresolution\" 2\nPixelFilter \"box\"\n"
-      "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_s\" [.05 .05 .05] \"rgb sigma_a\" [0 0 0]\n"
-      "MediumInterface \"\" \"fog\"\nLookAt 0 0 -8  0 0 0  0 1 0\n"
-      "Camera \"orthographic\" \"float screenwindow\" [-2.8 -.4 -.1 .1]\nWorldBegin\n"
-      "AttributeBegin\nMediumInterface \"\" \"fog\"\n"
-      "LightSource \"spot\" \"point3 from\" [-3 0 0] \"point3 to\" [0 0 0] \"float coneangle\" 3 "
-      "\"float conedeltaangle\" .01 \"float scale\" 1000\nAttributeEnd\n"
-      "AttributeBegin\nMediumInterface \"fog\" \"\"\nMaterial \"interface\"\nShape \"sphere\" \"float radius\" 10\n"
-      "AttributeEnd\n";
+      R"(Film "rgb" "integer xresolution" 24 "integer yresolution" 2
+PixelFilter "box"
+MakeNamedMedium "fog" "string type" "homogeneous" "rgb sigma_s" [.05 .05 .05] "rgb sigma_a" [0 0 0]
+MediumInterface "" "fog"
+LookAt 0 0 -8  0 0 0  0 1 0
+Camera "orthographic" "float screenwindow" [-2.8 -.4 -.1 .1]
+WorldBegin
+AttributeBegin
+MediumInterface "" "fog"
+LightSource "spot" "point3 from" [-3 0 0] "point3 to" [0 0 0] "float coneangle" 3 "float conedeltaangle" .01 "float scale" 1000
+AttributeEnd
+AttributeBegin
+MediumInterface "fog" ""
+Material "interface"
+Shape "sphere" "float radius" 10
+AttributeEnd
+)";
   // For a pixel: sigma_s / (4 pi) I / d² exp(-sigma (d + z)) over the chord of the cone, averaged over the pixel.
   constexpr double sigma = 0.05, intensity = 1000, cone = 3 * 3.14159265358979 / 180;
   double expected = 0;
@@ -149,14 +169,23 @@ TEST(Media, NarrowBeamInThinFog) {
 // The camera sees an emitter of radiance 1 through a metre of absorber, at normal incidence in the middle of the film.
 Scene lamp_behind(const std::string& medium) {
   return test::scene_from_text(
-      "LookAt 0 0 3  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [0.05]\n" + film + "WorldBegin\n" + medium +
-      "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [1 1 1] \"bool twosided\" true\n"
-      "Translate 0 0 -2\nShape \"disk\"\nAttributeEnd\n"
-      "MediumInterface \"fog\" \"\"\nMaterial \"interface\"\nShape \"sphere\" \"float radius\" [0.5]\n");
+      R"(LookAt 0 0 3  0 0 0  0 1 0
+Camera "perspective" "float fov" [0.05]
+)" + film +
+      "WorldBegin\n" + medium +
+      R"(AttributeBegin
+AreaLightSource "diffuse" "rgb L" [1 1 1] "bool twosided" true
+Translate 0 0 -2
+Shape "disk"
+AttributeEnd
+MediumInterface "fog" ""
+Material "interface"
+Shape "sphere" "float radius" [0.5]
+)");
 }
 
 TEST(Media, BeersLaw) {
-  const Scene scene = lamp_behind(fog("\"rgb sigma_a\" [0.7 0.7 0.7] \"rgb sigma_s\" [0 0 0]"));
+  const Scene scene = lamp_behind(fog(R"("rgb sigma_a" [0.7 0.7 0.7] "rgb sigma_s" [0 0 0])"));
   EXPECT_NEAR(mean(scene, options("path", 1)).mean(), std::exp(-0.7), 1e-4);
 }
 
@@ -164,15 +193,15 @@ TEST(Media, BeersLaw) {
 // half.
 TEST(Media, BeersLawOnGrids) {
   const std::string grid =
-      "\"point3 p0\" [-0.5 -0.5 -0.5] \"point3 p1\" [0.5 0.5 0.5] \"integer nx\" 1 \"integer ny\" 1 \"integer nz\" 4 ";
+      R"("point3 p0" [-0.5 -0.5 -0.5] "point3 p1" [0.5 0.5 0.5] "integer nx" 1 "integer ny" 1 "integer nz" 4 )";
   const double expected = std::exp(-1.4 * (1 - 2 * 0.25 * 0.5 / 4));
   const Scene uniform = lamp_behind(
-      fog(grid + "\"float density\" [2 2 2 2] \"rgb sigma_a\" [0.7 0.7 0.7] \"rgb sigma_s\" [0 0 0]", "uniformgrid"));
+      fog(grid + R"("float density" [2 2 2 2] "rgb sigma_a" [0.7 0.7 0.7] "rgb sigma_s" [0 0 0])", "uniformgrid"));
   const double rate = test::false_alarm_rate / 2;
   EXPECT_TRUE(test::runs_agree(mean(uniform, options("path", 64)), expected, 0.002, 0.1, rate));
-  const Scene coloured = lamp_behind(fog(grid + "\"rgb sigma_a\" [0.7 0.7 0.7  0.7 0.7 0.7  0.7 0.7 0.7  0.7 0.7 0.7] "
-                                                "\"rgb sigma_s\" [0 0 0  0 0 0  0 0 0  0 0 0] "
-                                                "\"float scale\" 2",
+  const Scene coloured = lamp_behind(fog(grid + R"("rgb sigma_a" [0.7 0.7 0.7  0.7 0.7 0.7  0.7 0.7 0.7  0.7 0.7 0.7] )"
+                                                R"("rgb sigma_s" [0 0 0  0 0 0  0 0 0  0 0 0] )"
+                                                R"("float scale" 2)",
                                          "rgbgrid"));
   EXPECT_TRUE(test::runs_agree(mean(coloured, options("path", 64)), expected, 0.002, 0.1, rate));
 }
@@ -182,11 +211,17 @@ TEST(Media, BeersLawOnGrids) {
 TEST(Media, SingleScattering) {
   const double sigma_t = 0.5, sigma_s = 0.3, height = 1, intensity = 2, reach = 2;
   const Scene scene = test::scene_from_text(
-      "MediumInterface \"\" \"fog\"\nLookAt 0 0 0  0 0 -1  0 1 0\nCamera \"perspective\" \"float fov\" [0.1]\n" + film +
-      "WorldBegin\n" + fog("\"rgb sigma_a\" [0.2 0.2 0.2] \"rgb sigma_s\" [0.3 0.3 0.3]") +
-      "MediumInterface \"\" \"fog\"\n"
-      "LightSource \"point\" \"rgb I\" [2 2 2] \"point3 from\" [0 1 -1]\n"
-      "Material \"diffuse\" \"rgb reflectance\" [0 0 0]\nTranslate 0 0 -2\nShape \"disk\"\n");
+      R"(MediumInterface "" "fog"
+LookAt 0 0 0  0 0 -1  0 1 0
+Camera "perspective" "float fov" [0.1]
+)" + film +
+      "WorldBegin\n" + fog(R"("rgb sigma_a" [0.2 0.2 0.2] "rgb sigma_s" [0.3 0.3 0.3])") +
+      R"(MediumInterface "" "fog"
+LightSource "point" "rgb I" [2 2 2] "point3 from" [0 1 -1]
+Material "diffuse" "rgb reflectance" [0 0 0]
+Translate 0 0 -2
+Shape "disk"
+)");
   double expected = 0;
   constexpr int steps = 10'000;
   for (int i = 0; i < steps; ++i) {
@@ -205,13 +240,22 @@ TEST(Media, SingleScattering) {
 // Scenes without interfaces take a shorter path through the code. An interface hidden behind a wall changes no pixel.
 TEST(Media, InterfacesElsewhereChangeNothing) {
   const std::string room =
-      "LookAt 0 0 0.9  0 0 0  0 1 0\nMediumInterface \"\" \"fog\"\nCamera \"perspective\" \"float fov\" [60]\n" + film +
-      "WorldBegin\n" + fog("\"rgb sigma_a\" [0.1 0.2 0.3] \"rgb sigma_s\" [0.9 0.6 0.3]") +
-      "MediumInterface \"fog\" \"fog\"\nLightSource \"point\" \"rgb I\" [1 1 1] \"point3 from\" [0 0.6 0]\n"
-      "Material \"diffuse\" \"rgb reflectance\" [.5 .5 .5]\nShape \"sphere\"\n"
-      "Shape \"sphere\" \"float radius\" [0.2]\nMediumInterface \"\" \"fog\"\nMaterial \"interface\"\n";
+      R"(LookAt 0 0 0.9  0 0 0  0 1 0
+MediumInterface "" "fog"
+Camera "perspective" "float fov" [60]
+)" + film +
+      "WorldBegin\n" + fog(R"("rgb sigma_a" [0.1 0.2 0.3] "rgb sigma_s" [0.9 0.6 0.3])") +
+      R"(MediumInterface "fog" "fog"
+LightSource "point" "rgb I" [1 1 1] "point3 from" [0 0.6 0]
+Material "diffuse" "rgb reflectance" [.5 .5 .5]
+Shape "sphere"
+Shape "sphere" "float radius" [0.2]
+MediumInterface "" "fog"
+Material "interface"
+)";
   // Inside the ball.
-  const Scene with = test::scene_from_text(room + "Shape \"sphere\" \"float radius\" [0.1]\n");
+  const Scene with = test::scene_from_text(room + R"(Shape "sphere" "float radius" [0.1]
+)");
   const Scene without = test::scene_from_text(room);
   ASSERT_TRUE(with.has_interfaces());
   ASSERT_FALSE(without.has_interfaces());
@@ -226,14 +270,24 @@ TEST(Media, InterfacesElsewhereChangeNothing) {
 TEST(Media, OpaqueShapesMayBeInsideOut) {
   const auto room = [](const std::string& walls, const std::string& ball) {
     return test::scene_from_text(
-        "LookAt 0 0 0.9  0 0 0  0 1 0\nMediumInterface \"\" \"fog\"\nCamera \"perspective\" \"float fov\" [60]\n" +
-        film + "WorldBegin\n" + fog("\"rgb sigma_a\" [0.1 0.2 0.3] \"rgb sigma_s\" [0.9 0.6 0.3]") +
-        "MediumInterface \"fog\" \"fog\"\nLightSource \"point\" \"rgb I\" [1 1 1] \"point3 from\" [0 0.6 0]\n"
-        "Material \"diffuse\" \"rgb reflectance\" [.5 .5 .5]\nMediumInterface " +
-        walls + "\nShape \"sphere\"\nMediumInterface " + ball + "\nShape \"sphere\" \"float radius\" [0.2]\n");
+        R"(LookAt 0 0 0.9  0 0 0  0 1 0
+MediumInterface "" "fog"
+Camera "perspective" "float fov" [60]
+)" + film +
+        "WorldBegin\n" + fog(R"("rgb sigma_a" [0.1 0.2 0.3] "rgb sigma_s" [0.9 0.6 0.3])") +
+        R"(MediumInterface "fog" "fog"
+LightSource "point" "rgb I" [1 1 1] "point3 from" [0 0.6 0]
+Material "diffuse" "rgb reflectance" [.5 .5 .5]
+MediumInterface )" +
+        walls + R"(
+Shape "sphere"
+MediumInterface )" +
+        ball + R"(
+Shape "sphere" "float radius" [0.2]
+)");
   };
-  const Scene fitting = room("\"fog\" \"fog\"", "\"fog\" \"fog\"");
-  const Scene inside_out = room("\"\" \"fog\"", "\"fog\" \"\"");
+  const Scene fitting = room(R"("fog" "fog")", R"("fog" "fog")");
+  const Scene inside_out = room(R"("" "fog")", R"("fog" "")");
   EXPECT_TRUE(media_warnings(inside_out, make_view(inside_out.description().view)).empty());
   for (const char* integrator : {"path", "bdpt", "vcm", "probppm", "photonmap", "light"})
     EXPECT_EQ(test::render_image(inside_out, options(integrator, 2)).pixels,
@@ -246,19 +300,35 @@ TEST(Media, LightsAndCamerasMayClaimTheWrongMedium) {
   // A ball of fog containing a ball of glass, on a floor with wrong specifications.
   const auto ball = [](const std::string& of_camera, const std::string& of_lamp, const std::string& place,
                        const std::string& of_light, const std::string& from) {
-    return test::scene_from_text(
-        "LookAt " + place + "  0 0.2 0  0 1 0\nMediumInterface \"\" " + of_camera +
-        "\nCamera \"perspective\" \"float fov\" [60]\n" + film + "WorldBegin\n" +
-        fog("\"rgb sigma_a\" [0.1 0.2 0.3] \"rgb sigma_s\" [0.9 0.6 0.3]") + "AttributeBegin MediumInterface \"\" " +
-        of_light + "\nLightSource \"point\" \"rgb I\" [9 9 9] \"point3 from\" [" + from +
-        "]\nAttributeEnd AttributeBegin MediumInterface \"\" " + of_lamp +
-        "\nLightSource \"point\" \"rgb I\" [1 1 1] \"point3 from\" [0 0.8 0.3]\nAttributeEnd\n"
-        "AttributeBegin\nMediumInterface \"fog\" \"\"\nMaterial \"interface\"\nShape \"sphere\"\nAttributeEnd\n"
-        "AttributeBegin\nMediumInterface \"\" \"fog\"\nMaterial \"dielectric\"\nShape \"sphere\" \"float radius\" "
-        "[0.3]\nAttributeEnd\nMaterial \"diffuse\"\nMediumInterface \"\" \"fog\"\n" +
-        test::patch("-9 -0.5 9  9 -0.5 9  -9 -0.5 -9  9 -0.5 -9"));
+    return test::scene_from_text("LookAt " + place + R"(  0 0.2 0  0 1 0
+MediumInterface "" )" + of_camera +
+                                 R"(
+Camera "perspective" "float fov" [60]
+)" + film + "WorldBegin\n" + fog(R"("rgb sigma_a" [0.1 0.2 0.3] "rgb sigma_s" [0.9 0.6 0.3])") +
+                                 R"(AttributeBegin MediumInterface "" )" + of_light + R"(
+LightSource "point" "rgb I" [9 9 9] "point3 from" [)" +
+                                 from +
+                                 R"(]
+AttributeEnd AttributeBegin MediumInterface "" )" +
+                                 of_lamp +
+                                 R"(
+LightSource "point" "rgb I" [1 1 1] "point3 from" [0 0.8 0.3]
+AttributeEnd
+AttributeBegin
+MediumInterface "fog" ""
+Material "interface"
+Shape "sphere"
+AttributeEnd
+AttributeBegin
+MediumInterface "" "fog"
+Material "dielectric"
+Shape "sphere" "float radius" [0.3]
+AttributeEnd
+Material "diffuse"
+MediumInterface "" "fog"
+)" + test::patch("-9 -0.5 9  9 -0.5 9  -9 -0.5 -9  9 -0.5 -9"));
   };
-  const std::string none = "\"\"", in_fog = "\"fog\"", outside = "0.5 0.5 2.5", inside = "0.1 0.5 0.7";
+  const std::string none = R"("")", in_fog = R"("fog")", outside = "0.5 0.5 2.5", inside = "0.1 0.5 0.7";
   for (const std::string& eye : {outside, inside}) {
     const std::string& around_eye = eye == inside ? in_fog : none;
     const std::string& elsewhere = eye == inside ? none : in_fog;
@@ -284,17 +354,28 @@ TEST(Media, LightsAndCamerasMayClaimTheWrongMedium) {
 // Thick coloured fog around a grey ball in a room, the camera outside the fog: all integrators must agree.
 Scene foggy_room(const std::string& medium) {
   return test::scene_from_text(
-      "LookAt 0 1 3  0 1 0  0 1 0\nCamera \"perspective\" \"float fov\" [40]\n" + film + "WorldBegin\n" +
-      "AttributeBegin\nTranslate 0 0.8 0\n" + medium +
-      "AttributeEnd\n"
-      "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [6 6 6]\n"
-      "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3]\n"
-      "  \"point3 P\" [-0.5 1.99 -0.5 0.5 1.99 -0.5 0.5 1.99 0.5 -0.5 1.99 0.5]\nAttributeEnd\n"
-      "Material \"diffuse\" \"rgb reflectance\" [0.7 0.7 0.7]\n" +
-      test::quad("-1 0 1  1 0 1  1 0 -1  -1 0 -1") + test::quad("-1 0 -1  1 0 -1  1 2 -1  -1 2 -1") +
-      "Translate 0 0.8 0\n"
-      "AttributeBegin\nMediumInterface \"fog\" \"\"\nMaterial \"interface\"\nShape \"sphere\" \"float radius\" [0.7]\n"
-      "AttributeEnd\nMediumInterface \"fog\" \"fog\"\nShape \"sphere\" \"float radius\" [0.3]\n");
+      R"(LookAt 0 1 3  0 1 0  0 1 0
+Camera "perspective" "float fov" [40]
+)" + film +
+      "WorldBegin\n" + "AttributeBegin\nTranslate 0 0.8 0\n" + medium +
+      R"(AttributeEnd
+AttributeBegin
+AreaLightSource "diffuse" "rgb L" [6 6 6]
+Shape "trianglemesh" "integer indices" [0 1 2 0 2 3]
+  "point3 P" [-0.5 1.99 -0.5 0.5 1.99 -0.5 0.5 1.99 0.5 -0.5 1.99 0.5]
+AttributeEnd
+Material "diffuse" "rgb reflectance" [0.7 0.7 0.7]
+)" + test::quad("-1 0 1  1 0 1  1 0 -1  -1 0 -1") +
+      test::quad("-1 0 -1  1 0 -1  1 2 -1  -1 2 -1") +
+      R"(Translate 0 0.8 0
+AttributeBegin
+MediumInterface "fog" ""
+Material "interface"
+Shape "sphere" "float radius" [0.7]
+AttributeEnd
+MediumInterface "fog" "fog"
+Shape "sphere" "float radius" [0.3]
+)");
 }
 
 /// By Welch's t-test per tile; for tests with up to eleven integrators.
@@ -310,31 +391,42 @@ void expect_agreement(const Scene& scene, const std::vector<std::string>& integr
 }
 
 TEST(Media, IntegratorsAgree) {
-  const std::string coefficients = "\"rgb sigma_a\" [0.1 0.2 0.4] \"rgb sigma_s\" [0.3 1 2] \"float g\" [0.5] ";
+  const std::string coefficients = R"("rgb sigma_a" [0.1 0.2 0.4] "rgb sigma_s" [0.3 1 2] "float g" [0.5] )";
   expect_agreement(foggy_room(fog(coefficients)), {"light", "probppm", "bdpt", "vcm", "auto", "mlt", "mlt:over=path"},
                    2);
-  const std::string box = "\"point3 p0\" [-0.7 -0.7 -0.7] \"point3 p1\" [0.7 0.7 0.7] ";
-  expect_agreement(foggy_room(fog(coefficients + box + "\"float density\" 6", "cloud")), {"light", "probppm"}, 1);
-  const std::string grid = box + "\"integer nx\" 2 \"integer ny\" 1 \"integer nz\" 1 \"float g\" -0.3 ";
+  const std::string box = R"("point3 p0" [-0.7 -0.7 -0.7] "point3 p1" [0.7 0.7 0.7] )";
+  expect_agreement(foggy_room(fog(coefficients + box + R"("float density" 6)", "cloud")), {"light", "probppm"}, 1);
+  const std::string grid = box + R"("integer nx" 2 "integer ny" 1 "integer nz" 1 "float g" -0.3 )";
   expect_agreement(
-      foggy_room(fog(grid + "\"rgb sigma_a\" [0.1 0.2 0.3  0.3 0.1 0] \"rgb sigma_s\" [1 3 0.5  4 1 2]", "rgbgrid")),
+      foggy_room(fog(grid + R"("rgb sigma_a" [0.1 0.2 0.3  0.3 0.1 0] "rgb sigma_s" [1 3 0.5  4 1 2])", "rgbgrid")),
       {"light", "bdpt", "mlt"}, 1);
 }
 
 // A flame that scatters is the only light, over a glossy floor, beside a ball of glass, seen in a rough mirror.
 TEST(NightlyMedia, VolumeEmissionLightsItsSurroundings) {
   const Scene scene = test::scene_from_text(
-      "LookAt 0 1 3  0 1 0  0 1 0\nCamera \"perspective\" \"float fov\" [40]\n" + film + "WorldBegin\n" +
-      "AttributeBegin\nTranslate -0.3 0.8 0\n" +
-      fog("\"point3 p0\" [-0.4 -0.4 -0.4] \"point3 p1\" [0.4 0.4 0.4] \"integer nx\" 1 \"integer ny\" 2 "
-          "\"integer nz\" 1 \"float density\" [2 1] \"rgb sigma_a\" [1 1 2] \"rgb sigma_s\" [1 2 1] \"rgb Le\" [3 2 1]",
+      R"(LookAt 0 1 3  0 1 0  0 1 0
+Camera "perspective" "float fov" [40]
+)" + film +
+      "WorldBegin\n" + "AttributeBegin\nTranslate -0.3 0.8 0\n" +
+      fog(R"("point3 p0" [-0.4 -0.4 -0.4] "point3 p1" [0.4 0.4 0.4] "integer nx" 1 "integer ny" 2 )"
+          R"("integer nz" 1 "float density" [2 1] "rgb sigma_a" [1 1 2] "rgb sigma_s" [1 2 1] "rgb Le" [3 2 1])",
           "uniformgrid") +
-      "MediumInterface \"fog\" \"\"\nMaterial \"interface\"\nShape \"sphere\" \"float radius\" [0.4]\nAttributeEnd\n"
-      "Material \"coateddiffuse\" \"rgb reflectance\" [0.8 0.8 0.9] \"float roughness\" [0.3]\n" +
-      test::patch("-1 0 1  1 0 1  -1 0 -1  1 0 -1") + "Material \"diffuse\" \"rgb reflectance\" [0.9 0.9 0.9]\n" +
-      test::patch("-1 2 1  1 2 1  -1 2 -1  1 2 -1") + test::patch("1 0 1  1 0 -1  1 2 1  1 2 -1") +
-      "Material \"conductor\" \"float roughness\" [0.01]\n" + test::patch("-1 0 -1  1 0 -1  -1 2 -1  1 2 -1") +
-      "Material \"dielectric\"\nTranslate 0.4 0.4 0.2\nShape \"sphere\" \"float radius\" [0.3]\n");
+      R"(MediumInterface "fog" ""
+Material "interface"
+Shape "sphere" "float radius" [0.4]
+AttributeEnd
+Material "coateddiffuse" "rgb reflectance" [0.8 0.8 0.9] "float roughness" [0.3]
+)" + test::patch("-1 0 1  1 0 1  -1 0 -1  1 0 -1") +
+      R"(Material "diffuse" "rgb reflectance" [0.9 0.9 0.9]
+)" + test::patch("-1 2 1  1 2 1  -1 2 -1  1 2 -1") +
+      test::patch("1 0 1  1 0 -1  1 2 1  1 2 -1") +
+      R"(Material "conductor" "float roughness" [0.01]
+)" + test::patch("-1 0 -1  1 0 -1  -1 2 -1  1 2 -1") +
+      R"(Material "dielectric"
+Translate 0.4 0.4 0.2
+Shape "sphere" "float radius" [0.3]
+)");
   EXPECT_TRUE(scene.warnings().empty());
   EXPECT_TRUE(media_warnings(scene, make_view(scene.description().view)).empty());
   expect_agreement(scene, {"light", "probppm", "bdpt", "vcm", "auto"}, 2);
@@ -346,18 +438,25 @@ class LayerOfMedia : public testing::TestWithParam<const char*> {};
 
 TEST_P(LayerOfMedia, HasAllLightThatComesOutOfThem) {
   const Scene scene = test::scene_from_text(
-      "LookAt 0 0 5  0 0 0  0 1 0\nCamera \"orthographic\" \"float screenwindow\" [-1 1 -1 1]\n" + film +
-      "WorldBegin\n" +
-      fog("\"rgb sigma_a\" [0.2 0.1 0.3] \"rgb sigma_s\" [1 2 1] \"rgb Le\" " + std::string(GetParam())) +
-      "LightSource \"point\" \"point3 from\" [0.2 0 4]\n"
-      "AttributeBegin\nMediumInterface \"fog\" \"\"\nMaterial \"interface\"\nTranslate -2.01 0 0\n"
-      "Shape \"sphere\" \"float radius\" [2]\nAttributeEnd\n"
-      "AttributeBegin\nMaterial \"thindielectric\"\n" +
-      test::patch("-1 -1 3  -0.01 -1 3  -1 0 3  -0.01 0 3") +
-      "AttributeEnd\n"
-      "AttributeBegin\nMaterial \"diffuse\" \"rgb reflectance\" [0 0 0]\n" +
-      test::patch("-2 -1 -2.5  0 -1 -2.5  -2 1 -2.5  0 1 -2.5") + "AttributeEnd\n" +
-      test::patch("0 -1 -2.5  2 -1 -2.5  0 1 -2.5  2 1 -2.5"));
+      R"(LookAt 0 0 5  0 0 0  0 1 0
+Camera "orthographic" "float screenwindow" [-1 1 -1 1]
+)" + film +
+      "WorldBegin\n" + fog(R"("rgb sigma_a" [0.2 0.1 0.3] "rgb sigma_s" [1 2 1] "rgb Le" )" + std::string(GetParam())) +
+      R"(LightSource "point" "point3 from" [0.2 0 4]
+AttributeBegin
+MediumInterface "fog" ""
+Material "interface"
+Translate -2.01 0 0
+Shape "sphere" "float radius" [2]
+AttributeEnd
+AttributeBegin
+Material "thindielectric"
+)" + test::patch("-1 -1 3  -0.01 -1 3  -1 0 3  -0.01 0 3") +
+      R"(AttributeEnd
+AttributeBegin
+Material "diffuse" "rgb reflectance" [0 0 0]
+)" + test::patch("-2 -1 -2.5  0 -1 -2.5  -2 1 -2.5  0 1 -2.5") +
+      "AttributeEnd\n" + test::patch("0 -1 -2.5  2 -1 -2.5  0 1 -2.5  2 1 -2.5"));
   for (const IntegratorInfo& info : integrator_registry()) {
     if (info.name == "splitsum") continue;  // shades surfaces only
     RenderOptions o = options(info.name, 2);
@@ -383,22 +482,34 @@ INSTANTIATE_TEST_SUITE_P(Media, LayerOfMedia, testing::Values("[0 0 0]", "[0.5 0
 TEST(Media, MixesOfSkinAndPaint) {
   const auto ball = [](const std::string& material) {
     return test::scene_from_text(
-        "LookAt 0 1 3  0 1 0  0 1 0\nCamera \"perspective\" \"float fov\" [28]\n" + film +
-        "WorldBegin\nAttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [6 6 6]\nTranslate 0.5 2.4 1\n"
-        "Shape \"sphere\" \"float radius\" [0.4]\nAttributeEnd\n"
-        "MakeNamedMaterial \"skin\" \"string type\" \"subsurface\" \"rgb sigma_s\" [6 4 3] \"rgb sigma_a\" "
-        "[0.1 0.3 0.6] \"float eta\" [1.3] \"float roughness\" [0.3]\n"
-        "MakeNamedMaterial \"paint\" \"string type\" \"diffuse\" \"rgb reflectance\" [0.2 0.6 0.7]\n"
-        "Material \"diffuse\" \"rgb reflectance\" [0.7 0.7 0.7]\n" +
-        test::patch("-2 0.3 2  2 0.3 2  -2 0.3 -2  2 0.3 -2") + material +
-        "Translate 0 1 0\nShape \"sphere\" \"float radius\" [0.6]\n");
+        R"(LookAt 0 1 3  0 1 0  0 1 0
+Camera "perspective" "float fov" [28]
+)" + film +
+        R"(WorldBegin
+AttributeBegin
+AreaLightSource "diffuse" "rgb L" [6 6 6]
+Translate 0.5 2.4 1
+Shape "sphere" "float radius" [0.4]
+AttributeEnd
+MakeNamedMaterial "skin" "string type" "subsurface" "rgb sigma_s" [6 4 3] "rgb sigma_a" [0.1 0.3 0.6] "float eta" [1.3] "float roughness" [0.3]
+MakeNamedMaterial "paint" "string type" "diffuse" "rgb reflectance" [0.2 0.6 0.7]
+Material "diffuse" "rgb reflectance" [0.7 0.7 0.7]
+)" + test::patch("-2 0.3 2  2 0.3 2  -2 0.3 -2  2 0.3 -2") +
+        material +
+        R"(Translate 0 1 0
+Shape "sphere" "float radius" [0.6]
+)");
   };
   const auto mix = [&](const std::string& amount) {
-    return ball("Material \"mix\" \"string materials\" [\"skin\" \"paint\"] \"float amount\" [" + amount + "]\n");
+    return ball(R"(Material "mix" "string materials" ["skin" "paint"] "float amount" [)" + amount + "]\n");
   };
   const auto picture = [](const Scene& scene) { return test::render_image(scene, options("path", 4)); };
-  EXPECT_EQ(picture(mix("0")).pixels, picture(ball("NamedMaterial \"skin\"\n")).pixels);
-  EXPECT_EQ(picture(mix("1")).pixels, picture(ball("NamedMaterial \"paint\"\n")).pixels);
+  EXPECT_EQ(picture(mix("0")).pixels, picture(ball(R"(NamedMaterial "skin"
+)"))
+                                          .pixels);
+  EXPECT_EQ(picture(mix("1")).pixels, picture(ball(R"(NamedMaterial "paint"
+)"))
+                                          .pixels);
   expect_agreement(mix("0.5"), {"bdpt", "probppm"}, 2);
 }
 

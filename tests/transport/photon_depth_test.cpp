@@ -36,8 +36,11 @@ float gathered(const Scene& scene, int max_depth, int eye_scatterings, ColorMode
 // Ending the same paths earlier by the eye path's number of scatterings yields exactly the same photons.
 TEST(PhotonDepth, EyeAndPhotonTogetherObeyTheLimit) {
   const Scene scene = test::scene_from_text(
-      "WorldBegin\nLightSource \"point\"\nMaterial \"diffuse\" \"rgb reflectance\" [0.99 0.99 0.99]\nShape "
-      "\"sphere\"\n");
+      R"(WorldBegin
+LightSource "point"
+Material "diffuse" "rgb reflectance" [0.99 0.99 0.99]
+Shape "sphere"
+)");
   for (const ColorMode color : {ColorMode::rgb, ColorMode::spectral})
     for (const int max_depth : {3, 63, 64, 65, 200})
       for (const int eye_scatterings : {0, 1, 20, 63}) {

@@ -71,9 +71,9 @@ TEST(PhotonMap, TermsOfDiffuseSurfacesAreLayers) {
 
 // Half of it is found by rays that leave the scene.
 TEST(PhotonMap, LightOfTheSkyIsDirect) {
-  const Scene scene = test::scene_from_text(
-      camera + "LightSource \"infinite\" \"rgb L\" [1 1 1]\nMaterial \"conductor\" \"float roughness\" [0.02]\n" +
-      test::patch("-9 0 -9  9 0 -9  -9 0 9  9 0 9"));
+  const Scene scene = test::scene_from_text(camera + R"(LightSource "infinite" "rgb L" [1 1 1]
+Material "conductor" "float roughness" [0.02]
+)" + test::patch("-9 0 -9  9 0 -9  -9 0 9  9 0 9"));
   EXPECT_GT(mean_of(render_with(scene, "photonmap", 1, "direct")), 0.1);
   EXPECT_EQ(mean_of(render_with(scene, "photonmap", 1, "term.B")), 0);
 }
@@ -109,15 +109,17 @@ double radiance_of_ceiling(double x, double cone_degrees) {
 TEST(NightlyPhotonMap, PrecomputedIrradianceEndsAtTheEdgeOfTheLight) {
   for (const double cone : {10.0, 3.0}) {
     const Scene scene = test::scene_from_text(
-        "LookAt 0 1.5 0  0 3 0  0 0 1\nCamera \"perspective\" \"float fov\" [4]\n"
-        "Film \"rgb\" \"integer xresolution\" [8] \"integer yresolution\" [8]\n"
-        "PixelFilter \"box\" \"float xradius\" [0.5] \"float yradius\" [0.5]\nWorldBegin\n"
-        "LightSource \"spot\" \"rgb I\" [100 100 100] \"point3 from\" [0 2.9 0] \"point3 to\" [0 0 0] "
-        "\"float coneangle\" [" +
+        R"(LookAt 0 1.5 0  0 3 0  0 0 1
+Camera "perspective" "float fov" [4]
+Film "rgb" "integer xresolution" [8] "integer yresolution" [8]
+PixelFilter "box" "float xradius" [0.5] "float yradius" [0.5]
+WorldBegin
+LightSource "spot" "rgb I" [100 100 100] "point3 from" [0 2.9 0] "point3 to" [0 0 0] "float coneangle" [)" +
         std::to_string(cone) +
-        "] \"float conedeltaangle\" [0.001]\n"
-        "Material \"diffuse\" \"rgb reflectance\" [.5 .5 .5]\n" +
-        test::patch("-3 0 -3  3 0 -3  -3 0 3  3 0 3") + test::patch("-3 3 -3  3 3 -3  -3 3 3  3 3 3"));
+        R"(] "float conedeltaangle" [0.001]
+Material "diffuse" "rgb reflectance" [.5 .5 .5]
+)" + test::patch("-3 0 -3  3 0 -3  -3 0 3  3 0 3") +
+        test::patch("-3 3 -3  3 3 -3  -3 3 3  3 3 3"));
     for (const char* integrator :
          {"photonmap", "photonmap:nearest=0", "photonmap:final-gather=cached", "reversephotonmap"}) {
       RenderOptions options = options_of(integrator + std::string(":gather=256"), 1);
@@ -134,12 +136,18 @@ TEST(NightlyPhotonMap, PrecomputedIrradianceEndsAtTheEdgeOfTheLight) {
 // An infinitely thin wall between a lit room and a dark one. The floor ends at the wall.
 TEST(PhotonMap, WallsDoNotLeak) {
   const std::string text =
-      "LookAt 0 1 -3  0 1 0  0 1 0\nCamera \"perspective\" \"float fov\" [30]\n"
-      "Film \"rgb\" \"integer xresolution\" [16] \"integer yresolution\" [16]\nWorldBegin\n"
-      "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [17 12 4]\nTranslate 0 1 1.5\n"
-      "Shape \"sphere\" \"float radius\" [0.2]\nAttributeEnd\nMaterial \"diffuse\" \"rgb reflectance\" [0.7 0.7 "
-      "0.7]\n" +
-      test::patch("-9 -9 0  9 -9 0  -9 9 0  9 9 0") + test::patch("-9 0 0  9 0 0  -9 0 3  9 0 3");
+      R"(LookAt 0 1 -3  0 1 0  0 1 0
+Camera "perspective" "float fov" [30]
+Film "rgb" "integer xresolution" [16] "integer yresolution" [16]
+WorldBegin
+AttributeBegin
+AreaLightSource "diffuse" "rgb L" [17 12 4]
+Translate 0 1 1.5
+Shape "sphere" "float radius" [0.2]
+AttributeEnd
+Material "diffuse" "rgb reflectance" [0.7 0.7 0.7]
+)" + test::patch("-9 -9 0  9 -9 0  -9 9 0  9 9 0") +
+      test::patch("-9 0 0  9 0 0  -9 0 3  9 0 3");
   const Scene scene = test::scene_from_text(text);
   for (const char* integrator : {"photonmap", "photonmap:show=global", "photonmap:nearest=0:max-radius=0.5"}) {
     const Image image = render_with(scene, integrator, 1);
@@ -184,15 +192,20 @@ TEST(PhotonMap, KeptMapsNeedOneSetOfWavelengthsAndOneTime) {
 // Half of the floor's light comes from the eye path and half from the maps, including caustics of a point light.
 TEST(NightlyPhotonMap, SharesOfNarrowLobesAddUp) {
   const Scene scene = test::scene_from_text(
-      "LookAt 0 1 1.4  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [36]\n"
-      "Film \"rgb\" \"integer xresolution\" [32] \"integer yresolution\" [32]\nWorldBegin\n" +
-      box +
-      "LightSource \"point\" \"rgb I\" [1 1 1] \"point3 from\" [0.4 1.6 0.3]\n"
-      "Material \"coateddiffuse\" \"rgb reflectance\" [0.4 0.4 0.4] \"float roughness\" [0.01]\n" +
-      test::patch("-1 0.01 -1  1 0.01 -1  -1 0.01 1  1 0.01 1") +
-      "Material \"conductor\" \"float roughness\" [0.01]\n" +
-      test::patch("-1 0.02 -0.2  1 0.02 -0.2  -1 0.02 1  1 0.02 1") +
-      "Material \"dielectric\" \"float eta\" [1.5]\nTranslate 0 0.4 0\nShape \"sphere\" \"float radius\" [0.3]\n");
+      R"(LookAt 0 1 1.4  0 0 0  0 1 0
+Camera "perspective" "float fov" [36]
+Film "rgb" "integer xresolution" [32] "integer yresolution" [32]
+WorldBegin
+)" + box +
+      R"(LightSource "point" "rgb I" [1 1 1] "point3 from" [0.4 1.6 0.3]
+Material "coateddiffuse" "rgb reflectance" [0.4 0.4 0.4] "float roughness" [0.01]
+)" + test::patch("-1 0.01 -1  1 0.01 -1  -1 0.01 1  1 0.01 1") +
+      R"(Material "conductor" "float roughness" [0.01]
+)" + test::patch("-1 0.02 -0.2  1 0.02 -0.2  -1 0.02 1  1 0.02 1") +
+      R"(Material "dielectric" "float eta" [1.5]
+Translate 0 0.4 0
+Shape "sphere" "float radius" [0.3]
+)");
   const std::string two_passes = "photonmap:nearest=0:caustic-nearest=0:max-radius=0.06:gather=4:irradiance=estimated";
   const auto all_layers = [&](const std::string& integrator) {
     return test::independent_renders(scene, options_of(integrator, 6), 32, 100);
@@ -208,7 +221,8 @@ TEST(NightlyPhotonMap, SharesOfNarrowLobesAddUp) {
 
 // So many gather rays that the map is hardly used, under a sky that continued rays would hit, too.
 TEST(PhotonMap, ShortRaysFindWhatTheMapWouldTell) {
-  const Scene scene = test::scene_from_text(camera + "LightSource \"infinite\" \"rgb L\" [1 1 1]\n" + box);
+  const Scene scene = test::scene_from_text(camera + R"(LightSource "infinite" "rgb L" [1 1 1]
+)" + box);
   const std::vector<Image> expected = runs(scene, "path", 4, "indirect", 100, 32);
   EXPECT_TRUE(test::runs_agree(test::mean_of_means(runs(scene, "photonmap:max-radius=4", 1, "indirect", 200, 24)),
                                test::mean_of_means(expected), 0.005, 0.15));
@@ -217,10 +231,15 @@ TEST(PhotonMap, ShortRaysFindWhatTheMapWouldTell) {
 // Separate caustic paths are another estimate of the same caustics.
 TEST(PhotonMap, CausticPhotonsLeaveTheMean) {
   const Scene scene = test::scene_from_text(
-      "LookAt 0 1 1.4  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [36]\n"
-      "Film \"rgb\" \"integer xresolution\" [32] \"integer yresolution\" [32]\nWorldBegin\n" +
-      box +
-      "Material \"dielectric\" \"float eta\" [1.5]\nTranslate 0 0.4 0\nShape \"sphere\" \"float radius\" [0.3]\n");
+      R"(LookAt 0 1 1.4  0 0 0  0 1 0
+Camera "perspective" "float fov" [36]
+Film "rgb" "integer xresolution" [32] "integer yresolution" [32]
+WorldBegin
+)" + box +
+      R"(Material "dielectric" "float eta" [1.5]
+Translate 0 0.4 0
+Shape "sphere" "float radius" [0.3]
+)");
   // With a fixed radius: the reach of the nearest photons, and so the blur, depends on their number.
   const std::string fixed = "photonmap:gather=1:caustic-nearest=0:max-radius=0.05";
   const std::vector<Image> shared = runs(scene, fixed, 1, "term.C", 100, 32),
@@ -247,11 +266,12 @@ const std::string cached = "photonmap:final-gather=cached:cache-error=0.15:cache
 
 // Also in corners and at the block's edges. Interpolation may change tiles by 1.5 %, the whole by 0.4 %.
 TEST(PhotonMap, CachedGathersLeaveTheMean) {
-  const Scene scene = test::scene_from_text(
-      camera + box + "Translate -0.2 0.3 0\nRotate 20 0 1 0\nMaterial \"diffuse\" \"rgb reflectance\" [0.2 0.5 0.7]\n" +
-      test::patch("-0.3 -0.3 0.3  0.3 -0.3 0.3  -0.3 0.3 0.3  0.3 0.3 0.3") +
-      test::patch("-0.3 0.3 -0.3  0.3 0.3 -0.3  -0.3 0.3 0.3  0.3 0.3 0.3") +
-      test::patch("0.3 -0.3 -0.3  0.3 -0.3 0.3  0.3 0.3 -0.3  0.3 0.3 0.3"));
+  const Scene scene = test::scene_from_text(camera + box + R"(Translate -0.2 0.3 0
+Rotate 20 0 1 0
+Material "diffuse" "rgb reflectance" [0.2 0.5 0.7]
+)" + test::patch("-0.3 -0.3 0.3  0.3 -0.3 0.3  -0.3 0.3 0.3  0.3 0.3 0.3") +
+                                            test::patch("-0.3 0.3 -0.3  0.3 0.3 -0.3  -0.3 0.3 0.3  0.3 0.3 0.3") +
+                                            test::patch("0.3 -0.3 -0.3  0.3 -0.3 0.3  0.3 0.3 -0.3  0.3 0.3 0.3"));
   const std::vector<Image> brute = runs(scene, "photonmap:gather=48", 2, "term.D"),
                            interpolated = runs(scene, cached, 2, "term.D");
   const double rate = test::false_alarm_rate / 28;
@@ -276,13 +296,20 @@ TEST(PhotonMap, CachedGathersLeaveTheMean) {
 
 // Tests cached gathers in mirrors and in motion, in both colour modes, and at a depth at which gather rays end.
 TEST(PhotonMap, CachedGathersBehindMirrors) {
-  const Scene scene = test::scene_from_text(
-      camera + box +
-      "AttributeBegin\nMaterial \"diffuse\" \"rgb reflectance\" [0.2 0.5 0.7]\nActiveTransform StartTime\n"
-      "Translate -0.3 0.4 0\nActiveTransform EndTime\nTranslate -0.1 0.4 0\nActiveTransform All\n"
-      "Shape \"sphere\" \"float radius\" [0.3]\nAttributeEnd\n"
-      "Material \"conductor\" \"float roughness\" [0]\nTranslate 0.5 0.4 -0.2\nShape \"sphere\" \"float radius\" "
-      "[0.4]\n");
+  const Scene scene = test::scene_from_text(camera + box +
+                                            R"(AttributeBegin
+Material "diffuse" "rgb reflectance" [0.2 0.5 0.7]
+ActiveTransform StartTime
+Translate -0.3 0.4 0
+ActiveTransform EndTime
+Translate -0.1 0.4 0
+ActiveTransform All
+Shape "sphere" "float radius" [0.3]
+AttributeEnd
+Material "conductor" "float roughness" [0]
+Translate 0.5 0.4 -0.2
+Shape "sphere" "float radius" [0.4]
+)");
   for (const ColorMode color : {ColorMode::rgb, ColorMode::spectral}) {
     const int depth = color == ColorMode::rgb ? 3 : 6;
     const auto pictures = [&](const std::string& integrator) {
@@ -304,11 +331,16 @@ TEST(PhotonMap, CachedGathersBehindMirrors) {
 // Behind a glass ball, a fifth of `indirect`, and out of focus, where the points seen by a pixel are far apart.
 TEST(PhotonMap, CachedGathersBehindGlassAndOutOfFocus) {
   const Scene scene = test::scene_from_text(
-      "LookAt 0 1 4.4  0 1 0  0 1 0\n"
-      "Camera \"perspective\" \"float fov\" [36] \"float lensradius\" [0.1] \"float focaldistance\" [2.5]\n"
-      "Film \"rgb\" \"integer xresolution\" [24] \"integer yresolution\" [24]\nPixelFilter \"box\"\nWorldBegin\n" +
-      box +
-      "Material \"dielectric\" \"float eta\" [1.5]\nTranslate 0.3 0.7 0.6\nShape \"sphere\" \"float radius\" [0.5]\n");
+      R"(LookAt 0 1 4.4  0 1 0  0 1 0
+Camera "perspective" "float fov" [36] "float lensradius" [0.1] "float focaldistance" [2.5]
+Film "rgb" "integer xresolution" [24] "integer yresolution" [24]
+PixelFilter "box"
+WorldBegin
+)" + box +
+      R"(Material "dielectric" "float eta" [1.5]
+Translate 0.3 0.7 0.6
+Shape "sphere" "float radius" [0.5]
+)");
   const auto pictures = [&](const std::string& integrator, std::uint64_t first_seed) {
     RenderOptions options = options_of(integrator, 2);
     options.max_depth = 6;
@@ -352,15 +384,27 @@ TEST(PhotonMap, RefusesCachesThatCannotBe) {
 
 // A ball above the floor, and its illumination on the right.
 std::string shaded_box(const std::string& light) {
-  return camera + light + "Material \"diffuse\" \"rgb reflectance\" [0.7 0.7 0.7]\n" +
-         test::patch("-1 0 -1  1 0 -1  -1 0 1  1 0 1") + test::patch("-1 0 -1  1 0 -1  -1 2 -1  1 2 -1") +
-         "AttributeBegin\nTranslate 0 0.7 0\nShape \"sphere\" \"float radius\" [0.4]\nAttributeEnd\n";
+  return camera + light + R"(Material "diffuse" "rgb reflectance" [0.7 0.7 0.7]
+)" + test::patch("-1 0 -1  1 0 -1  -1 0 1  1 0 1") +
+         test::patch("-1 0 -1  1 0 -1  -1 2 -1  1 2 -1") +
+         R"(AttributeBegin
+Translate 0 0.7 0
+Shape "sphere" "float radius" [0.4]
+AttributeEnd
+)";
 }
 const std::vector<std::string> lights_of_box{
-    "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [17 12 4]\nTranslate 0.4 1.7 0.3\n"
-    "Shape \"sphere\" \"float radius\" [0.1]\nAttributeEnd\n",
-    "LightSource \"point\" \"point3 from\" [0.4 1.7 0.3]\nLightSource \"point\" \"point3 from\" [-0.4 1.7 0.6]\n",
-    "LightSource \"distant\" \"point3 from\" [1 3 2]\n"};
+    R"(AttributeBegin
+AreaLightSource "diffuse" "rgb L" [17 12 4]
+Translate 0.4 1.7 0.3
+Shape "sphere" "float radius" [0.1]
+AttributeEnd
+)",
+    R"(LightSource "point" "point3 from" [0.4 1.7 0.3]
+LightSource "point" "point3 from" [-0.4 1.7 0.6]
+)",
+    R"(LightSource "distant" "point3 from" [1 3 2]
+)"};
 
 TEST(PhotonMap, ShadowPhotonsSpareShadowRays) {
   for (const std::string& light : lights_of_box) {

@@ -256,11 +256,16 @@ TEST(FirstRadius, IsWiderForPhotonsOfMoreFlux) {
 // glass under this lamp.
 TEST(FirstRadius, IsOneForPhotonsOfEqualFlux) {
   const std::string pane =
-      "Material \"dielectric\"\nShape \"trianglemesh\" \"integer indices\" [0 1 2 1 3 2]\n"
-      "  \"point3 P\" [-0.6 1.9 -0.6  0.6 1.9 -0.6  -0.6 1.9 0.6  0.6 1.9 0.6]\n";
+      R"(Material "dielectric"
+Shape "trianglemesh" "integer indices" [0 1 2 1 3 2]
+  "point3 P" [-0.6 1.9 -0.6  0.6 1.9 -0.6  -0.6 1.9 0.6  0.6 1.9 0.6]
+)";
   for (const bool tilted : {false, true}) {
-    const Scene scene = test::scene_from_text(
-        box + pane + (tilted ? "  \"normal N\" [-0.97 0.25 0  0.97 0.25 0  -0.97 0.25 0  0.97 0.25 0]\n" : ""));
+    const Scene scene =
+        test::scene_from_text(box + pane +
+                              (tilted ? R"(  "normal N" [-0.97 0.25 0  0.97 0.25 0  -0.97 0.25 0  0.97 0.25 0]
+)"
+                                      : ""));
     const RenderPlan plan = test::plan_render(scene, test::options_for("probppm", 1));
     const FirstRadius first = choose_first_radius(plan.job(scene), {RadiusChoice::Kind::pixel}, 10, nullptr, true);
     EXPECT_EQ(first.classes().count() > 1, tilted);
@@ -288,13 +293,19 @@ TEST(FirstRadius, IsSmallAgainstTheScene) {
 // Also in a large world, where a fixed fraction of the scene is as wide as the picture: low walls stand 20 cm apart.
 TEST(FirstRadius, FitsBetweenWhatStandsAround) {
   std::string text =
-      "LookAt 0 2.5 0.5  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [40]\n"
-      "Film \"rgb\" \"integer xresolution\" [256] \"integer yresolution\" [256]\nWorldBegin\n"
-      "AttributeBegin\nAreaLightSource \"diffuse\"\nTranslate 0 200 0\nShape \"sphere\"\nAttributeEnd\n" +
-      test::patch("-400 0 -400  400 0 -400  -400 0 400  400 0 400");
+      R"(LookAt 0 2.5 0.5  0 0 0  0 1 0
+Camera "perspective" "float fov" [40]
+Film "rgb" "integer xresolution" [256] "integer yresolution" [256]
+WorldBegin
+AttributeBegin
+AreaLightSource "diffuse"
+Translate 0 200 0
+Shape "sphere"
+AttributeEnd
+)" + test::patch("-400 0 -400  400 0 -400  -400 0 400  400 0 400");
   for (int i = -15; i <= 15; ++i) {
     const std::string x = std::to_string(0.2 * i);
-    text += "Shape \"bilinearmesh\" \"point3 P\" [" + x + " 0 -3 " + x + " 0 3 " + x + " 0.1 -3 " + x + " 0.1 3]\n";
+    text += R"(Shape "bilinearmesh" "point3 P" [)" + x + " 0 -3 " + x + " 0 3 " + x + " 0.1 -3 " + x + " 0.1 3]\n";
   }
   const Scene scene = test::scene_from_text(text);
   for (const RadiusChoice::Kind kind : {RadiusChoice::Kind::scene, RadiusChoice::Kind::pixel}) {
@@ -307,11 +318,17 @@ TEST(FirstRadius, FitsBetweenWhatStandsAround) {
 // at 16 positions, with nothing between them: a spread of 1.
 TEST(MovingThings, AreSmoothAfterSixteenPasses) {
   const Scene scene = test::scene_from_text(
-      "Film \"rgb\" \"integer xresolution\" [64] \"integer yresolution\" [64]\nPixelFilter \"box\"\n"
-      "Camera \"orthographic\" \"float screenwindow\" [-8 8 -8 8]\nWorldBegin\n"
-      "ActiveTransform StartTime\nTranslate -8 0 1\nActiveTransform EndTime\nTranslate 8 0 1\nActiveTransform All\n"
-      "AreaLightSource \"diffuse\" \"bool twosided\" true\n" +
-      test::patch("-0.12 -9 0  0.12 -9 0  -0.12 9 0  0.12 9 0"));
+      R"(Film "rgb" "integer xresolution" [64] "integer yresolution" [64]
+PixelFilter "box"
+Camera "orthographic" "float screenwindow" [-8 8 -8 8]
+WorldBegin
+ActiveTransform StartTime
+Translate -8 0 1
+ActiveTransform EndTime
+Translate 8 0 1
+ActiveTransform All
+AreaLightSource "diffuse" "bool twosided" true
+)" + test::patch("-0.12 -9 0  0.12 -9 0  -0.12 9 0  0.12 9 0"));
   for (const char* integrator : {"path", "probppm", "sppm", "photonmap", "vcm", "bdpt"}) {
     const Image seen = *select_layer(test::render_image(scene, test::options_for(integrator, 16)), "emission");
     test::Mean columns;
@@ -351,10 +368,14 @@ TEST(StochasticProgressivePhotonMapping, BeatsFixedHitPointsAtEqualPasses) {
 // The error of 16 passes of a method divided by that of path, on a plane of this material under a uniform sky.
 double error_over_path_under_sky(const std::string& method, const std::string& material) {
   const Scene scene = test::scene_from_text(
-      "LookAt 0 1 0  0 0 0.2  0 1 0\nCamera \"perspective\" \"float fov\" [20]\n"
-      "Film \"rgb\" \"integer xresolution\" [32] \"integer yresolution\" [32]\nWorldBegin\n"
-      "LightSource \"infinite\" \"rgb L\" [1 1 1]\nMaterial " +
-      material + " \"rgb reflectance\" [0.5 0.5 0.5]\n" + test::patch("-1 0 1  1 0 1  -1 0 -1  1 0 -1"));
+      R"(LookAt 0 1 0  0 0 0.2  0 1 0
+Camera "perspective" "float fov" [20]
+Film "rgb" "integer xresolution" [32] "integer yresolution" [32]
+WorldBegin
+LightSource "infinite" "rgb L" [1 1 1]
+Material )" +
+      material + R"( "rgb reflectance" [0.5 0.5 0.5]
+)" + test::patch("-1 0 1  1 0 1  -1 0 -1  1 0 -1"));
   RenderOptions options = test::options_for("path", 1024, 11);
   options.color = ColorMode::rgb;
   options.photons = 1000;
@@ -369,11 +390,11 @@ double error_over_path_under_sky(const std::string& method, const std::string& m
 // estimation. Over five seeds the ratios are 1.4 to 1.7 on varnish and .9 to 1.1 on plaster. With next-event estimation
 // alone they were 2.5 and 6, and 12 on varnish when photons had the same share of its wide and narrow lobes.
 TEST(ProbabilisticProgressivePhotonMapping, SeesTheSkyAlmostAsPathTracingDoes) {
-  for (const std::string material : {"\"coateddiffuse\" \"float roughness\" [0]", "\"diffuse\""})
+  for (const std::string material : {R"("coateddiffuse" "float roughness" [0])", R"("diffuse")"})
     EXPECT_TRUE(test::below(error_over_path_under_sky("probppm", material), 2)) << material;
 }
 TEST(PhotonMapping, SeesTheSkyAsPathTracingDoes) {
-  for (const std::string material : {"\"coateddiffuse\" \"float roughness\" [0]", "\"diffuse\""})
+  for (const std::string material : {R"("coateddiffuse" "float roughness" [0])", R"("diffuse")"})
     EXPECT_TRUE(test::below(error_over_path_under_sky("photonmap", material), 1)) << material;
 }
 
@@ -443,16 +464,23 @@ Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-1 0 -1 1 0 -1 
 // Seen from above: fins on the left half of a floor that few photons reach.
 TEST(AutoRadii, ShrinkBesideObstaclesWherePhotonsAreFew) {
   std::string text =
-      "LookAt 0 4 0  0 0 0  0 0 -1\nCamera \"perspective\" \"float fov\" [28]\n"
-      "Film \"rgb\" \"integer xresolution\" [32] \"integer yresolution\" [32]\nPixelFilter \"box\"\nWorldBegin\n"
-      "LightSource \"point\" \"rgb I\" [4 4 4] \"point3 from\" [0 1.5 0]\n"
-      "Material \"diffuse\" \"rgb reflectance\" [0.7 0.7 0.7]\n" +
-      test::quad("-1 0 1  1 0 1  1 0 -1  -1 0 -1");
+      R"(LookAt 0 4 0  0 0 0  0 0 -1
+Camera "perspective" "float fov" [28]
+Film "rgb" "integer xresolution" [32] "integer yresolution" [32]
+PixelFilter "box"
+WorldBegin
+LightSource "point" "rgb I" [4 4 4] "point3 from" [0 1.5 0]
+Material "diffuse" "rgb reflectance" [0.7 0.7 0.7]
+)" + test::quad("-1 0 1  1 0 1  1 0 -1  -1 0 -1");
   for (int i = 1; i < 10; ++i) text += test::quad(fmt::format("{0} 0 1  {0} 0 -1  {0} 0.05 -1  {0} 0.05 1", i / 10.0));
   // Glass, so that `auto` merges everywhere.
   text +=
-      "AttributeBegin\nMaterial \"dielectric\"\nTranslate 1.5 1 0\nShape \"sphere\" \"float radius\" "
-      "[0.1]\nAttributeEnd\n";
+      R"(AttributeBegin
+Material "dielectric"
+Translate 1.5 1 0
+Shape "sphere" "float radius" [0.1]
+AttributeEnd
+)";
   const Scene scene = test::scene_from_text(text);
   RenderOptions options = test::options_for("auto", 16);
   options.photons = 1000;

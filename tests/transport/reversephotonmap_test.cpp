@@ -20,10 +20,10 @@ namespace {
 const std::string box = test::camera + test::box;
 // Shading normals far from the facets', a translucent sheet, and a hair.
 const std::string shapes =
-    "Shape \"trianglemesh\" \"point3 P\" [0 0 0  1 0 0  0 1 0.5] \"normal N\" [0 0 1  0.7 0 0.7  0 0.7 0.7]\n"
-    "Shape \"curve\" \"float width\" [0.2] \"point3 P\" [-0.5 0.1 0.4  -0.4 0.5 0.4  0 0.6 0.4  0.4 0.5 0.4]\n"
-    "Material \"diffusetransmission\" \"rgb reflectance\" [0.4 0.2 0.2] \"rgb transmittance\" [0.3 0.3 0.3]\n" +
-    test::patch("-0.8 0.3 0.2  -0.2 0.3 0.2  -0.8 1 0.3  -0.2 1 0.3");
+    R"(Shape "trianglemesh" "point3 P" [0 0 0  1 0 0  0 1 0.5] "normal N" [0 0 1  0.7 0 0.7  0 0.7 0.7]
+Shape "curve" "float width" [0.2] "point3 P" [-0.5 0.1 0.4  -0.4 0.5 0.4  0 0.6 0.4  0.4 0.5 0.4]
+Material "diffusetransmission" "rgb reflectance" [0.4 0.2 0.2] "rgb transmittance" [0.3 0.3 0.3]
+)" + test::patch("-0.8 0.3 0.2  -0.2 0.3 0.2  -0.8 1 0.3  -0.2 1 0.3");
 
 RenderOptions options_of(const std::string& integrator, ColorMode color, std::uint64_t passes = 1) {
   RenderOptions options = test::options_for(integrator, passes, 3);
@@ -97,11 +97,14 @@ TEST(ReversePhotonMap, MemoryIsNotInThePicture) {
 // floor has no edges at which light could be lost: light spread beyond the lit part is still on it.
 TEST(ReversePhotonMap, RadiiSpreadAllLight) {
   const Scene scene = test::scene_from_text(
-      "LookAt 0 4 0.1  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [90]\n"
-      "Film \"rgb\" \"integer xresolution\" [16] \"integer yresolution\" [16]\nWorldBegin\n"
-      "LightSource \"spot\" \"rgb I\" [9 9 9] \"point3 from\" [0 2 0] \"point3 to\" [0 0 0] \"float coneangle\" [30]\n"
-      "Material \"diffuse\" \"rgb reflectance\" [0.7 0.7 0.7]\n" +
-      test::patch("-9 0 -9  9 0 -9  -9 0 9  9 0 9") + test::patch("-9 9 -9  9 9 -9  -9 9 9  9 9 9"));
+      R"(LookAt 0 4 0.1  0 0 0  0 1 0
+Camera "perspective" "float fov" [90]
+Film "rgb" "integer xresolution" [16] "integer yresolution" [16]
+WorldBegin
+LightSource "spot" "rgb I" [9 9 9] "point3 from" [0 2 0] "point3 to" [0 0 0] "float coneangle" [30]
+Material "diffuse" "rgb reflectance" [0.7 0.7 0.7]
+)" + test::patch("-9 0 -9  9 0 -9  -9 0 9  9 0 9") +
+      test::patch("-9 9 -9  9 9 -9  -9 9 9  9 9 9"));
   const std::vector<Image> fixed = runs(scene, "reversephotonmap:nearest=0:max-radius=0.05:gather=64", 1, "term.D");
   EXPECT_GT(test::mean_of_means(fixed).mean(), 1e-4);
   for (const char* radii : {"nearest", "leaf"}) {

@@ -22,8 +22,12 @@ namespace lanthorn::shading_normals_test {
 namespace {
 
 const std::string film =
-    "Film \"rgb\" \"integer xresolution\" [16] \"integer yresolution\" [16]\nPixelFilter \"box\"\nWorldBegin\n";
-const std::string white_sky = "LightSource \"infinite\" \"rgb L\" [1 1 1]\n";
+    R"(Film "rgb" "integer xresolution" [16] "integer yresolution" [16]
+PixelFilter "box"
+WorldBegin
+)";
+const std::string white_sky = R"(LightSource "infinite" "rgb L" [1 1 1]
+)";
 
 const std::array<Vec3, 12> ball_corners = [] {
   const float a = 0.52573111f, b = 0.85065081f;
@@ -40,7 +44,7 @@ std::string triangle(const std::array<Vec3, 3>& corners, const std::array<Vec3, 
   std::string points, directions;
   for (const Vec3& p : corners) points += fmt::format("{} {} {} ", p.x, p.y, p.z);
   for (const Vec3& n : normals) directions += fmt::format("{} {} {} ", n.x, n.y, n.z);
-  return "Shape \"trianglemesh\" \"point3 P\" [" + points + "] \"normal N\" [" + directions + "]\n";
+  return R"(Shape "trianglemesh" "point3 P" [)" + points + R"(] "normal N" [)" + directions + "]\n";
 }
 
 // An icosahedron whose normals are those of its circumscribed sphere.
@@ -100,12 +104,14 @@ TEST(ShadingNormals, NothingPassesAnOpaqueSmoothBall) {
 }
 
 TEST(ShadingNormals, NothingPassesWallsOfAnyOpaqueMaterial) {
-  const std::string camera = "LookAt 0 0 1.9  0.3 0.2 0  0 1 0\nCamera \"perspective\" \"float fov\" [80]\n";
+  const std::string camera = R"(LookAt 0 0 1.9  0.3 0.2 0  0 1 0
+Camera "perspective" "float fov" [80]
+)";
   for (const char* material :
-       {"\"diffuse\" \"rgb reflectance\" [.8 .8 .8]", "\"coateddiffuse\" \"float roughness\" [0]",
-        "\"coateddiffuse\" \"float roughness\" [.3]", "\"conductor\" \"float roughness\" [.3]",
-        "\"coatedconductor\" \"float interface.roughness\" [.2]", "\"conductor\" \"float roughness\" [0]",
-        "\"diffusetransmission\" \"rgb reflectance\" [.8 .8 .8] \"rgb transmittance\" [0 0 0]"}) {
+       {R"("diffuse" "rgb reflectance" [.8 .8 .8])", R"("coateddiffuse" "float roughness" [0])",
+        R"("coateddiffuse" "float roughness" [.3])", R"("conductor" "float roughness" [.3])",
+        R"("coatedconductor" "float interface.roughness" [.2])", R"("conductor" "float roughness" [0])",
+        R"("diffusetransmission" "rgb reflectance" [.8 .8 .8] "rgb transmittance" [0 0 0])"}) {
     const Scene scene =
         test::scene_from_text(camera + film + white_sky + rough_room("Material " + std::string(material) + "\n"));
     for (const char* method : {"path", "light", "vcm"})
@@ -116,19 +122,23 @@ TEST(ShadingNormals, NothingPassesWallsOfAnyOpaqueMaterial) {
 // Cached gathering draws directions of the hemisphere of the shading normal. Outside, the sun lights a floor.
 TEST(ShadingNormals, NothingPassesWallsWhereGathersAreCached) {
   const Scene scene = test::scene_from_text(
-      "LookAt 0 0 1.9  0.3 0.2 0  0 1 0\nCamera \"perspective\" \"float fov\" [80]\n" + film +
-      "LightSource \"distant\" \"point3 from\" [0 1 0] \"point3 to\" [0 0 0] \"rgb L\" [1 1 1]\n" +
-      rough_room("Material \"diffuse\" \"rgb reflectance\" [.8 .8 .8]\n") +
-      test::patch("-40 -9 -40  40 -9 -40  -40 -9 40  40 -9 40"));
+      R"(LookAt 0 0 1.9  0.3 0.2 0  0 1 0
+Camera "perspective" "float fov" [80]
+)" + film +
+      R"(LightSource "distant" "point3 from" [0 1 0] "point3 to" [0 0 0] "rgb L" [1 1 1]
+)" + rough_room(R"(Material "diffuse" "rgb reflectance" [.8 .8 .8]
+)") + test::patch("-40 -9 -40  40 -9 -40  -40 -9 40  40 -9 40"));
   EXPECT_LT(mean_by(scene, "photonmap:final-gather=cached", 1), rounding);
 }
 
 // Light of photons on tilted facets: of their irradiance, and of cached gathers.
 TEST(ShadingNormals, PhotonMapsSeeARoughRoomAsPathsDo) {
-  const Scene scene =
-      test::scene_from_text("LookAt 0 0 1.9  0.3 0.2 0  0 1 0\nCamera \"perspective\" \"float fov\" [80]\n" + film +
-                            "LightSource \"point\" \"point3 from\" [.2 .3 0] \"rgb I\" [3 3 3]\n" +
-                            rough_room("Material \"diffuse\" \"rgb reflectance\" [.6 .6 .6]\n"));
+  const Scene scene = test::scene_from_text(R"(LookAt 0 0 1.9  0.3 0.2 0  0 1 0
+Camera "perspective" "float fov" [80]
+)" + film +
+                                            R"(LightSource "point" "point3 from" [.2 .3 0] "rgb I" [3 3 3]
+)" + rough_room(R"(Material "diffuse" "rgb reflectance" [.6 .6 .6]
+)"));
   const auto found = [&](const std::string& integrator, std::uint64_t passes) {
     RenderOptions options = test::options_for(integrator, passes);
     options.photons = 20000;
@@ -155,8 +165,12 @@ TEST(ShadingNormals, NothingPassesAWallThatTheSmoothSurfacePierces) {
     return text;
   };
   const Scene scene = test::scene_from_text(
-      "LookAt -2 0 .02  0 0 0  0 0 1\nCamera \"perspective\" \"float fov\" [20]\n" + film + white_sky +
-      "Material \"diffuse\" \"rgb reflectance\" [.8 .8 .8]\n" + box(3, 3, -0.5f, 0.05f) +
+      R"(LookAt -2 0 .02  0 0 0  0 0 1
+Camera "perspective" "float fov" [20]
+)" + film +
+      white_sky +
+      R"(Material "diffuse" "rgb reflectance" [.8 .8 .8]
+)" + box(3, 3, -0.5f, 0.05f) +
       triangle({Vec3(-1, -1, 0), Vec3(1, -1, 0), Vec3(0, 1, 0)}, {Vec3(-1, -1, 1), Vec3(1, -1, 1), Vec3(0, 1, 1)}));
   // The radius of photons is wider than the gap.
   for (const char* method : {"path", "light", "bdpt", "mlt"}) EXPECT_LT(mean_by(scene, method), rounding) << method;
@@ -165,9 +179,12 @@ TEST(ShadingNormals, NothingPassesAWallThatTheSmoothSurfacePierces) {
 // All light from a white sky that falls on a white convex body comes back.
 TEST(ShadingNormals, AWhiteConvexBodyLooksLikeTheWhiteSky) {
   const std::string camera =
-      "LookAt 2 3 5  0 0 0  0 1 0\nCamera \"orthographic\" \"float screenwindow\" [-1.1 1.1 -1.1 1.1]\n";
+      R"(LookAt 2 3 5  0 0 0  0 1 0
+Camera "orthographic" "float screenwindow" [-1.1 1.1 -1.1 1.1]
+)";
   const Scene scene = test::scene_from_text(camera + film + white_sky +
-                                            "Material \"diffuse\" \"rgb reflectance\" [1 1 1]\n" + smooth_ball());
+                                            R"(Material "diffuse" "rgb reflectance" [1 1 1]
+)" + smooth_ball());
   for (const char* method : {"path", "bdpt", "vcm", "auto", "sppm"}) {
     RenderOptions options = test::options_for(method, 16);
     options.photons = 20000;

@@ -28,11 +28,17 @@ double mean_fresnel(float eta) {
 // An orthographic view of a ball that just fits into the film, under a white sky.
 Scene ball_of(const std::string& material, const std::string& integrator = "") {
   return test::scene_from_text(
-      "LookAt 0 0 5  0 0 0  0 1 0\nCamera \"orthographic\" \"float screenwindow\" [-1 1 -1 1]\n"
-      "Film \"rgb\" \"integer xresolution\" 8 \"integer yresolution\" 8\n"
-      "PixelFilter \"box\" \"float xradius\" .5 \"float yradius\" .5\n" +
-      integrator + "WorldBegin\nLightSource \"infinite\" \"rgb L\" [1 1 1]\nMaterial \"subsurface\" " + material +
-      " Shape \"sphere\"\n");
+      R"(LookAt 0 0 5  0 0 0  0 1 0
+Camera "orthographic" "float screenwindow" [-1 1 -1 1]
+Film "rgb" "integer xresolution" 8 "integer yresolution" 8
+PixelFilter "box" "float xradius" .5 "float yradius" .5
+)" + integrator +
+      R"(WorldBegin
+LightSource "infinite" "rgb L" [1 1 1]
+Material "subsurface" )" +
+      material +
+      R"( Shape "sphere"
+)");
 }
 
 // Mean of its picture if the ball reflects the part ρ of the light that enters it.
@@ -61,8 +67,8 @@ TEST(Subsurface, HasTheReflectanceThatTheFileSays) {
   for (const auto& [eta, g, reflectance] :
        {Case{1.33f, 0, .5f}, Case{1.33f, 0, .9f}, Case{1.5f, .7f, .6f}, Case{1.8f, -.3f, .3f}}) {
     const std::string r = std::to_string(reflectance);
-    const Scene scene = ball_of("\"float mfp\" .002 \"rgb reflectance\" [" + r + ' ' + r + ' ' + r +
-                                "] \"float eta\" " + std::to_string(eta) + " \"float g\" " + std::to_string(g));
+    const Scene scene = ball_of(R"("float mfp" .002 "rgb reflectance" [)" + r + ' ' + r + ' ' + r +
+                                R"(] "float eta" )" + std::to_string(eta) + R"( "float g" )" + std::to_string(g));
     EXPECT_TRUE(test::runs_agree(mean(scene, options("path", 16)), mean_of_ball(eta, static_cast<double>(reflectance)),
                                  .004, .05, test::false_alarm_rate / 4))
         << reflectance;
@@ -72,9 +78,9 @@ TEST(Subsurface, HasTheReflectanceThatTheFileSays) {
 // The file's limit does not cut a passage short: light scatters some 50 times in this ball, but a passage counts once.
 // Nor does the user's own limit.
 TEST(Subsurface, PassagesCountOnce) {
-  const std::string white = "\"rgb sigma_s\" [9 9 9] \"rgb sigma_a\" [0 0 0]";
+  const std::string white = R"("rgb sigma_s" [9 9 9] "rgb sigma_a" [0 0 0])";
   for (const int depth : {1, 5}) {
-    const Scene scene = ball_of(white, "Integrator \"volpath\" \"integer maxdepth\" " + std::to_string(depth) + "\n");
+    const Scene scene = ball_of(white, R"(Integrator "volpath" "integer maxdepth" )" + std::to_string(depth) + "\n");
     EXPECT_TRUE(test::runs_agree(mean(scene, options("path", 16)), 1, .001, .03, test::false_alarm_rate / 3)) << depth;
   }
   RenderOptions o = options("path", 16);
@@ -88,17 +94,25 @@ class SubsurfaceDepth : public testing::TestWithParam<int> {};
 
 TEST_P(SubsurfaceDepth, IsTheSameForAllMethods) {
   const Scene scene = test::scene_from_text(
-      "LookAt 0 1.2 3  0 .5 0  0 1 0\nCamera \"perspective\" \"float fov\" 40\n"
-      "Film \"rgb\" \"integer xresolution\" 8 \"integer yresolution\" 8\n"
-      "PixelFilter \"box\" \"float xradius\" .5 \"float yradius\" .5\nWorldBegin\n"
-      "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [6 6 6]\nTranslate .6 2.4 .6\n"
-      "Shape \"sphere\" \"float radius\" .5\nAttributeEnd\n"
-      "Material \"diffuse\" \"rgb reflectance\" [.7 .7 .7]\n" +
-      test::patch("-2 0 2  2 0 2  -2 0 -2  2 0 -2") +
-      "MakeNamedMaterial \"wax\" \"string type\" \"subsurface\" \"rgb sigma_s\" [4 4 4] \"rgb sigma_a\" [.1 .1 .1] "
-      "\"float eta\" 1.3 \"float roughness\" .4 \"bool remaproughness\" false\n"
-      "Translate 0 .6 0\nNamedMaterial \"wax\"\nShape \"sphere\" \"float radius\" .6\n"
-      "Material \"diffuse\" \"rgb reflectance\" [.8 .4 .2]\nShape \"sphere\" \"float radius\" .2\n");
+      R"(LookAt 0 1.2 3  0 .5 0  0 1 0
+Camera "perspective" "float fov" 40
+Film "rgb" "integer xresolution" 8 "integer yresolution" 8
+PixelFilter "box" "float xradius" .5 "float yradius" .5
+WorldBegin
+AttributeBegin
+AreaLightSource "diffuse" "rgb L" [6 6 6]
+Translate .6 2.4 .6
+Shape "sphere" "float radius" .5
+AttributeEnd
+Material "diffuse" "rgb reflectance" [.7 .7 .7]
+)" + test::patch("-2 0 2  2 0 2  -2 0 -2  2 0 -2") +
+      R"(MakeNamedMaterial "wax" "string type" "subsurface" "rgb sigma_s" [4 4 4] "rgb sigma_a" [.1 .1 .1] "float eta" 1.3 "float roughness" .4 "bool remaproughness" false
+Translate 0 .6 0
+NamedMaterial "wax"
+Shape "sphere" "float radius" .6
+Material "diffuse" "rgb reflectance" [.8 .4 .2]
+Shape "sphere" "float radius" .2
+)");
   const auto found = [&](const std::string& integrator, std::uint64_t passes, std::uint64_t first_seed) {
     RenderOptions o = options(integrator, passes);
     o.max_depth = GetParam();

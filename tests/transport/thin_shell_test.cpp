@@ -17,16 +17,24 @@ namespace {
 // A black lamp between two discs, such as one close below a ceiling without thickness; the camera sees the middle of
 // the front disc from outside. The discs face the same way, unless `turns_front` turns the front one away.
 std::string two_sheets(const std::string& turns_front) {
-  return "LookAt 0 0 -3  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [12]\n"
-         "Film \"rgb\" \"integer xresolution\" [16] \"integer yresolution\" [16]\nWorldBegin\n"
-         "Material \"diffuse\" \"rgb reflectance\" [0.8 0.8 0.8]\n"
-         "AttributeBegin\n" +
-         turns_front +
-         "Shape \"disk\" \"float radius\" [1]\nAttributeEnd\n"
-         "AttributeBegin\nTranslate 0 0 0.01\nShape \"disk\" \"float radius\" [1]\nAttributeEnd\n"
-         "AreaLightSource \"diffuse\" \"rgb L\" [1000 1000 1000]\n"
-         "Material \"diffuse\" \"rgb reflectance\" [0 0 0]\nTranslate 0 0 0.005\n"
-         "Shape \"sphere\" \"float radius\" [0.004]\n";
+  return R"(LookAt 0 0 -3  0 0 0  0 1 0
+Camera "perspective" "float fov" [12]
+Film "rgb" "integer xresolution" [16] "integer yresolution" [16]
+WorldBegin
+Material "diffuse" "rgb reflectance" [0.8 0.8 0.8]
+AttributeBegin
+)" + turns_front +
+         R"(Shape "disk" "float radius" [1]
+AttributeEnd
+AttributeBegin
+Translate 0 0 0.01
+Shape "disk" "float radius" [1]
+AttributeEnd
+AreaLightSource "diffuse" "rgb L" [1000 1000 1000]
+Material "diffuse" "rgb reflectance" [0 0 0]
+Translate 0 0 0.005
+Shape "sphere" "float radius" [0.004]
+)";
 }
 
 void set_radius(RenderOptions& options, const std::string& integrator, const std::string& radius) {
@@ -54,15 +62,22 @@ TEST(ThinShell, HalvesOfAFloorMayFaceEitherWay) {
   const auto floor = [](const char* of_right) {
     const auto half = [](const char* from, const char* to, const std::string& normal) {
       const std::string x0 = from, x1 = to;
-      return "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point3 P\" [" + x0 + " 0 -4 " + x1 + " 0 -4 " +
-             x1 + " 0 4 " + x0 + " 0 4] \"normal N\" [" + normal + normal + normal + normal + "]\n";
+      return R"(Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [)" + x0 + " 0 -4 " + x1 + " 0 -4 " +
+             x1 + " 0 4 " + x0 + R"( 0 4] "normal N" [)" + normal + normal + normal + normal + "]\n";
     };
-    return "LookAt 1.5 1.5 0  0 0 0  0 0 1\nCamera \"perspective\" \"float fov\" [12]\n"
-           "Film \"rgb\" \"integer xresolution\" [16] \"integer yresolution\" [16]\nWorldBegin\n"
-           "Material \"diffuse\" \"rgb reflectance\" [0.8 0.8 0.8]\nAttributeBegin\n"
-           "LightSource \"spot\" \"rgb I\" [20 20 20] \"point3 from\" [0 1 0] \"point3 to\" [0 2 0]\n"
-           "Translate 0 2 0\nRotate 90 1 0 0\nShape \"disk\" \"float radius\" [0.5]\nAttributeEnd\n" +
-           half("-4", "0", "0 1 0 ") + half("0", "4", of_right);
+    return R"(LookAt 1.5 1.5 0  0 0 0  0 0 1
+Camera "perspective" "float fov" [12]
+Film "rgb" "integer xresolution" [16] "integer yresolution" [16]
+WorldBegin
+Material "diffuse" "rgb reflectance" [0.8 0.8 0.8]
+AttributeBegin
+LightSource "spot" "rgb I" [20 20 20] "point3 from" [0 1 0] "point3 to" [0 2 0]
+Translate 0 2 0
+Rotate 90 1 0 0
+Shape "disk" "float radius" [0.5]
+AttributeEnd
+)" + half("-4", "0", "0 1 0 ") +
+           half("0", "4", of_right);
   };
   for (const std::string integrator : {"probppm", "vcm", "photonmap"}) {
     RenderOptions options = test::options_for(integrator, 1);

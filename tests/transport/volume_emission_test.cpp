@@ -15,8 +15,9 @@ namespace lanthorn::volume_emission_test {
 namespace {
 
 const std::string film =
-    "Film \"rgb\" \"integer xresolution\" [8] \"integer yresolution\" [8]\n"
-    "PixelFilter \"box\" \"float xradius\" [0.5] \"float yradius\" [0.5]\n";
+    R"(Film "rgb" "integer xresolution" [8] "integer yresolution" [8]
+PixelFilter "box" "float xradius" [0.5] "float yradius" [0.5]
+)";
 
 RenderOptions options(const std::string& integrator, std::uint64_t passes, std::uint64_t photons = 20'000) {
   RenderOptions o = test::options_for(integrator, passes, 1);
@@ -34,13 +35,19 @@ RenderOptions options(const std::string& integrator, std::uint64_t passes, std::
 TEST(VolumeEmission, ThinBallLightsThePlane) {
   const double height = 2, radius = 0.2, emission = 100, reflectance = 0.6, pi_d = 3.14159265358979;
   const Scene scene = test::scene_from_text(
-      "LookAt 0 1 0  0 0 0  0 0 1\nCamera \"orthographic\" \"float screenwindow\" [-0.5 0.5 -0.5 0.5]\n" + film +
-      "WorldBegin\nMakeNamedMedium \"flame\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [1e-4 1e-4 1e-4] "
-      "\"rgb sigma_s\" [0 0 0] \"rgb Le\" [1e6 1e6 1e6]\n"
-      "AttributeBegin\nMediumInterface \"flame\" \"\"\nMaterial \"interface\"\nTranslate 0 2 0\n"
-      "Shape \"sphere\" \"float radius\" [0.2]\nAttributeEnd\n"
-      "Material \"diffuse\" \"rgb reflectance\" [0.6 0.6 0.6]\n" +
-      test::patch("-1 0 1  1 0 1  -1 0 -1  1 0 -1"));
+      R"(LookAt 0 1 0  0 0 0  0 0 1
+Camera "orthographic" "float screenwindow" [-0.5 0.5 -0.5 0.5]
+)" + film +
+      R"(WorldBegin
+MakeNamedMedium "flame" "string type" "homogeneous" "rgb sigma_a" [1e-4 1e-4 1e-4] "rgb sigma_s" [0 0 0] "rgb Le" [1e6 1e6 1e6]
+AttributeBegin
+MediumInterface "flame" ""
+Material "interface"
+Translate 0 2 0
+Shape "sphere" "float radius" [0.2]
+AttributeEnd
+Material "diffuse" "rgb reflectance" [0.6 0.6 0.6]
+)" + test::patch("-1 0 1  1 0 1  -1 0 -1  1 0 -1"));
   const double volume = 4 / 3.0 * pi_d * std::pow(radius, 3);
   double expected = 0;
   constexpr int steps = 64;
@@ -73,23 +80,29 @@ void expect_agreement(const Scene& scene, const std::vector<std::string>& integr
   }
 }
 
-const std::string room = "Material \"diffuse\" \"rgb reflectance\" [0.7 0.6 0.8]\n" +
-                         test::patch("-1 0 1  1 0 1  -1 0 -1  1 0 -1") + test::patch("-1 2 1  1 2 1  -1 2 -1  1 2 -1") +
+const std::string room = R"(Material "diffuse" "rgb reflectance" [0.7 0.6 0.8]
+)" + test::patch("-1 0 1  1 0 1  -1 0 -1  1 0 -1") +
+                         test::patch("-1 2 1  1 2 1  -1 2 -1  1 2 -1") +
                          test::patch("-1 0 -1  1 0 -1  -1 2 -1  1 2 -1");
-const std::string camera = "LookAt 0 0.4 3  0 0.4 0  0 1 0\nCamera \"perspective\" \"float fov\" [14]\n";
+const std::string camera = R"(LookAt 0 0.4 3  0 0.4 0  0 1 0
+Camera "perspective" "float fov" [14]
+)";
 
 // A thick coloured ball that scatters and emits, above the view. Half of it lies in another ball that only absorbs.
 TEST(NightlyVolumeEmission, BallInARoom) {
-  const Scene scene = test::scene_from_text(
-      camera + film +
-      "WorldBegin\nMakeNamedMedium \"flame\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [0.5 1 2] "
-      "\"rgb sigma_s\" [1 2 0.5] \"float g\" [0.4] \"rgb Le\" [6 4 3]\n"
-      "MakeNamedMedium \"smoke\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [0.3 0.2 0.1] \"rgb sigma_s\" [0 0 "
-      "0]\n"
-      "AttributeBegin\nTranslate 0.1 1.3 0\nMaterial \"interface\"\n"
-      "MediumInterface \"flame\" \"smoke\"\nShape \"sphere\" \"float radius\" [0.3]\n"
-      "MediumInterface \"smoke\" \"\"\nShape \"sphere\" \"float radius\" [0.4]\nAttributeEnd\n" +
-      room);
+  const Scene scene = test::scene_from_text(camera + film +
+                                            R"(WorldBegin
+MakeNamedMedium "flame" "string type" "homogeneous" "rgb sigma_a" [0.5 1 2] "rgb sigma_s" [1 2 0.5] "float g" [0.4] "rgb Le" [6 4 3]
+MakeNamedMedium "smoke" "string type" "homogeneous" "rgb sigma_a" [0.3 0.2 0.1] "rgb sigma_s" [0 0 0]
+AttributeBegin
+Translate 0.1 1.3 0
+Material "interface"
+MediumInterface "flame" "smoke"
+Shape "sphere" "float radius" [0.3]
+MediumInterface "smoke" ""
+Shape "sphere" "float radius" [0.4]
+AttributeEnd
+)" + room);
   EXPECT_EQ(scene.lights().size(), 1u);
   EXPECT_FALSE(scene.has_unlit_emission());
   expect_agreement(
@@ -98,15 +111,21 @@ TEST(NightlyVolumeEmission, BallInARoom) {
 
 // A flame above a ball of glass, both above the view: its caustic on the floor, which every method can find.
 TEST(VolumeEmission, CausticOfAFlame) {
-  const Scene scene = test::scene_from_text(
-      camera + film +
-      "WorldBegin\nAttributeBegin\nTranslate 0.2 1.62 0\nMakeNamedMedium \"flame\" \"string type\" \"uniformgrid\" "
-      "\"point3 p0\" [-0.2 -0.3 -0.2] \"point3 p1\" [0.2 0.3 0.2] \"integer nx\" 1 \"integer ny\" 3 \"integer nz\" 2 "
-      "\"float density\" [1 2 0 3 0.5 0] \"rgb sigma_a\" [1 1 2] \"rgb sigma_s\" [0.5 0.2 0.1] \"rgb Le\" [60 30 10]\n"
-      "MediumInterface \"flame\" \"\"\nMaterial \"interface\"\nShape \"sphere\" \"float radius\" [0.37]\nAttributeEnd\n"
-      "AttributeBegin\nMaterial \"dielectric\"\nTranslate 0.1 1 0.1\nShape \"sphere\" \"float radius\" [0.22]\n"
-      "AttributeEnd\n" +
-      room);
+  const Scene scene = test::scene_from_text(camera + film +
+                                            R"(WorldBegin
+AttributeBegin
+Translate 0.2 1.62 0
+MakeNamedMedium "flame" "string type" "uniformgrid" "point3 p0" [-0.2 -0.3 -0.2] "point3 p1" [0.2 0.3 0.2] "integer nx" 1 "integer ny" 3 "integer nz" 2 "float density" [1 2 0 3 0.5 0] "rgb sigma_a" [1 1 2] "rgb sigma_s" [0.5 0.2 0.1] "rgb Le" [60 30 10]
+MediumInterface "flame" ""
+Material "interface"
+Shape "sphere" "float radius" [0.37]
+AttributeEnd
+AttributeBegin
+Material "dielectric"
+Translate 0.1 1 0.1
+Shape "sphere" "float radius" [0.22]
+AttributeEnd
+)" + room);
   expect_agreement(scene, {"light", "bdpt", "vcm", "probppm", "sppm", "photonmap"}, 2, {"color", "caustic"});
 }
 
@@ -114,11 +133,14 @@ TEST(VolumeEmission, CausticOfAFlame) {
 // gathering the photons of other lights.
 TEST(VolumeEmission, FogWithoutEndIsFoundByEyePaths) {
   const Scene scene = test::scene_from_text(
-      "MediumInterface \"\" \"fog\"\n" + camera + film +
-      "WorldBegin\nMakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [0.1 0.1 0.2] "
-      "\"rgb sigma_s\" [0.1 0.2 0.1] \"rgb Le\" [1 2 3]\nMediumInterface \"\" \"fog\"\n"
-      "LightSource \"point\" \"rgb I\" [2 2 2] \"point3 from\" [0 1.5 0]\n" +
-      room);
+      R"(MediumInterface "" "fog"
+)" + camera +
+      film +
+      R"(WorldBegin
+MakeNamedMedium "fog" "string type" "homogeneous" "rgb sigma_a" [0.1 0.1 0.2] "rgb sigma_s" [0.1 0.2 0.1] "rgb Le" [1 2 3]
+MediumInterface "" "fog"
+LightSource "point" "rgb I" [2 2 2] "point3 from" [0 1.5 0]
+)" + room);
   EXPECT_EQ(scene.lights().size(), 1u);
   EXPECT_TRUE(scene.has_unlit_emission());
   expect_agreement(scene, {"light", "bdpt", "vcm", "auto", "probppm", "photonmap"}, 1, {"color", "media"});

@@ -107,11 +107,12 @@ double radius_for(VolumeEstimator estimator) {
 void Volume::expect_point_light() {
   const double sigma_s = 0.5, sigma_t = 0.7, g = 0.3, intensity = 2, half = 1.5;
   const Scene scene = test::scene_from_text(
-      "WorldBegin\nMakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [0.9 0.2 0] "
-      "\"rgb sigma_s\" [0.1 0.5 1] \"float g\" 0.3\n"
-      "AttributeBegin MediumInterface \"\" \"fog\" LightSource \"point\" \"rgb I\" [2 2 2] AttributeEnd\n"
-      "MediumInterface \"fog\" \"\" Material \"interface\" Shape \"sphere\" \"float radius\" 2.5\n"
-      "Material \"diffuse\" Shape \"sphere\" \"float radius\" 9\n");
+      R"(WorldBegin
+MakeNamedMedium "fog" "string type" "homogeneous" "rgb sigma_a" [0.9 0.2 0] "rgb sigma_s" [0.1 0.5 1] "float g" 0.3
+AttributeBegin MediumInterface "" "fog" LightSource "point" "rgb I" [2 2 2] AttributeEnd
+MediumInterface "fog" "" Material "interface" Shape "sphere" "float radius" 2.5
+Material "diffuse" Shape "sphere" "float radius" 9
+)");
   const test::Mean found = single_scattering(
       scene, estimator(), MediumId{1}, static_cast<float>(radius_for(estimator())), [&](HashRng& rng) {
         const Direction d = sample_uniform_sphere(rng.next2());
@@ -145,14 +146,14 @@ INSTANTIATE_TEST_SUITE_P(Estimators, ShortBeams, testing::Values("short-photon-b
 TEST_P(Volume, CollimatedLightOnAGrid) {
   const double sigma_s = 0.6, sigma_t = 0.8, irradiance = 3;
   const Scene scene = test::scene_from_text(
-      "WorldBegin\nMakeNamedMedium \"fog\" \"string type\" \"uniformgrid\" \"rgb sigma_a\" [0.1 0.2 0.3] "
-      "\"rgb sigma_s\" [0.8 0.6 0.4] \"point3 p0\" [-2 -3 -2] \"point3 p1\" [2 3 2] \"integer nx\" 1 "
-      "\"integer ny\" 6 \"integer nz\" 1 \"float density\" [2 2 2 1 1 1]\n"
-      "LightSource \"distant\" \"point3 from\" [0 1 0] \"point3 to\" [0 0 0] \"rgb L\" [3 3 3]\n"
-      "MediumInterface \"fog\" \"\" Material \"interface\"\n" +
-      test::patch("-1 1 1  1 1 1  -1 1 -1  1 1 -1") + "Material \"diffuse\"\n" +
-      test::patch("-1 -1 1  1 -1 1  -1 -1 -1  1 -1 -1") + test::patch("-1 -1 1  -1 1 1  -1 -1 -1  -1 1 -1") +
-      test::patch("1 -1 1  1 1 1  1 -1 -1  1 1 -1"));
+      R"(WorldBegin
+MakeNamedMedium "fog" "string type" "uniformgrid" "rgb sigma_a" [0.1 0.2 0.3] "rgb sigma_s" [0.8 0.6 0.4] "point3 p0" [-2 -3 -2] "point3 p1" [2 3 2] "integer nx" 1 "integer ny" 6 "integer nz" 1 "float density" [2 2 2 1 1 1]
+LightSource "distant" "point3 from" [0 1 0] "point3 to" [0 0 0] "rgb L" [3 3 3]
+MediumInterface "fog" "" Material "interface"
+)" + test::patch("-1 1 1  1 1 1  -1 1 -1  1 1 -1") +
+      R"(Material "diffuse"
+)" + test::patch("-1 -1 1  1 -1 1  -1 -1 -1  1 -1 -1") +
+      test::patch("-1 -1 1  -1 1 1  -1 -1 -1  -1 1 -1") + test::patch("1 -1 1  1 1 1  1 -1 -1  1 1 -1"));
   const test::Mean found =
       single_scattering(scene, estimator(), MediumId{1}, static_cast<float>(radius_for(estimator())), [](HashRng& rng) {
         return Ray{{-0.999f, 0.5f, rng.next() - 0.5f}, {1, 0, 0}};
@@ -168,12 +169,13 @@ TEST_P(Volume, CollimatedLightOnAGrid) {
 TEST(VolumeMethods, BeamsEndAtThePlanesOfSurfaces) {
   const double sigma_s = 0.27, sigma_t = 0.3, irradiance = 3, cosine = 0.5;
   const Scene scene = test::scene_from_text(
-      "WorldBegin\nMakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [0.03 0.03 0.03] "
-      "\"rgb sigma_s\" [0.27 0.27 0.27]\n"
-      "LightSource \"distant\" \"point3 from\" [0 1 0] \"point3 to\" [0 0 0] \"rgb L\" [3 3 3]\n"
-      "MediumInterface \"fog\" \"\" Material \"interface\"\n" +
-      test::patch("-1.6 1 1  1.6 1 1  -1.6 1 -1  1.6 1 -1") + "Material \"diffuse\"\n" +
-      test::patch("-1.6 0 1  1.6 0 1  -1.6 0 -1  1.6 0 -1"));
+      R"(WorldBegin
+MakeNamedMedium "fog" "string type" "homogeneous" "rgb sigma_a" [0.03 0.03 0.03] "rgb sigma_s" [0.27 0.27 0.27]
+LightSource "distant" "point3 from" [0 1 0] "point3 to" [0 0 0] "rgb L" [3 3 3]
+MediumInterface "fog" "" Material "interface"
+)" + test::patch("-1.6 1 1  1.6 1 1  -1.6 1 -1  1.6 1 -1") +
+      R"(Material "diffuse"
+)" + test::patch("-1.6 0 1  1.6 0 1  -1.6 0 -1  1.6 0 -1"));
   const test::Mean found = single_scattering(scene, VolumeEstimator::beam, MediumId::vacuum, 0.4f, [&](HashRng& rng) {
     return Ray{{-1.5f, 1.3f, rng.next() - 0.5f}, {std::sqrt(0.75f), -0.5f, 0}};
   });
@@ -190,10 +192,13 @@ struct ThinBeam {
 
   static Scene scene() {
     return test::scene_from_text(
-        "MediumInterface \"\" \"fog\"\nCamera \"perspective\"\nWorldBegin\nMakeNamedMedium \"fog\" \"string type\" "
-        "\"homogeneous\" \"rgb sigma_a\" [0.1 0.1 0.1] \"rgb sigma_s\" [0.4 0.4 0.4]\nMediumInterface \"\" \"fog\"\n"
-        "LightSource \"spot\" \"rgb I\" [1000 1000 1000] \"point3 from\" [0 0 0] \"point3 to\" [0 0 1] "
-        "\"float coneangle\" 1 \"float conedeltaangle\" 0.001\n");
+        R"(MediumInterface "" "fog"
+Camera "perspective"
+WorldBegin
+MakeNamedMedium "fog" "string type" "homogeneous" "rgb sigma_a" [0.1 0.1 0.1] "rgb sigma_s" [0.4 0.4 0.4]
+MediumInterface "" "fog"
+LightSource "spot" "rgb I" [1000 1000 1000] "point3 from" [0 0 0] "point3 to" [0 0 1] "float coneangle" 1 "float conedeltaangle" 0.001
+)");
   }
 };
 
@@ -309,10 +314,14 @@ struct LightInFog {
 
   static Scene scene() {
     return test::scene_from_text(
-        "MediumInterface \"\" \"fog\"\nCamera \"perspective\"\nWorldBegin\nMakeNamedMedium \"fog\" \"string type\" "
-        "\"homogeneous\" \"rgb sigma_a\" [0.2 0.2 0.2] \"rgb sigma_s\" [1.8 1.8 1.8]\n"
-        "LightSource \"point\" \"rgb I\" [1 1 1]\nMediumInterface \"fog\" \"fog\"\n"
-        "Material \"dielectric\" \"float eta\" 1 Shape \"sphere\" \"float radius\" 0.01\n");
+        R"(MediumInterface "" "fog"
+Camera "perspective"
+WorldBegin
+MakeNamedMedium "fog" "string type" "homogeneous" "rgb sigma_a" [0.2 0.2 0.2] "rgb sigma_s" [1.8 1.8 1.8]
+LightSource "point" "rgb I" [1 1 1]
+MediumInterface "fog" "fog"
+Material "dielectric" "float eta" 1 Shape "sphere" "float radius" 0.01
+)");
   }
   // Position `i` of `count`, which are spread over all directions. By symmetry, the bias is the same at each.
   static Direction place(std::uint32_t i, std::uint32_t count) {
@@ -366,8 +375,9 @@ TEST_P(Volume, BiasFallsAtTheRateOfItsDimensions) {
 }
 
 const std::string film =
-    "Film \"rgb\" \"integer xresolution\" [8] \"integer yresolution\" [8]\n"
-    "PixelFilter \"box\" \"float xradius\" [0.5] \"float yradius\" [0.5]\n";
+    R"(Film "rgb" "integer xresolution" [8] "integer yresolution" [8]
+PixelFilter "box" "float xradius" [0.5] "float yradius" [0.5]
+)";
 
 RenderOptions options(const std::string& integrator, std::uint64_t passes, std::uint64_t photons) {
   RenderOptions o = test::options_for(integrator, passes);
@@ -386,11 +396,17 @@ std::vector<Image> runs(const Scene& scene, const RenderOptions& o, std::uint64_
 // Walls that emit as much as they absorb around purely scattering fog: radiance is 1 everywhere.
 TEST_P(Volume, WhiteFurnace) {
   const Scene scene = test::scene_from_text(
-      "LookAt 0 0 0.9  0 0 0  0 1 0\nMediumInterface \"\" \"fog\"\nCamera \"perspective\" \"float fov\" [60]\n" + film +
-      "WorldBegin\nMakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [0 0 0] "
-      "\"rgb sigma_s\" [1 1 1] \"float g\" [0.4]\nMediumInterface \"fog\" \"fog\"\n"
-      "AreaLightSource \"diffuse\" \"rgb L\" [.5 .5 .5] \"bool twosided\" true\n"
-      "Material \"diffuse\" \"rgb reflectance\" [.5 .5 .5]\nShape \"sphere\"\n");
+      R"(LookAt 0 0 0.9  0 0 0  0 1 0
+MediumInterface "" "fog"
+Camera "perspective" "float fov" [60]
+)" + film +
+      R"(WorldBegin
+MakeNamedMedium "fog" "string type" "homogeneous" "rgb sigma_a" [0 0 0] "rgb sigma_s" [1 1 1] "float g" [0.4]
+MediumInterface "fog" "fog"
+AreaLightSource "diffuse" "rgb L" [.5 .5 .5] "bool twosided" true
+Material "diffuse" "rgb reflectance" [.5 .5 .5]
+Shape "sphere"
+)");
   RenderOptions o = options("probppm:volume=" + GetParam(), 2, 4'000);
   o.set["volume-radius"] = kernel_dimensions(estimator()) == 3 ? "0.2" : "0.1";
   o.max_depth = 100;
@@ -401,15 +417,30 @@ TEST_P(Volume, WhiteFurnace) {
 
 // Fog in a room with a lamp: uniform and coloured, on a grid, with a narrow phase function, and inside glass.
 std::string room_with(const std::string& medium, const std::string& material) {
-  return "LookAt 0 1 3  0 0.8 0  0 1 0\nCamera \"perspective\" \"float fov\" [22]\n" + film + "WorldBegin\n" +
-         "AttributeBegin\nTranslate 0 0.8 0\nMakeNamedMedium \"fog\" \"string type\" " + medium +
-         "\nAttributeEnd\n"
-         "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [3 3 3]\n" +
-         test::patch("-0.9 1.99 -0.9  0.9 1.99 -0.9  -0.9 1.99 0.9  0.9 1.99 0.9") +
-         "AttributeEnd\nMaterial \"diffuse\" \"rgb reflectance\" [0.7 0.7 0.7]\n" +
-         test::patch("-1 0 1  1 0 1  -1 0 -1  1 0 -1") + test::patch("-1 0 -1  1 0 -1  -1 2 -1  1 2 -1") +
-         "Translate 0 0.8 0\nMediumInterface \"fog\" \"\"\nMaterial \"" + material +
-         "\"\nShape \"sphere\" \"float radius\" [0.7]\n";
+  return R"(LookAt 0 1 3  0 0.8 0  0 1 0
+Camera "perspective" "float fov" [22]
+)" + film +
+         "WorldBegin\n" +
+         R"(AttributeBegin
+Translate 0 0.8 0
+MakeNamedMedium "fog" "string type" )" +
+         medium +
+         R"(
+AttributeEnd
+AttributeBegin
+AreaLightSource "diffuse" "rgb L" [3 3 3]
+)" + test::patch("-0.9 1.99 -0.9  0.9 1.99 -0.9  -0.9 1.99 0.9  0.9 1.99 0.9") +
+         R"(AttributeEnd
+Material "diffuse" "rgb reflectance" [0.7 0.7 0.7]
+)" + test::patch("-1 0 1  1 0 1  -1 0 -1  1 0 -1") +
+         test::patch("-1 0 -1  1 0 -1  -1 2 -1  1 2 -1") +
+         R"(Translate 0 0.8 0
+MediumInterface "fog" ""
+Material ")" +
+         material +
+         R"("
+Shape "sphere" "float radius" [0.7]
+)";
 }
 
 struct Fog {
@@ -418,15 +449,13 @@ struct Fog {
   std::uint64_t passes = 4;
 };
 const std::vector<Fog> fogs{
-    {"coloured", "\"homogeneous\" \"rgb sigma_a\" [0.1 0.2 0.4] \"rgb sigma_s\" [0.3 1 2] \"float g\" [0.5]",
-     "interface"},
+    {"coloured", R"("homogeneous" "rgb sigma_a" [0.1 0.2 0.4] "rgb sigma_s" [0.3 1 2] "float g" [0.5])", "interface"},
     {"grid",
-     "\"rgbgrid\" \"point3 p0\" [-0.7 -0.7 -0.7] \"point3 p1\" [0.7 0.7 0.7] \"integer nx\" 2 \"integer ny\" 1 "
-     "\"integer nz\" 1 \"float g\" -0.3 \"rgb sigma_a\" [0.1 0.2 0.3  0.3 0.1 0] \"rgb sigma_s\" [1 3 0.5  4 1 2]",
+     R"("rgbgrid" "point3 p0" [-0.7 -0.7 -0.7] "point3 p1" [0.7 0.7 0.7] "integer nx" 2 "integer ny" 1 )"
+     R"("integer nz" 1 "float g" -0.3 "rgb sigma_a" [0.1 0.2 0.3  0.3 0.1 0] "rgb sigma_s" [1 3 0.5  4 1 2])",
      "interface"},
-    {"forward", "\"homogeneous\" \"rgb sigma_a\" [0.1 0.2 0.4] \"rgb sigma_s\" [2 2 1] \"float g\" [0.9]", "interface",
-     48},
-    {"in glass", "\"homogeneous\" \"rgb sigma_a\" [0.1 0.2 0.4] \"rgb sigma_s\" [1 2 1]", "dielectric"}};
+    {"forward", R"("homogeneous" "rgb sigma_a" [0.1 0.2 0.4] "rgb sigma_s" [2 2 1] "float g" [0.9])", "interface", 48},
+    {"in glass", R"("homogeneous" "rgb sigma_a" [0.1 0.2 0.4] "rgb sigma_s" [1 2 1])", "dielectric"}};
 
 /// By t-tests of the whole picture; `checks` is their number in a test. Radii of 5 cm blur.
 ::testing::AssertionResult agree(const std::vector<Image>& found, const std::vector<Image>& expected, int checks) {
@@ -444,8 +473,8 @@ std::vector<Fog> fogs_and_vdb(const test::TemporaryDir& folder) {
                   [](const Vec3& index) { return std::max(0.0f, (index.x + index.y + index.z) / last - 0.5f); });
   std::vector<Fog> all = fogs;
   all.push_back({"NanoVDB",
-                 "\"nanovdb\" \"string filename\" \"" + file.string() +
-                     "\" \"rgb sigma_a\" [0.1 0.2 0.3] \"rgb sigma_s\" [1 2 3] \"float g\" [0.3]",
+                 R"("nanovdb" "string filename" ")" + file.string() +
+                     R"(" "rgb sigma_a" [0.1 0.2 0.3] "rgb sigma_s" [1 2 3] "float g" [0.3])",
                  "interface"});
   return all;
 }
@@ -466,12 +495,15 @@ TEST_P(Volume, AgreesWithPathTracing) {
 // A glass ball under a point light casts a shaft of light into fog, which only light tracing finds, not eye paths.
 Scene shaft() {
   return test::scene_from_text(
-      "LookAt 0 0 4  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [26]\n" + film +
-      "WorldBegin\nMakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [0.2 0.2 0.2] "
-      "\"rgb sigma_s\" [0.5 1 1.5] \"float g\" -0.4\n"
-      "LightSource \"point\" \"point3 from\" [0 3 0] \"rgb I\" [5 5 5]\n"
-      "AttributeBegin MediumInterface \"fog\" \"\" Material \"interface\" Shape \"sphere\" AttributeEnd\n"
-      "Material \"dielectric\" Translate 0 1.7 0 Shape \"sphere\" \"float radius\" .5\n");
+      R"(LookAt 0 0 4  0 0 0  0 1 0
+Camera "perspective" "float fov" [26]
+)" + film +
+      R"(WorldBegin
+MakeNamedMedium "fog" "string type" "homogeneous" "rgb sigma_a" [0.2 0.2 0.2] "rgb sigma_s" [0.5 1 1.5] "float g" -0.4
+LightSource "point" "point3 from" [0 3 0] "rgb I" [5 5 5]
+AttributeBegin MediumInterface "fog" "" Material "interface" Shape "sphere" AttributeEnd
+Material "dielectric" Translate 0 1.7 0 Shape "sphere" "float radius" .5
+)");
 }
 
 void expect_shaft(const Scene& scene, RenderOptions photons) {
@@ -527,18 +559,23 @@ TEST_P(MergingInMedia, CausticOfAPointLight) {
 TEST(VolumeMethods, LightReachesTheBoundaryOfAMedium) {
   const auto scene_with = [](const std::string& around_light) {
     return test::scene_from_text(
-        "LookAt 0 0 4  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [30]\n"
-        "Film \"rgb\" \"integer xresolution\" [32] \"integer yresolution\" [32]\nWorldBegin\n"
-        "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [0 0 0] "
-        "\"rgb sigma_s\" [0.05 0.05 0.05]\nAttributeBegin Translate 0 3 0\n"
-        "LightSource \"spot\" \"rgb I\" [9 9 9] \"point3 from\" [0 0 0] \"point3 to\" [0 -1 0] "
-        "\"float coneangle\" 25 \"float conedeltaangle\" 1\n" +
-        around_light + "AttributeEnd\nMediumInterface \"fog\" \"\" Material \"interface\" Shape \"sphere\"\n");
+        R"(LookAt 0 0 4  0 0 0  0 1 0
+Camera "perspective" "float fov" [30]
+Film "rgb" "integer xresolution" [32] "integer yresolution" [32]
+WorldBegin
+MakeNamedMedium "fog" "string type" "homogeneous" "rgb sigma_a" [0 0 0] "rgb sigma_s" [0.05 0.05 0.05]
+AttributeBegin Translate 0 3 0
+LightSource "spot" "rgb I" [9 9 9] "point3 from" [0 0 0] "point3 to" [0 -1 0] "float coneangle" 25 "float conedeltaangle" 1
+)" + around_light +
+        R"(AttributeEnd
+MediumInterface "fog" "" Material "interface" Shape "sphere"
+)");
   };
   RenderOptions path = options("path", 32, 0);
   path.max_depth = 4;
   const test::Mean expected = test::mean_of_means(test::select_layers(runs(scene_with(""), path, 16, 500), "color"));
-  const Scene scene = scene_with("Material \"dielectric\" \"float eta\" 1 Shape \"sphere\" \"float radius\" .1\n");
+  const Scene scene = scene_with(R"(Material "dielectric" "float eta" 1 Shape "sphere" "float radius" .1
+)");
   for (const std::string method : {"vcm", "probppm"}) {
     RenderOptions photons = options(method, 2, 60'000);
     photons.max_depth = 8;
@@ -551,11 +588,16 @@ TEST(VolumeMethods, LightReachesTheBoundaryOfAMedium) {
 // Far from the origin, where the first tenths of a millimetre of rays are lost to rounding.
 TEST(VolumeMethods, WeightsAreFiniteAtTheLens) {
   const Scene scene = test::scene_from_text(
-      "Translate -10000 -10000 -10000\nMediumInterface \"\" \"fog\"\nCamera \"perspective\"\n" + film +
-      "WorldBegin\nMakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [0 0 0] "
-      "\"rgb sigma_s\" [1 1 1]\nTranslate 10000 10000 10000\n"
-      "AttributeBegin MediumInterface \"\" \"fog\" LightSource \"point\" \"point3 from\" [0 0.5 0] AttributeEnd\n"
-      "MediumInterface \"fog\" \"\" Material \"interface\" Shape \"sphere\"\n");
+      R"(Translate -10000 -10000 -10000
+MediumInterface "" "fog"
+Camera "perspective"
+)" + film +
+      R"(WorldBegin
+MakeNamedMedium "fog" "string type" "homogeneous" "rgb sigma_a" [0 0 0] "rgb sigma_s" [1 1 1]
+Translate 10000 10000 10000
+AttributeBegin MediumInterface "" "fog" LightSource "point" "point3 from" [0 0.5 0] AttributeEnd
+MediumInterface "fog" "" Material "interface" Shape "sphere"
+)");
   for (const char* integrator : {"bdpt", "vcm", "auto", "vcm:volume=point+beam+photon-beam+beams"}) {
     RenderOptions o = options(integrator, 2, 20'000);
     if (test::has_parameter(integrator, "volume-radius")) o.set["volume-radius"] = "0.3";
@@ -566,11 +608,14 @@ TEST(VolumeMethods, WeightsAreFiniteAtTheLens) {
 // Forward-scattering fog: merging has part of its weight at all vertices of eye paths and light paths.
 TEST(VolumeMethods, WeightsInForwardFogSumToOne) {
   const Scene scene = test::scene_from_text(
-      "LookAt 0 0 4  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [24]\n" + film +
-      "WorldBegin\nMakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [0 0 0] "
-      "\"rgb sigma_s\" [4 4 4] \"float g\" 0.9\n"
-      "LightSource \"distant\" \"point3 from\" [0 1 -0.5]\n"
-      "MediumInterface \"fog\" \"\" Material \"interface\" Shape \"sphere\"\n");
+      R"(LookAt 0 0 4  0 0 0  0 1 0
+Camera "perspective" "float fov" [24]
+)" + film +
+      R"(WorldBegin
+MakeNamedMedium "fog" "string type" "homogeneous" "rgb sigma_a" [0 0 0] "rgb sigma_s" [4 4 4] "float g" 0.9
+LightSource "distant" "point3 from" [0 1 -0.5]
+MediumInterface "fog" "" Material "interface" Shape "sphere"
+)");
   const auto mean_of = [&](const char* integrator, std::uint64_t passes, std::uint64_t first_seed) {
     RenderOptions o = options(integrator, passes, 2'000);
     o.max_depth = 5;
@@ -584,20 +629,21 @@ TEST(VolumeMethods, WeightsInForwardFogSumToOne) {
 // are: the picture comes from connections alone, and the connections of plate and wall must know how the wall scatters.
 TEST(VolumeMethods, MergingBehindAWallDoesNotCount) {
   const Scene scene = test::scene_from_text(
-      "LookAt 3 0 -4  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [3]\n" + film +
-      "WorldBegin\nMakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [0 0 0] "
-      "\"rgb sigma_s\" [0.5 0.5 0.5]\n"
-      "LightSource \"spot\" \"rgb I\" [1e6 1e6 1e6] \"point3 from\" [-2 1.5 -7.6] \"point3 to\" [-6 1.5 -7.6] "
-      "\"float coneangle\" [5]\n"
-      "Material \"diffuse\" \"rgb reflectance\" [0.8 0.8 0.8]\n" +
-      test::patch("-10 -2 -8  -2 -2 -8  -10 3 -8  -2 3 -8") +
-      "AttributeBegin Material \"diffuse\" \"rgb reflectance\" [0 0 0]\n"
-      "Shape \"bilinearmesh\" \"point3 P\" [-10 0.8 -7  -2 0.8 -7  -10 3 -7  -2 3 -7] AttributeEnd\n"
-      "AttributeBegin Material \"conductor\" \"rgb reflectance\" [0.9 0.9 0.9] \"float roughness\" [0.25] "
-      "\"bool remaproughness\" false\n"
-      "Shape \"bilinearmesh\" \"point3 P\" [-0.5 -0.5 0  0.5 -0.5 0  -0.5 0.5 0  0.5 0.5 0] AttributeEnd\n"
-      "MediumInterface \"fog\" \"\" Material \"interface\"\n"
-      "Translate -6 1.5 -7.6 Shape \"sphere\" \"float radius\" [0.35]\n");
+      R"(LookAt 3 0 -4  0 0 0  0 1 0
+Camera "perspective" "float fov" [3]
+)" + film +
+      R"(WorldBegin
+MakeNamedMedium "fog" "string type" "homogeneous" "rgb sigma_a" [0 0 0] "rgb sigma_s" [0.5 0.5 0.5]
+LightSource "spot" "rgb I" [1e6 1e6 1e6] "point3 from" [-2 1.5 -7.6] "point3 to" [-6 1.5 -7.6] "float coneangle" [5]
+Material "diffuse" "rgb reflectance" [0.8 0.8 0.8]
+)" + test::patch("-10 -2 -8  -2 -2 -8  -10 3 -8  -2 3 -8") +
+      R"(AttributeBegin Material "diffuse" "rgb reflectance" [0 0 0]
+Shape "bilinearmesh" "point3 P" [-10 0.8 -7  -2 0.8 -7  -10 3 -7  -2 3 -7] AttributeEnd
+AttributeBegin Material "conductor" "rgb reflectance" [0.9 0.9 0.9] "float roughness" [0.25] "bool remaproughness" false
+Shape "bilinearmesh" "point3 P" [-0.5 -0.5 0  0.5 -0.5 0  -0.5 0.5 0  0.5 0.5 0] AttributeEnd
+MediumInterface "fog" "" Material "interface"
+Translate -6 1.5 -7.6 Shape "sphere" "float radius" [0.35]
+)");
   const auto mean_of = [&](const char* integrator) {
     RenderOptions o = options(integrator, 4, 2'000);
     o.set["radius"] = "0.001";
@@ -626,13 +672,22 @@ double variance_of(const std::vector<Image>& images) {
 // with weights that ignore this had 1.7 times the variance of connections here.
 TEST(VolumeMethods, MergingDoesNotAddNoise) {
   const Scene scene = test::scene_from_text(
-      "LookAt 0 1 5.5  0 1 0  0 1 0\nMediumInterface \"\" \"fog\"\nCamera \"perspective\" \"float fov\" [22]\n" + film +
-      "WorldBegin\nMakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [0 0 0] "
-      "\"rgb sigma_s\" [0.8 0.8 0.8]\nMediumInterface \"\" \"fog\"\n"
-      "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [30 30 30]\n" +
-      test::patch("-0.2 1.9 -0.2  0.2 1.9 -0.2  -0.2 1.9 0.2  0.2 1.9 0.2") +
-      "AttributeEnd\nMaterial \"diffuse\" \"rgb reflectance\" [0.7 0.7 0.7]\nMediumInterface \"fog\" \"\"\n"
-      "Translate 0 1 0\nShape \"sphere\" \"float radius\" [5.7]\n");
+      R"(LookAt 0 1 5.5  0 1 0  0 1 0
+MediumInterface "" "fog"
+Camera "perspective" "float fov" [22]
+)" + film +
+      R"(WorldBegin
+MakeNamedMedium "fog" "string type" "homogeneous" "rgb sigma_a" [0 0 0] "rgb sigma_s" [0.8 0.8 0.8]
+MediumInterface "" "fog"
+AttributeBegin
+AreaLightSource "diffuse" "rgb L" [30 30 30]
+)" + test::patch("-0.2 1.9 -0.2  0.2 1.9 -0.2  -0.2 1.9 0.2  0.2 1.9 0.2") +
+      R"(AttributeEnd
+Material "diffuse" "rgb reflectance" [0.7 0.7 0.7]
+MediumInterface "fog" ""
+Translate 0 1 0
+Shape "sphere" "float radius" [5.7]
+)");
   const auto variance = [&](const char* integrator) {
     RenderOptions o = options(integrator, 1, 3'000);
     o.set["volume-radius"] = "0.15";
@@ -645,11 +700,18 @@ TEST(VolumeMethods, MergingDoesNotAddNoise) {
 // The radii of five pilots, in ascending order, in a ball of fog around the eye, lit by this light.
 std::array<float, 5> radii_in_fog(VolumeEstimator estimator, const std::string& light, int first_depth) {
   const Scene scene = test::scene_from_text(
-      "LookAt 0 0 -3.5  0 0 0  0 1 0\nMediumInterface \"\" \"fog\"\nCamera \"perspective\" \"float fov\" [50]\n"
-      "Film \"rgb\" \"integer xresolution\" [128] \"integer yresolution\" [128]\n"
-      "WorldBegin\nMakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [0 0 0] "
-      "\"rgb sigma_s\" [.2 .2 .2]\nMediumInterface \"fog\" \"fog\"\nLightSource " +
-      light + "\nMaterial \"diffuse\" \"rgb reflectance\" [0 0 0]\nShape \"sphere\" \"float radius\" [4]\n");
+      R"(LookAt 0 0 -3.5  0 0 0  0 1 0
+MediumInterface "" "fog"
+Camera "perspective" "float fov" [50]
+Film "rgb" "integer xresolution" [128] "integer yresolution" [128]
+WorldBegin
+MakeNamedMedium "fog" "string type" "homogeneous" "rgb sigma_a" [0 0 0] "rgb sigma_s" [.2 .2 .2]
+MediumInterface "fog" "fog"
+LightSource )" +
+      light + R"(
+Material "diffuse" "rgb reflectance" [0 0 0]
+Shape "sphere" "float radius" [4]
+)");
   std::array<float, 5> radii{};
   for (std::size_t i = 0; i < radii.size(); ++i) {
     RenderOptions o = test::options_for("probppm", 1, 20 + i);
@@ -728,11 +790,14 @@ TEST(VolumeMethods, AgreeWithPathTracing) {
 // and kernels wider than that lost up to a quarter of it.
 TEST(VolumeMethods, DenseFogLitFromTheSide) {
   const Scene scene = test::scene_from_text(
-      "LookAt 0 0 -25  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" 50\n"
-      "Film \"rgb\" \"integer xresolution\" 16 \"integer yresolution\" 16\nWorldBegin\n"
-      "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_s\" [1 1 1] \"rgb sigma_a\" [0 0 0]\n"
-      "LightSource \"point\" \"rgb I\" [1000 1000 1000] \"point3 from\" [-20 10 -20]\n"
-      "MediumInterface \"fog\" \"\" Material \"interface\" Shape \"sphere\" \"float radius\" 10\n");
+      R"(LookAt 0 0 -25  0 0 0  0 1 0
+Camera "perspective" "float fov" 50
+Film "rgb" "integer xresolution" 16 "integer yresolution" 16
+WorldBegin
+MakeNamedMedium "fog" "string type" "homogeneous" "rgb sigma_s" [1 1 1] "rgb sigma_a" [0 0 0]
+LightSource "point" "rgb I" [1000 1000 1000] "point3 from" [-20 10 -20]
+MediumInterface "fog" "" Material "interface" Shape "sphere" "float radius" 10
+)");
   const auto mean_by = [&](const std::string& integrator, std::uint64_t passes, std::uint64_t seed) {
     RenderOptions o = options(integrator, passes, 20'000);
     o.max_depth = 200;
@@ -745,11 +810,12 @@ TEST(VolumeMethods, DenseFogLitFromTheSide) {
 
 // White fog, in which each light path leaves many photons.
 Scene milk() {
-  return test::scene_from_text(
-      film +
-      "WorldBegin\nMakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [0 0 0] "
-      "\"rgb sigma_s\" [9 9 9]\nAttributeBegin MediumInterface \"\" \"fog\" LightSource \"point\" AttributeEnd\n"
-      "MediumInterface \"fog\" \"\" Material \"interface\" Shape \"sphere\"\n");
+  return test::scene_from_text(film +
+                               R"(WorldBegin
+MakeNamedMedium "fog" "string type" "homogeneous" "rgb sigma_a" [0 0 0] "rgb sigma_s" [9 9 9]
+AttributeBegin MediumInterface "" "fog" LightSource "point" AttributeEnd
+MediumInterface "fog" "" Material "interface" Shape "sphere"
+)");
 }
 
 TEST(VolumeMethods, MemoryForPhotonsInMediaIsBounded) {

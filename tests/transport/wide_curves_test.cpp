@@ -17,19 +17,29 @@ namespace {
 // The curve covers the rows 8 to 24 of 32, exactly. All is turned: along an axis rounding is exact, and no connection
 // along a hair would be off its direction.
 const std::string view =
-    "LookAt 0 0 5  0 0 0  0 1 0\nRotate 37 1 2 3\nCamera \"orthographic\" \"float screenwindow\" [-.2 .2 -.2 .2]\n"
-    "Film \"rgb\" \"integer xresolution\" 32 \"integer yresolution\" 32\n"
-    "PixelFilter \"box\" \"float xradius\" .5 \"float yradius\" .5\nWorldBegin\nRotate -37 1 2 3\n";
+    R"(LookAt 0 0 5  0 0 0  0 1 0
+Rotate 37 1 2 3
+Camera "orthographic" "float screenwindow" [-.2 .2 -.2 .2]
+Film "rgb" "integer xresolution" 32 "integer yresolution" 32
+PixelFilter "box" "float xradius" .5 "float yradius" .5
+WorldBegin
+Rotate -37 1 2 3
+)";
 constexpr int first_row = 8, rows = 16;
 
 std::string curve(const std::string& type) {
-  return "Shape \"curve\" \"string type\" \"" + type +
-         "\" \"point3 P\" [-1 0 0  -.3 0 0  .3 0 0  1 0 0] \"float width\" .2" +
-         (type == "ribbon" ? " \"normal N\" [0 0 1  0 0 1]\n" : "\n");
+  return R"(Shape "curve" "string type" ")" + type +
+         R"(" "point3 P" [-1 0 0  -.3 0 0  .3 0 0  1 0 0] "float width" .2)" +
+         (type == "ribbon" ? R"( "normal N" [0 0 1  0 0 1]
+)"
+                           : "\n");
 }
-const std::string sky = "LightSource \"infinite\"\n";
-const std::string white_hair = "Material \"hair\" \"rgb sigma_a\" [0 0 0] \"float beta_m\" .3 \"float beta_n\" .3\n";
-const std::string red_hair = "Material \"hair\" \"rgb sigma_a\" [.3 .6 1] \"float beta_m\" .7 \"float beta_n\" .7\n";
+const std::string sky = R"(LightSource "infinite"
+)";
+const std::string white_hair = R"(Material "hair" "rgb sigma_a" [0 0 0] "float beta_m" .3 "float beta_n" .3
+)";
+const std::string red_hair = R"(Material "hair" "rgb sigma_a" [.3 .6 1] "float beta_m" .7 "float beta_n" .7
+)";
 
 // Means of the bands across the curve, from below to above, over independent renders.
 std::vector<test::Mean> bands_of(const Scene& scene, const std::string& method, std::uint64_t passes,
@@ -71,9 +81,11 @@ TEST_P(WideCurves, LookEvenUnderAnEvenSky) {
 
 std::vector<Furnace> furnaces() {
   std::vector<Furnace> all;
-  const std::string matte = "Material \"diffuse\" \"rgb reflectance\" [.6 .6 .6]\n";
+  const std::string matte = R"(Material "diffuse" "rgb reflectance" [.6 .6 .6]
+)";
   // Light paths alone find narrow lobes by chance only.
-  const std::string rough_hair = "Material \"hair\" \"rgb sigma_a\" [0 0 0] \"float beta_m\" .8 \"float beta_n\" .8\n";
+  const std::string rough_hair = R"(Material "hair" "rgb sigma_a" [0 0 0] "float beta_m" .8 "float beta_n" .8
+)";
   for (const char* method : {"light", "bdpt", "vcm"}) {
     const std::string& hair = std::string(method) == "light" ? rough_hair : white_hair;
     all.push_back({"flat_hair", method, hair, "flat", 1});
@@ -90,9 +102,9 @@ INSTANTIATE_TEST_SUITE_P(Methods, WideCurves, testing::ValuesIn(furnaces()), [](
 // Light from one side, and a lamp whose distance is ten widths: the bands differ by factors.
 TEST(WideCurve, MethodsSeeTheSameProfile) {
   const std::string lights =
-      "LightSource \"distant\" \"point3 from\" [.2 1 .4] \"point3 to\" [0 0 0] \"rgb L\" [2 2 2]\n"
-      "AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [30 30 30] Translate .5 -2 .5 Shape \"sphere\" \"float "
-      "radius\" .3 AttributeEnd\n";
+      R"(LightSource "distant" "point3 from" [.2 1 .4] "point3 to" [0 0 0] "rgb L" [2 2 2]
+AttributeBegin AreaLightSource "diffuse" "rgb L" [30 30 30] Translate .5 -2 .5 Shape "sphere" "float radius" .3 AttributeEnd
+)";
   for (const std::string type : {"flat", "ribbon"}) {
     const Scene scene = test::scene_from_text(view + lights + red_hair + curve(type));
     constexpr int bands = 2;
@@ -111,8 +123,10 @@ TEST(WideCurve, MethodsSeeTheSameProfile) {
 // The hair's surface reflects like a mirror: where light comes from 60 degrees beside the eye, the highlight is where
 // the normal of a round hair points between both, at half of its radius, on the side of the light.
 TEST(WideCurve, HighlightsAreOnTheSideOfTheLight) {
-  const std::string light = "LightSource \"distant\" \"point3 from\" [0 .866025 .5] \"point3 to\" [0 0 0]\n";
-  const std::string dark = "Material \"hair\" \"rgb sigma_a\" [90 90 90] \"float beta_n\" .15 \"float alpha\" 0\n";
+  const std::string light = R"(LightSource "distant" "point3 from" [0 .866025 .5] "point3 to" [0 0 0]
+)";
+  const std::string dark = R"(Material "hair" "rgb sigma_a" [90 90 90] "float beta_n" .15 "float alpha" 0
+)";
   for (const std::string type : {"flat", "cylinder", "ribbon"}) {
     const Scene scene = test::scene_from_text(view + light + dark + curve(type));
     const std::vector<test::Mean> bands = bands_of(scene, "path", 4, 2, rows);

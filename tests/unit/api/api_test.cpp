@@ -96,8 +96,12 @@ TEST(Api, PassesOneByOneAreTheSameRender) {
 TEST(Api, ASandboxedSceneReadsItsOwnFolderAlone) {
   const lanthorn::test::TemporaryDir dir;
   std::filesystem::create_directory(dir.path() / "upload");
-  dir.write("outside.pbrt", "LightSource \"point\"\n");
-  dir.write("upload/scene.pbrt", "WorldBegin\nInclude \"../outside.pbrt\"\nShape \"sphere\"\n");
+  dir.write("outside.pbrt", R"(LightSource "point"
+)");
+  dir.write("upload/scene.pbrt", R"(WorldBegin
+Include "../outside.pbrt"
+Shape "sphere"
+)");
   EXPECT_NO_THROW(lanthorn::read_scene(dir.path() / "upload/scene.pbrt"));
   EXPECT_THROW(lanthorn::read_scene(dir.path() / "upload/scene.pbrt", {.sandbox = true}), lanthorn::Error);
 }
@@ -125,8 +129,12 @@ TEST(Api, AnotherSceneIsSeenThroughTheSameView) {
   Session session(load(box), small());
   session.render_pass();
   const lanthorn::SceneDescription other = lanthorn::read_pbrt_string(
-      "Film \"rgb\" \"integer xresolution\" [7]\nCamera \"orthographic\"\nWorldBegin\nLightSource \"infinite\"\n", ".",
-      "t");
+      R"(Film "rgb" "integer xresolution" [7]
+Camera "orthographic"
+WorldBegin
+LightSource "infinite"
+)",
+      ".", "t");
   const lanthorn::ViewDescription view = lanthorn::description_of(*load(box)).view;
   session.set_scene(lanthorn::build_scene(other));
   EXPECT_EQ(session.pass_count(), 0u);
@@ -242,8 +250,12 @@ TEST(Api, SceneDescriptionsArePlainData) {
 
 TEST(Api, AViewHasTheShutterOfTheScenesMotion) {
   const lanthorn::test::TemporaryDir dir;
-  const SharedScene scene = load(dir.write(
-      "a.pbrt", "WorldBegin\nActiveTransform EndTime\nTranslate 1 0 0\nActiveTransform All\nShape \"sphere\"\n"));
+  const SharedScene scene = load(dir.write("a.pbrt", R"(WorldBegin
+ActiveTransform EndTime
+Translate 1 0 0
+ActiveTransform All
+Shape "sphere"
+)"));
   lanthorn::ViewDescription view = lanthorn::description_of(*scene).view;
   EXPECT_NO_THROW(Session(scene, view, small()));
   view.camera.shutter_close = 0.5f;
@@ -316,11 +328,15 @@ TEST(Api, PhotonsStartWhereTheUserSays) {
 // A sphere that emits inwards and has one reflectance: what rays meet, how it scatters, and L = E / (1 - rho).
 TEST(Api, RaysInAFurnace) {
   const lanthorn::test::TemporaryDir dir;
-  const SharedScene scene =
-      load(dir.write("a.pbrt",
-                     "WorldBegin\nAttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [.5 .5 .5]\n"
-                     "Material \"diffuse\" \"rgb reflectance\" [.5 .5 .5]\nReverseOrientation\n"
-                     "Shape \"sphere\" \"float radius\" 2\nAttributeEnd\n"));
+  const SharedScene scene = load(dir.write("a.pbrt",
+                                           R"(WorldBegin
+AttributeBegin
+AreaLightSource "diffuse" "rgb L" [.5 .5 .5]
+Material "diffuse" "rgb reflectance" [.5 .5 .5]
+ReverseOrientation
+Shape "sphere" "float radius" 2
+AttributeEnd
+)"));
   const std::vector<lanthorn::SceneRay> rays(64, {{0, 0, 0.5f}, {0, 0, 3}});
   const std::vector<lanthorn::RayHit> hits = lanthorn::intersect(*scene, rays);
   EXPECT_NEAR(hits.front().distance, 1.5f, 1e-5f);
@@ -341,12 +357,15 @@ TEST(Api, RaysInAFurnace) {
 // A small view of a large plane: the method's guide sends more photons there.
 TEST(Api, PhotonsFollowTheGuideOfTheMethod) {
   const lanthorn::test::TemporaryDir dir;
-  const SharedScene scene =
-      load(dir.write("a.pbrt",
-                     "LookAt 0 1 1  0 0 0  0 1 0\nCamera \"perspective\"\nFilm \"rgb\" \"integer xresolution\" [16] "
-                     "\"integer yresolution\" [16]\nWorldBegin\nLightSource \"point\" \"point3 from\" [0 3 0]\n"
-                     "Shape \"sphere\" \"float radius\" [0.2]\n"
-                     "Shape \"bilinearmesh\" \"point3 P\" [-50 0 50  50 0 50  -50 0 -50  50 0 -50]\n"));
+  const SharedScene scene = load(dir.write("a.pbrt",
+                                           R"(LookAt 0 1 1  0 0 0  0 1 0
+Camera "perspective"
+Film "rgb" "integer xresolution" [16] "integer yresolution" [16]
+WorldBegin
+LightSource "point" "point3 from" [0 3 0]
+Shape "sphere" "float radius" [0.2]
+Shape "bilinearmesh" "point3 P" [-50 0 50  50 0 50  -50 0 -50  50 0 -50]
+)"));
   const auto in_view = [&](const char* emission) {
     RenderOptions options = small("probppm");
     options.photons = 5000;
@@ -363,14 +382,19 @@ TEST(Api, WarningsReachTheProgram) {
   const lanthorn::test::TemporaryDir dir;
   EXPECT_TRUE(Session(load(box), small()).warnings().empty());
   const std::string file = dir.write("a.pbrt",
-                                     "Camera \"perspective\"\nFilm \"rgb\"\n  \"string sensor\" "
-                                     "\"canon_eos_5d\"\nWorldBegin\nLightSource \"point\"\nShape \"sphere\"\n");
+                                     R"(Camera "perspective"
+Film "rgb"
+  "string sensor" "canon_eos_5d"
+WorldBegin
+LightSource "point"
+Shape "sphere"
+)");
   const auto warnings = Session(load(file), small()).warnings();
   ASSERT_EQ(warnings.size(), 1u);
   EXPECT_EQ(warnings[0].location.file, file);
   EXPECT_EQ(warnings[0].location.line, 3);
   EXPECT_EQ(warnings[0].location.column, 3);
-  EXPECT_EQ(warnings[0].message, "the measured sensor \"canon_eos_5d\" is not supported: replaced by \"cie1931\"");
+  EXPECT_EQ(warnings[0].message, R"(the measured sensor "canon_eos_5d" is not supported: replaced by "cie1931")");
 }
 
 TEST(Api, WrongOptionsThrow) {

@@ -138,7 +138,10 @@ TEST(InteractiveRender, EachPartCanBeEdited) {
 // name as the file's, but rejects its value.
 TEST(InteractiveRender, CoarsePicturesOfAutoHaveNoPilot) {
   const SharedScene scene = build_scene(read_pbrt_string(
-      "Integrator \"sppm\" \"string volume\" \"short-photon-beam\"\n" + test::camera + test::box, ".", "test scene"));
+      R"(Integrator "sppm" "string volume" "short-photon-beam"
+)" + test::camera +
+          test::box,
+      ".", "test scene"));
   RenderOptions options = small(2);
   options.integrator.reset();
   InteractiveRender render(scene, description_of(*scene).view, options);

@@ -26,9 +26,11 @@ const std::string scenes = LANTHORN_SOURCE_DIR "/tests/scenes/";
 // Uses the reader, so that it is tested too.
 RealisticCamera double_gauss(float focus_distance, float diameter = 30, float diagonal = 60) {
   const SceneDescription scene =
-      read_pbrt_string("Camera \"realistic\" \"string lensfile\" \"double-gauss.dat\" \"float focusdistance\" " +
-                           std::to_string(focus_distance) + " \"float aperturediameter\" " + std::to_string(diameter) +
-                           "\nFilm \"rgb\" \"float diagonal\" " + std::to_string(diagonal) + "\nWorldBegin\n",
+      read_pbrt_string(R"(Camera "realistic" "string lensfile" "double-gauss.dat" "float focusdistance" )" +
+                           std::to_string(focus_distance) + R"( "float aperturediameter" )" + std::to_string(diameter) +
+                           R"(
+Film "rgb" "float diagonal" )" +
+                           std::to_string(diagonal) + "\nWorldBegin\n",
                        scenes, "t.pbrt");
   EXPECT_TRUE(scene.warnings.empty());
   return std::get<RealisticCamera>(scene.view.camera.node);
@@ -206,7 +208,7 @@ std::string error_of(const std::string& lens, const std::string& parameters = ""
   const test::TemporaryDir dir;
   dir.write("l.dat", lens);
   std::string text = test::error_text([&] {
-    make_view(read_pbrt_string("Camera \"realistic\" \"string lensfile\" \"l.dat\" " + parameters + "\nWorldBegin",
+    make_view(read_pbrt_string(R"(Camera "realistic" "string lensfile" "l.dat" )" + parameters + "\nWorldBegin",
                                dir.path(), "t.pbrt")
                   .view);
   });
@@ -220,18 +222,18 @@ TEST(Lens, ErrorsNameTheirPlace) {
   EXPECT_EQ(error_of(glass), "no error");
   EXPECT_EQ(error_of("100 1 1.5 50\n  -100 100 1"),
             "l.dat:2:3: an element of a lens needs four numbers, this one has 3");
-  EXPECT_EQ(error_of("100 1 1.5 x"), "l.dat:1:11: expected a number, found \"x\"");
+  EXPECT_EQ(error_of("100 1 1.5 x"), R"(l.dat:1:11: expected a number, found "x")");
   EXPECT_EQ(error_of("100 -1 1.5 50"), "l.dat:1:1: the thickness of an element of a lens must not be negative");
   EXPECT_EQ(error_of("100 1 0 50"), "l.dat:1:1: the index of refraction must be at least 1");
   EXPECT_EQ(error_of("100 1 1.5 0"), "l.dat:1:1: the aperture of an element of a lens must be above 0");
   EXPECT_EQ(error_of("# nothing\n"), "l.dat:2:1: the lens has no elements");
-  EXPECT_EQ(error_of(glass, "\"float focusdistance\" 0.2").substr(0, 65),
+  EXPECT_EQ(error_of(glass, R"("float focusdistance" 0.2)").substr(0, 65),
             "t.pbrt:1:1: the lens cannot focus on a distance of 0.200000 m: it");
   EXPECT_EQ(error_of("-100 1 1.5 50\n100 100 1 50\n"),
             "t.pbrt:1:1: the lens is not converging: its focal length is not positive");
   EXPECT_EQ(error_of("100 1 1.5 50\n"), "t.pbrt:1:1: the medium behind the last element of the lens must be air");
-  EXPECT_EQ(error_of(glass, "\"float focusdistance\" 0"),
-            "t.pbrt:1:46: parameter \"focusdistance\" of Camera \"realistic\" must be above 0");
+  EXPECT_EQ(error_of(glass, R"("float focusdistance" 0)"),
+            R"(t.pbrt:1:46: parameter "focusdistance" of Camera "realistic" must be above 0)");
 }
 
 }  // namespace

@@ -17,26 +17,32 @@
 namespace lanthorn::splitsum_test {
 namespace {
 
-const std::string white_sky = "LightSource \"infinite\" \"rgb L\" [1 1 1]\n";
+const std::string white_sky = R"(LightSource "infinite" "rgb L" [1 1 1]
+)";
 
 // A wide plane, seen from above at this angle from the zenith by parallel rays: all pixels see the same.
 std::string plane(double degrees, const std::string& sky, const std::string& material) {
   const double angle = degrees * 0.017453292519943295;
   return fmt::format(
-             "LookAt {} 0 {}  0 0 0  0 1 0\nCamera \"orthographic\" \"float screenwindow\" [-0.1 0.1 -0.1 0.1]\n"
-             "Film \"rgb\" \"integer xresolution\" [8] \"integer yresolution\" [8]\nWorldBegin\n",
+             R"(LookAt {} 0 {}  0 0 0  0 1 0
+Camera "orthographic" "float screenwindow" [-0.1 0.1 -0.1 0.1]
+Film "rgb" "integer xresolution" [8] "integer yresolution" [8]
+WorldBegin
+)",
              3 * std::sin(angle), 3 * std::cos(angle)) +
-         sky + "Material " + material + "\nShape \"disk\" \"float radius\" [50]\n";
+         sky + "Material " + material + R"(
+Shape "disk" "float radius" [50]
+)";
 }
 
 std::string metal(double alpha) {
   return fmt::format(
-      "\"conductor\" \"rgb reflectance\" [0.9 0.6 0.3] \"float roughness\" [{}] \"bool remaproughness\" false", alpha);
+      R"("conductor" "rgb reflectance" [0.9 0.6 0.3] "float roughness" [{}] "bool remaproughness" false)", alpha);
 }
 
 std::string white_metal(double alpha) {
   return fmt::format(
-      "\"conductor\" \"rgb reflectance\" [0.9999 0.9999 0.9999] \"float roughness\" [{}] \"bool remaproughness\" false",
+      R"("conductor" "rgb reflectance" [0.9999 0.9999 0.9999] "float roughness" [{}] "bool remaproughness" false)",
       alpha);
 }
 
@@ -67,7 +73,10 @@ class SplitSumShading : public testing::Test {
       }
     write_exr(dir_.path() / "sky.exr", image);
   }
-  std::string uneven_sky() const { return "LightSource \"infinite\" \"string filename\" \"sky.exr\"\n"; }
+  std::string uneven_sky() const {
+    return R"(LightSource "infinite" "string filename" "sky.exr"
+)";
+  }
 
   test::TemporaryDir dir_;
 };
@@ -92,7 +101,7 @@ TEST_F(SplitSumShading, MultipleScatteringKeepsAllLightOfAWhiteMetal) {
 }
 
 TEST_F(SplitSumShading, OfDiffuseSurfacesIsPathTracings) {
-  const std::string scene = plane(30, uneven_sky(), "\"diffuse\" \"rgb reflectance\" [0.8 0.5 0.2]");
+  const std::string scene = plane(30, uneven_sky(), R"("diffuse" "rgb reflectance" [0.8 0.5 0.2])");
   const Rgb found = mean_of(scene, "splitsum", 1, dir_.path()), truth = mean_of(scene, "path", 2048, dir_.path());
   EXPECT_NEAR(found.r / truth.r, 1, 0.01f);
   EXPECT_NEAR(found.g / truth.g, 1, 0.01f);
@@ -110,9 +119,12 @@ TEST_F(SplitSumShading, SeesSmallSuns) {
         for (std::size_t c = 0; c < 3; ++c) image.at(x, y, c) = 1e5f;
     write_exr(dir_.path() / "suns.exr", image);
     const std::string sky =
-        "AttributeBegin\nRotate 7 1 0 0\nLightSource \"infinite\" \"string filename\" "
-        "\"suns.exr\"\nAttributeEnd\n";
-    const Rgb found = mean_of(plane(0, sky, "\"diffuse\" \"rgb reflectance\" [1 1 1]"), "splitsum", 1, dir_.path());
+        R"(AttributeBegin
+Rotate 7 1 0 0
+LightSource "infinite" "string filename" "suns.exr"
+AttributeEnd
+)";
+    const Rgb found = mean_of(plane(0, sky, R"("diffuse" "rgb reflectance" [1 1 1])"), "splitsum", 1, dir_.path());
     EXPECT_NEAR(found.g / irradiance, std::cos(0.122), 0.04) << place;
   }
 }
@@ -159,12 +171,16 @@ TEST_F(SplitSumShading, EqualsPathTracingWhereNormalViewAndReflectionAreOne) {
 /// in rings of the ball's picture where the angle between normal and view is below 15, 45 to 60, and 65 to 80 degrees.
 std::array<double, 3> deviations(const std::string& sky, double alpha, const std::filesystem::path& folder) {
   constexpr int size = 32;
-  const Scene scene = test::scene_from_text(
-      fmt::format("LookAt 0 -5 0  0 0 0  0 0 1\nCamera \"orthographic\" \"float screenwindow\" [-1 1 -1 1]\n"
-                  "Film \"rgb\" \"integer xresolution\" [{0}] \"integer yresolution\" [{0}]\nWorldBegin\n",
-                  size) +
-          sky + "Material " + white_metal(alpha) + "\nShape \"sphere\"\n",
-      folder);
+  const Scene scene = test::scene_from_text(fmt::format(R"(LookAt 0 -5 0  0 0 0  0 0 1
+Camera "orthographic" "float screenwindow" [-1 1 -1 1]
+Film "rgb" "integer xresolution" [{0}] "integer yresolution" [{0}]
+WorldBegin
+)",
+                                                        size) +
+                                                sky + "Material " + white_metal(alpha) + R"(
+Shape "sphere"
+)",
+                                            folder);
   const auto rendered = [&](const char* integrator, std::uint64_t passes, std::uint64_t number) {
     RenderOptions options = test::options_for(integrator, passes, number);
     options.max_depth = 1;
@@ -211,23 +227,23 @@ TEST_F(SplitSumShading, DeviatesFromPathTracingAsMeasured) {
 TEST_F(SplitSumShading, OfGlassIsTheTablesReflection) {
   constexpr int size = 128, column = 22;
   const double cos = (column + 0.5) / size, roughness = 64.5 / size;
-  const std::string glass =
-      fmt::format("\"dielectric\" \"float eta\" [1.5] \"float roughness\" [{}] \"bool remaproughness\" false",
-                  roughness * roughness);
+  const std::string glass = fmt::format(
+      R"("dielectric" "float eta" [1.5] "float roughness" [{}] "bool remaproughness" false)", roughness * roughness);
   const Image table = brdf_table(size, false);
   EXPECT_NEAR(mean_of(plane(std::acos(cos) / 0.017453292519943295, white_sky, glass), "splitsum", 1).g,
               0.04f * table.at(column, 64, 0) + table.at(column, 64, 1), 2e-3f);
 }
 
 TEST_F(SplitSumShading, SaysWhatItLeavesOut) {
-  const std::string lamp = "LightSource \"point\" \"rgb I\" [1 1 1]\n";
+  const std::string lamp = R"(LightSource "point" "rgb I" [1 1 1]
+)";
   const auto plan_of = [](const Scene& scene) { return test::plan_render(scene, test::options_for("splitsum", 1)); };
-  const Scene glass = test::scene_from_text(plane(20, white_sky + lamp, "\"dielectric\""));
+  const Scene glass = test::scene_from_text(plane(20, white_sky + lamp, R"("dielectric")"));
   RenderPlan plan = plan_of(glass);
   render(glass, plan, plan.stop);
   EXPECT_EQ(plan.integrator->remark(), "splitsum leaves out light through glass");
   EXPECT_EQ(plan.integrator->limitation(glass), "splitsum lights by the environment alone: 1 other light is ignored");
-  const Scene clay = test::scene_from_text(plane(20, white_sky, "\"diffuse\""));
+  const Scene clay = test::scene_from_text(plane(20, white_sky, R"("diffuse")"));
   plan = plan_of(clay);
   render(clay, plan, plan.stop);
   EXPECT_EQ(plan.integrator->remark(), "");

@@ -37,22 +37,22 @@ using test::error_text;
 bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 TEST(InQuotes, ShowsATokenThatDoesNothingToTerminals) {
-  EXPECT_EQ(in_quotes("floor"), "\"floor\"");
+  EXPECT_EQ(in_quotes("floor"), R"("floor")");
   EXPECT_EQ(in_quotes("M\xc3\xbcller \xe2\x82\xac"), "\"M\xc3\xbcller \xe2\x82\xac\"");
-  EXPECT_EQ(in_quotes("\x1b[2J\a\n"), "\"\\x1b[2J\\x07\\x0a\"");
-  EXPECT_EQ(in_quotes("\x7f\xc2\x9b"), "\"\\x7f\\xc2\\x9b\"");                      // DEL, and CSI in one character
-  EXPECT_EQ(in_quotes("\xff\xc3(\xed\xa0\x80"), "\"\\xff\\xc3(\\xed\\xa0\\x80\"");  // no UTF-8
-  EXPECT_EQ(in_quotes("\xe2\x80\xae"), "\"\\xe2\\x80\\xae\"");                      // reverses the writing direction
-  EXPECT_EQ(in_quotes("a\"b\\"), "\"a\\\"b\\\\\"");
+  EXPECT_EQ(in_quotes("\x1b[2J\a\n"), R"("\x1b[2J\x07\x0a")");
+  EXPECT_EQ(in_quotes("\x7f\xc2\x9b"), R"("\x7f\xc2\x9b")");                    // DEL, and CSI in one character
+  EXPECT_EQ(in_quotes("\xff\xc3(\xed\xa0\x80"), R"("\xff\xc3(\xed\xa0\x80")");  // no UTF-8
+  EXPECT_EQ(in_quotes("\xe2\x80\xae"), R"("\xe2\x80\xae")");                    // reverses the writing direction
+  EXPECT_EQ(in_quotes(R"(a"b\)"), R"("a\"b\\")");
   EXPECT_EQ(in_quotes(std::string(32, 'x')), '"' + std::string(32, 'x') + '"');
   EXPECT_EQ(in_quotes(std::string(33, 'x')), '"' + std::string(32, 'x') + "...\"");
 }
 
 TEST(InQuotes, CanBeTakenOutOfMessages) {
-  EXPECT_EQ(without_quotations("expected a directive, found " + in_quotes("root:\"x\":0")),
-            "expected a directive, found \"...\"");
+  EXPECT_EQ(without_quotations("expected a directive, found " + in_quotes(R"(root:"x":0)")),
+            R"(expected a directive, found "...")");
   EXPECT_EQ(without_quotations("nothing"), "nothing");
-  EXPECT_EQ(without_quotations(in_quotes("a\\") + " and " + in_quotes("b")), "\"...\" and \"...\"");
+  EXPECT_EQ(without_quotations(in_quotes("a\\") + " and " + in_quotes("b")), R"("..." and "...")");
 }
 
 TEST(Memory, MoreThanThereIsIsRefusedWithItsSize) {
@@ -226,14 +226,16 @@ class Sandbox : public testing::Test {
   }
   // A complete scene with a directive after WorldBegin.
   std::string read(const std::string& directive) const {
-    return read("a.pbrt", "Camera \"perspective\"\nWorldBegin\n" + directive + "\n");
+    return read("a.pbrt", R"(Camera "perspective"
+WorldBegin
+)" + directive + "\n");
   }
 
   test::TemporaryDir dir_;
 };
 
 TEST_F(Sandbox, OnlyFilesInTheTreeAreReadWhateverNamesAndLinksSay) {
-  const auto lamp = [](const std::string& file) { return "LightSource \"point\" \"spectrum I\" [ \"" + file + "\" ]"; };
+  const auto lamp = [](const std::string& file) { return R"(LightSource "point" "spectrum I" [ ")" + file + "\" ]"; };
   for (const std::string file : {"spectrum.txt", "below/spectrum.txt", "inner-link.txt", "below/../spectrum.txt"})
     EXPECT_EQ(read(lamp(file)), "no error") << file;
   EXPECT_EQ(read(lamp((fs::canonical(root()) / "scene/spectrum.txt").string())), "no error");
@@ -253,8 +255,10 @@ TEST_F(Sandbox, HoldsForEveryKindOfFileThatASceneNames) {
        {R"(Include "../secret.txt")", R"(Import "link.txt")", R"(Shape "plymesh" "string filename" "link.txt")",
         R"(Material "measured" "string filename" "link.txt")"})
     EXPECT_TRUE(contains(read(directive), expected)) << read(directive);
-  EXPECT_TRUE(
-      contains(read("lens.pbrt", "Camera \"realistic\" \"string lensfile\" \"link.txt\"\nWorldBegin\n"), expected));
+  EXPECT_TRUE(contains(read("lens.pbrt", R"(Camera "realistic" "string lensfile" "link.txt"
+WorldBegin
+)"),
+                       expected));
   EXPECT_TRUE(contains(read("a.gltf", R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
     "nodes": [{"mesh": 0}], "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
     "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}],
@@ -274,18 +278,19 @@ TEST_F(Sandbox, HoldsForEveryKindOfFileThatASceneNames) {
 }
 
 TEST_F(Sandbox, MessagesShowNothingOfWhatIsInFiles) {
-  dir_.write("scene/mistyped", "root:x:0:0 \"root bash\"\n");
-  dir_.write("scene/mistyped.gltf", "{\"key\": secretive}");
+  dir_.write("scene/mistyped", R"(root:x:0:0 "root bash"
+)");
+  dir_.write("scene/mistyped.gltf", R"({"key": secretive})");
   dir_.write("scene/mistyped.ply", "ply\nformat root:x:0:0 1.0\n");
   dir_.write("scene/mistyped.mtl", "newmtl a\nKd root:x:0:0\n");
   const auto refused = [](const std::string& problem, const std::string& place) {
     EXPECT_TRUE(contains(problem, place)) << problem;
     EXPECT_FALSE(contains(problem, "root") || contains(problem, "secretive")) << problem;
   };
-  refused(read("Include \"mistyped\""), "mistyped:1:1: unknown directive \"...\"");
-  refused(read("LightSource \"point\" \"spectrum I\" [ \"mistyped\" ]"),
-          "mistyped:1:1: expected a number, found \"...\"");
-  refused(read("Shape \"plymesh\" \"string filename\" \"mistyped.ply\""), "mistyped.ply:2:1: unknown encoding");
+  refused(read(R"(Include "mistyped")"), R"(mistyped:1:1: unknown directive "...")");
+  refused(read(R"(LightSource "point" "spectrum I" [ "mistyped" ])"),
+          R"(mistyped:1:1: expected a number, found "...")");
+  refused(read(R"(Shape "plymesh" "string filename" "mistyped.ply")"), "mistyped.ply:2:1: unknown encoding");
   refused(read("a.obj", "mtllib mistyped.mtl\n"), "mistyped.mtl:2:4: expected a number");
   refused(error_text([&] { read_scene(root() / "scene/mistyped.gltf", {.sandbox = true}); }), "mistyped.gltf:1:");
   // Without the sandbox, the same error shows the token.
@@ -300,8 +305,8 @@ TEST(Messages, ShowATokenOfAFileAtMost) {
     return error_text([&] { read_scene(path); });
   };
   for (const std::string& message :
-       {problem("a.pbrt", run), problem("a.pbrt", "Camera \"" + run + "\""), problem("a.gltf", "{\"a\": \"" + run),
-        problem("a.gltf", "{\"a\": " + run + "}"), problem("a.obj", "v 1 2 " + run), problem("a.obj", "f " + run)}) {
+       {problem("a.pbrt", run), problem("a.pbrt", "Camera \"" + run + "\""), problem("a.gltf", R"({"a": ")" + run),
+        problem("a.gltf", R"({"a": )" + run + "}"), problem("a.obj", "v 1 2 " + run), problem("a.obj", "f " + run)}) {
     EXPECT_NE(message, "no error");
     EXPECT_FALSE(contains(message, run.substr(0, 33))) << message;
   }

@@ -67,9 +67,16 @@ class Environment : public testing::Test {
     model.mesh({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {0, 1, 2});
     model.node({{"mesh", 0}});
     dir_.write("model.gltf", model.text());
-    dir_.write("zup.pbrt", "LookAt 0 -4 1  0 0 1  0 0 1\nCamera \"perspective\"\nWorldBegin\n" + lights_);
+    dir_.write("zup.pbrt", R"(LookAt 0 -4 1  0 0 1  0 0 1
+Camera "perspective"
+WorldBegin
+)" + lights_);
     dir_.write("mirrored.pbrt",
-               "Scale -1 1 1\nLookAt 0 1 4  0 1 0  0 1 0\nCamera \"perspective\"\nWorldBegin\n" + lights_);
+               R"(Scale -1 1 1
+LookAt 0 1 4  0 1 0  0 1 0
+Camera "perspective"
+WorldBegin
+)" + lights_);
   }
   std::string file(const Image& image) const {
     write_exr(dir_.path() / "sky.exr", image);
@@ -101,8 +108,12 @@ class Environment : public testing::Test {
   }
 
   const std::string lights_ =
-      "LightSource \"point\"\nLightSource \"infinite\"\nLightSource \"distant\"\nLightSource \"infinite\"\nShape "
-      "\"sphere\"\n";
+      R"(LightSource "point"
+LightSource "infinite"
+LightSource "distant"
+LightSource "infinite"
+Shape "sphere"
+)";
   test::TemporaryDir dir_;
 };
 

@@ -18,7 +18,11 @@ using test::GltfWriter;
 using test::one_mesh;
 
 TEST(GltfErrors, SyntaxHasLineAndColumn) {
-  EXPECT_EQ(gltf_error("{\n  \"asset\": {\"version\": }\n}").substr(0, 12), "t.gltf:2:24:");
+  EXPECT_EQ(gltf_error(R"({
+  "asset": {"version": }
+})")
+                .substr(0, 12),
+            "t.gltf:2:24:");
   EXPECT_EQ(gltf_error("").substr(0, 11), "t.gltf:1:1:");
   EXPECT_EQ(gltf_error("[]"), "t.gltf: the file's JSON must be an object");
   EXPECT_EQ(gltf_error(std::string(100000, '[')), "t.gltf:1:201: the JSON is nested more than 200 levels deep");
@@ -49,11 +53,11 @@ std::string broken(const char* pointer, const json& value, GltfWriter file = one
 }
 
 TEST(GltfErrors, NameThePlace) {
-  EXPECT_EQ(broken("/asset/version", "1.0"), "t.gltf#/asset/version: only glTF 2 is supported, not \"1.0\"");
-  EXPECT_EQ(broken("/asset", json::object()), "t.gltf#/asset: needs the member \"version\"");
+  EXPECT_EQ(broken("/asset/version", "1.0"), R"(t.gltf#/asset/version: only glTF 2 is supported, not "1.0")");
+  EXPECT_EQ(broken("/asset", json::object()), R"(t.gltf#/asset: needs the member "version")");
   EXPECT_EQ(
       broken("/extensionsRequired", {"EXT_x"}),
-      "t.gltf#/extensionsRequired/0: the file cannot be read without extension \"EXT_x\", which is not supported");
+      R"(t.gltf#/extensionsRequired/0: the file cannot be read without extension "EXT_x", which is not supported)");
   EXPECT_EQ(broken("/scene", 3), "t.gltf#/scene: is 3, but there are 1 scenes");
   EXPECT_EQ(broken("/scenes/0/nodes/0", -1), "t.gltf#/scenes/0/nodes/0: must be a non-negative whole number");
   EXPECT_EQ(broken("/nodes/0/mesh", 9), "t.gltf#/nodes/0/mesh: is 9, but there are 1 meshes");
@@ -69,7 +73,7 @@ TEST(GltfErrors, NameThePlace) {
             "t.gltf#/meshes/0/primitives/0/indices: accessor 0 is a VEC3, but elements of 1 numbers are needed");
   EXPECT_EQ(broken("/accessors/0/componentType", 5124),
             "t.gltf#/accessors/0/componentType: there is no component type 5124");
-  EXPECT_EQ(broken("/accessors/0/type", "VEC9"), "t.gltf#/accessors/0/type: there is no accessor type \"VEC9\"");
+  EXPECT_EQ(broken("/accessors/0/type", "VEC9"), R"(t.gltf#/accessors/0/type: there is no accessor type "VEC9")");
   EXPECT_EQ(broken("/accessors/1/componentType", 5126),
             "t.gltf#/meshes/0/primitives/0/indices: indices must be unsigned integers");
 }
@@ -96,7 +100,7 @@ TEST(GltfErrors, NothingLiesOutsideOfItsBuffer) {
   EXPECT_EQ(broken("/buffers/0/uri", "none.bin"), "t.gltf#/buffers/0/uri: none.bin: no such file");
   EXPECT_EQ(broken("/buffers/0/uri", "https://example.org/a.bin"),
             "t.gltf#/buffers/0/uri: only data URIs and relative URIs that stay in the file's folder are supported, not "
-            "\"https://example.org/a.bin\"");
+            R"("https://example.org/a.bin")");
   EXPECT_EQ(broken("/buffers/0/uri", "data:;base64,@@"), "t.gltf#/buffers/0/uri: the data URI is not valid base64");
   EXPECT_EQ(broken("/buffers/0/uri", "data:text/plain,abc"), "t.gltf#/buffers/0/uri: a data URI must be in base64");
   EXPECT_EQ(broken("/accessors/0/count", 2),

@@ -467,8 +467,8 @@ TEST(GltfMaterial, BasisTexturesAreNamedAndHaveFallbacks) {
     EXPECT_TRUE(none.spectrum_textures.empty());
     EXPECT_EQ(
         warnings(none).at(0),
-        "t.gltf#/textures/0: KHR_texture_basisu: KTX2 images such as \"bark.ktx2\" are not supported: neutral values "
-        "replace textures without another image. Convert the file with \"gltf-transform ktxdecompress IN OUT\" "
+        R"(t.gltf#/textures/0: KHR_texture_basisu: KTX2 images such as "bark.ktx2" are not supported: neutral values )"
+        R"(replace textures without another image. Convert the file with "gltf-transform ktxdecompress IN OUT" )"
         "(of npm's "
         "@gltf-transform/cli and Khronos' KTX-Software)");
   }
@@ -486,7 +486,7 @@ TEST(GltfMaterial, GlassThatAnExporterLost) {
     file.mesh(corners, {0, 1, 2}, file.add("materials", material));
     file.node({{"mesh", 0}});
     std::vector<std::string> all = warnings(read_gltf(file));
-    std::erase_if(all, [](const std::string& text) { return text.find("material \"gem\"") == text.npos; });
+    std::erase_if(all, [](const std::string& text) { return text.find(R"(material "gem")") == text.npos; });
     return all;
   };
   const auto glass = [](const json& extensions) {
@@ -521,7 +521,7 @@ TEST(GltfMaterial, ApproximationsAreSaidOnce) {
   EXPECT_EQ(
       warnings(read_gltf(file)),
       (std::vector<std::string>{
-          "t.gltf#/extensionsUsed/1: extension \"VENDOR_thing\" is not supported: ignored",
+          R"(t.gltf#/extensionsUsed/1: extension "VENDOR_thing" is not supported: ignored)",
           "t.gltf#/materials/0/extensions/KHR_materials_clearcoat: KHR_materials_sheen is ignored under a clear coat "
           "(and 1 more like it)",
           "t.gltf: the file has no camera and no light: a view of all of it from the front, in a studio of three soft "

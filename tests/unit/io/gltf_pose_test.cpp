@@ -89,7 +89,7 @@ TEST(GltfAnimation, ErrorsNameThePlace) {
   EXPECT_EQ(gltf_error(animated("translation", "LINEAR", {0, 1, 2}, {0, 0, 0, 1, 1, 1}, 3), 0),
             "t.gltf#/animations/0/samplers/0/output: has 2 elements, but 3 keys need 1 each");
   EXPECT_EQ(gltf_error(animated("translation", "SMOOTH", {0}, {0, 0, 0}, 3), 0),
-            "t.gltf#/animations/0/samplers/0/interpolation: must be STEP, LINEAR or CUBICSPLINE, not \"SMOOTH\"");
+            R"(t.gltf#/animations/0/samplers/0/interpolation: must be STEP, LINEAR or CUBICSPLINE, not "SMOOTH")");
   EXPECT_EQ(gltf_error(animated("weights", "LINEAR", {0}, {0}, 1), 0),
             "t.gltf#/animations/0/channels/0/target: animates weights, but the node's mesh has no morph targets");
   for (const auto& [times, values, place] :
@@ -104,7 +104,7 @@ TEST(GltfAnimation, ErrorsNameThePlace) {
   file = animated("translation", "LINEAR", {0}, {0, 0, 0}, 3);
   file.root["animations"][0]["channels"][0]["target"]["node"] = 7;
   EXPECT_EQ(gltf_error(file, 0), "t.gltf#/animations/0/channels/0/target/node: is 7, but there are 1 nodes");
-  EXPECT_TRUE(warns(read_gltf(animated("pointer", "LINEAR", {0}, {0}, 1), 0), "animations of \"pointer\""));
+  EXPECT_TRUE(warns(read_gltf(animated("pointer", "LINEAR", {0}, {0}, 1), 0), R"(animations of "pointer")"));
 }
 
 // Two targets: one raises all corners, the other moves the second corner to the right.
@@ -196,7 +196,7 @@ TEST(GltfSkin, ErrorsNameThePlace) {
             "t.gltf#/meshes/0/primitives/0/attributes/JOINTS_0: vertex 1 is bound to joint 2, but the skin has 2");
   file = skinned();
   file.root["meshes"][0]["primitives"][0]["attributes"].erase("WEIGHTS_0");
-  EXPECT_EQ(gltf_error(file), "t.gltf#/meshes/0/primitives/0/attributes: needs the member \"WEIGHTS_0\"");
+  EXPECT_EQ(gltf_error(file), R"(t.gltf#/meshes/0/primitives/0/attributes: needs the member "WEIGHTS_0")");
   file = skinned();
   file.root["skins"][0]["joints"] = {0, 1, 0};
   EXPECT_EQ(gltf_error(file), "t.gltf#/skins/0/inverseBindMatrices: has 2 matrices, but the skin has 3 joints");

@@ -124,15 +124,14 @@ TEST(GltfRender, GlassSphereIsTheSameAsInPbrtForm) {
   for (const std::uint32_t i : sphere.indices) indices += std::to_string(i) + " ";
   const std::vector<float> normals = GltfWriter::flat(sphere.positions);
   const SceneDescription pbrt = read_pbrt_string(
-      "Scale -1 1 1 LookAt 0 1 5  0 0 0  0 1 0 Camera \"perspective\" \"float fov\" 40\n"
-      "Film \"rgb\" \"integer xresolution\" 32 \"integer yresolution\" 24\nWorldBegin\n"
-      "LightSource \"infinite\" \"rgb L\" [0.4 0.5 0.6]\n"
-      "AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [8 8 8] Translate 0 4 0 Shape \"sphere\" \"float radius\" "
-      "0.5 "
-      "AttributeEnd\n"
-      "Material \"dielectric\" \"float eta\" 1.45\n"
-      "Shape \"trianglemesh\" \"point3 P\" " +
-          list(GltfWriter::flat(sphere.positions)) + " \"normal N\" " + list(normals) + " \"integer indices\" " +
+      R"(Scale -1 1 1 LookAt 0 1 5  0 0 0  0 1 0 Camera "perspective" "float fov" 40
+Film "rgb" "integer xresolution" 32 "integer yresolution" 24
+WorldBegin
+LightSource "infinite" "rgb L" [0.4 0.5 0.6]
+AttributeBegin AreaLightSource "diffuse" "rgb L" [8 8 8] Translate 0 4 0 Shape "sphere" "float radius" 0.5 AttributeEnd
+Material "dielectric" "float eta" 1.45
+Shape "trianglemesh" "point3 P" )" +
+          list(GltfWriter::flat(sphere.positions)) + R"( "normal N" )" + list(normals) + R"( "integer indices" )" +
           indices + "]",
       "", "t.pbrt");
   GltfWriter file;

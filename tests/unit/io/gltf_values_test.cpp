@@ -102,7 +102,7 @@ TEST(GltfValues, FactorsAndNames) {
                    "t.gltf#/materials/0/pbrMetallicRoughness/roughnessFactor: roughnessFactor must be between 0 and 1, "
                    "but is string: 1 is used",
                    "t.gltf#/materials/0/name: name is null: read as if it were missing",
-                   "t.gltf#/materials/0/alphaMode: BLEND is not written \"blend\": read as BLEND"}));
+                   R"(t.gltf#/materials/0/alphaMode: BLEND is not written "blend": read as BLEND)"}));
   EXPECT_EQ(with_material({{"alphaMode", "GLASS"}}).shapes.at(0).alpha.value, 1);
 }
 
@@ -220,14 +220,14 @@ TEST(GltfValues, BadReferencesStayErrors) {
   GltfWriter camera = one_mesh();
   camera.add("cameras", {{"type", "fisheye"}});
   camera.node({{"camera", 0}});
-  EXPECT_EQ(gltf_error(camera), "t.gltf#/cameras/0/type: must be perspective or orthographic, not \"fisheye\"");
+  EXPECT_EQ(gltf_error(camera), R"(t.gltf#/cameras/0/type: must be perspective or orthographic, not "fisheye")");
 }
 
 TEST(GltfExtensions, ThatAreUnknownAreListedInOneLine) {
   GltfWriter file = one_mesh();
   file.root["extensionsUsed"] = {"A_one", "KHR_materials_ior", "B_two", "C_three"};
   EXPECT_EQ(warnings(read_gltf(file)),
-            Texts{"t.gltf#/extensionsUsed/0: extensions \"A_one\", \"B_two\", \"C_three\" are not supported: ignored"});
+            Texts{R"(t.gltf#/extensionsUsed/0: extensions "A_one", "B_two", "C_three" are not supported: ignored)"});
 }
 
 // KHR_materials_variants: two meshes, of which the first has other materials in the variants "night" and "blue".
@@ -263,12 +263,12 @@ TEST_F(GltfVariants, AreChosenByNameOrNumber) {
   EXPECT_EQ(materials("2"), (Texts{"dark", "own"}));
   EXPECT_EQ(warnings(read("blue")), Texts{});
   EXPECT_EQ(warnings(read("")), Texts{"t.gltf#/extensions/KHR_materials_variants: the file has variants of its "
-                                      "materials: --variant takes one of \"day\", \"night\", \"blue\""});
+                                      R"(materials: --variant takes one of "day", "night", "blue")"});
 }
 
 TEST_F(GltfVariants, UnknownOnesAreAnswered) {
   const auto error = [&](const std::string& wanted) { return test::error_text([&] { read(wanted); }); };
-  EXPECT_EQ(error("nigth"), "t.gltf: --variant nigth: the file has \"day\", \"night\", \"blue\"; did you mean night?");
+  EXPECT_EQ(error("nigth"), R"(t.gltf: --variant nigth: the file has "day", "night", "blue"; did you mean night?)");
   EXPECT_EQ(error("4").substr(0, 31), "t.gltf: --variant 4: the file h");
   file_ = one_mesh();
   EXPECT_EQ(error("red"), "t.gltf: --variant red: the file has no variants of its materials");

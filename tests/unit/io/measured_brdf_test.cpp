@@ -107,14 +107,14 @@ TEST(MeasuredBrdfFile, MessagesSayWhatIsWrong) {
     return message_of(test::bsdf_file(data));
   };
   EXPECT_EQ(changed([](MeasuredData& d) { std::swap(d.theta[0], d.theta[1]); }),
-            "the values of \"theta_i\" are not ascending");
-  EXPECT_EQ(changed([](MeasuredData& d) { d.theta.back() = 3; }), "\"theta_i\" is not between 0 and pi / 2");
+            R"(the values of "theta_i" are not ascending)");
+  EXPECT_EQ(changed([](MeasuredData& d) { d.theta.back() = 3; }), R"("theta_i" is not between 0 and pi / 2)");
   EXPECT_EQ(changed([](MeasuredData& d) { d.wavelengths[2] = 400; }),
-            "the values of \"wavelengths\" are not ascending");
+            R"(the values of "wavelengths" are not ascending)");
   EXPECT_EQ(changed([](MeasuredData& d) { d.sigma.values[3] = std::nanf(""); }),
-            "field \"sigma\" has a value that is not finite");
+            R"(field "sigma" has a value that is not finite)");
   EXPECT_EQ(changed([](MeasuredData& d) { std::fill_n(d.vndf.values.begin() + 25, 25, 0.0f); }),
-            "\"vndf\" has no visible normal for some incident direction");
+            R"("vndf" has no visible normal for some incident direction)");
   const auto with_azimuths = [](const std::vector<float>& phi) {
     MeasuredData d = small_measurement();
     d.phi = phi;
@@ -125,16 +125,16 @@ TEST(MeasuredBrdfFile, MessagesSayWhatIsWrong) {
     return message_of(test::bsdf_file(d));
   };
   EXPECT_EQ(with_azimuths({-pi, 0, pi}), "");
-  EXPECT_EQ(with_azimuths({-3, 0, 1}), "\"phi_i\" spans neither a full, a half nor a quarter turn");
-  EXPECT_EQ(with_azimuths({0, 1, pi}), "\"phi_i\" must begin at -pi if it spans less than a full turn");
-  EXPECT_EQ(with_azimuths({0, -1}), "the values of \"phi_i\" are not ascending");
+  EXPECT_EQ(with_azimuths({-3, 0, 1}), R"("phi_i" spans neither a full, a half nor a quarter turn)");
+  EXPECT_EQ(with_azimuths({0, 1, pi}), R"("phi_i" must begin at -pi if it spans less than a full turn)");
+  EXPECT_EQ(with_azimuths({0, -1}), R"(the values of "phi_i" are not ascending)");
   test::TensorFileWriter file;
   file.add("phi_i", {1}, {0.0f});
-  EXPECT_EQ(message_of(file.bytes()), "has no field \"theta_i\"");
+  EXPECT_EQ(message_of(file.bytes()), R"(has no field "theta_i")");
   file.add("theta_i", {1, 1}, {0.0f});
-  EXPECT_EQ(message_of(file.bytes()), "field \"theta_i\" has 2 dimensions, not 1");
+  EXPECT_EQ(message_of(file.bytes()), R"(field "theta_i" has 2 dimensions, not 1)");
   file.add("theta_i", {1}, {0.0f});
-  EXPECT_EQ(message_of(file.bytes()), "has two fields \"theta_i\"");
+  EXPECT_EQ(message_of(file.bytes()), R"(has two fields "theta_i")");
   test::TensorFileWriter grids;
   grids.add("phi_i", {1}, {0.0f});
   grids.add("theta_i", {2}, {0.0f, 1.0f});
@@ -142,11 +142,11 @@ TEST(MeasuredBrdfFile, MessagesSayWhatIsWrong) {
   grids.add("sigma", {2, 2}, std::vector<float>(4, 1.0f));
   test::TensorFileWriter small = grids;
   grids.add("vndf", {1, 3, 2, 2}, std::vector<float>(12, 1.0f));
-  EXPECT_EQ(message_of(grids.bytes()), "the size of \"vndf\" does not fit the numbers of directions and wavelengths");
+  EXPECT_EQ(message_of(grids.bytes()), R"(the size of "vndf" does not fit the numbers of directions and wavelengths)");
   small.add("vndf", {1, 2, 1, 2}, std::vector<float>(4, 1.0f));
-  EXPECT_EQ(message_of(small.bytes()), "the grid of \"vndf\" is too small");
+  EXPECT_EQ(message_of(small.bytes()), R"(the grid of "vndf" is too small)");
   small.add("note", 2, {1}, "x");
-  EXPECT_EQ(message_of(small.bytes()), "the grid of \"vndf\" is too small") << "other fields and types do not matter";
+  EXPECT_EQ(message_of(small.bytes()), R"(the grid of "vndf" is too small)") << "other fields and types do not matter";
 }
 
 }  // namespace

@@ -50,12 +50,16 @@ void expect_named(const SceneDescription& scene, const std::vector<std::string>&
 
 TEST_F(MissingFiles, OfPbrtScenes) {
   dir_.write("a.pbrt",
-             "WorldBegin\nInclude \"part.pbrt\"\nLightSource \"point\" \"spectrum I\" \"lamp.spd\"\n"
-             "Material \"conductor\" \"spectrum eta\" \"eta.spd\"\nShape \"plymesh\" \"string filename\" \"no.ply\"\n"
-             "Shape \"sphere\"\n");
+             R"(WorldBegin
+Include "part.pbrt"
+LightSource "point" "spectrum I" "lamp.spd"
+Material "conductor" "spectrum eta" "eta.spd"
+Shape "plymesh" "string filename" "no.ply"
+Shape "sphere"
+)");
   EXPECT_EQ(error_of("a.pbrt"), place("a.pbrt") +
-                                    ":2:1: 4 files are missing, the first of them here: \"part.pbrt\", \"lamp.spd\", "
-                                    "\"eta.spd\", \"no.ply\"; --missing skip renders without them");
+                                    R"(:2:1: 4 files are missing, the first of them here: "part.pbrt", "lamp.spd", )"
+                                    R"("eta.spd", "no.ply"; --missing skip renders without them)");
   const SceneDescription scene = read_without("a.pbrt");
   EXPECT_EQ(scene.shapes.size(), 1u);
   expect_named(scene, {"part.pbrt", "lamp.spd", "eta.spd", "no.ply"});
@@ -65,13 +69,17 @@ TEST_F(MissingFiles, OfPbrtScenes) {
 // aperture.
 TEST_F(MissingFiles, LensesMediaAndMeasuredMaterialsHaveStandIns) {
   dir_.write("a.pbrt",
-             "Camera \"realistic\" \"string lensfile\" \"no.dat\" \"float aperturediameter\" 5\nWorldBegin\n"
-             "MakeNamedMedium \"smoke\" \"string type\" \"nanovdb\" \"string filename\" \"no.nvdb\"\n"
-             "MediumInterface \"smoke\" \"\"\nMaterial \"measured\" \"string filename\" \"no.bsdf\"\n"
-             "Shape \"sphere\"\nShape \"sphere\" \"float radius\" 2\n");
+             R"(Camera "realistic" "string lensfile" "no.dat" "float aperturediameter" 5
+WorldBegin
+MakeNamedMedium "smoke" "string type" "nanovdb" "string filename" "no.nvdb"
+MediumInterface "smoke" ""
+Material "measured" "string filename" "no.bsdf"
+Shape "sphere"
+Shape "sphere" "float radius" 2
+)");
   EXPECT_EQ(error_of("a.pbrt"), place("a.pbrt") +
-                                    ":1:1: 3 files are missing, the first of them here: \"no.dat\", \"no.nvdb\", "
-                                    "\"no.bsdf\"; --missing skip renders without them");
+                                    R"(:1:1: 3 files are missing, the first of them here: "no.dat", "no.nvdb", )"
+                                    R"("no.bsdf"; --missing skip renders without them)");
   const SceneDescription scene = read_without("a.pbrt");
   expect_named(scene, {"no.dat", "no.nvdb", "no.bsdf"});
   EXPECT_TRUE(std::holds_alternative<description::DiffuseMaterial>(scene.materials.back().node));
@@ -82,7 +90,9 @@ TEST_F(MissingFiles, LensesMediaAndMeasuredMaterialsHaveStandIns) {
 
 // A lens of 50 mm cannot focus nearer than four times its focal length.
 TEST_F(MissingFiles, TheLensThatStandsInFocusesOnWhatIsClose) {
-  dir_.write("a.pbrt", "Camera \"realistic\" \"string lensfile\" \"no.dat\" \"float focusdistance\" .1\nWorldBegin\n");
+  dir_.write("a.pbrt", R"(Camera "realistic" "string lensfile" "no.dat" "float focusdistance" .1
+WorldBegin
+)");
   const SceneDescription scene = read_without("a.pbrt");
   const LensSystem lens(std::get<description::RealisticCamera>(scene.view.camera.node), 0.0175, {});
   EXPECT_NEAR(lens.focal_length(), 0.0125, 0.0002);
@@ -91,32 +101,45 @@ TEST_F(MissingFiles, TheLensThatStandsInFocusesOnWhatIsClose) {
 // Long names that differ at their ends.
 TEST_F(MissingFiles, OfLongNamesTheEndIsShown) {
   dir_.write("a.pbrt",
-             "WorldBegin\nShape \"plymesh\" \"string filename\" \"a/folder/of/a/long/name/with/meshes/one.ply\"\n"
-             "Shape \"plymesh\" \"string filename\" \"a/folder/of/a/long/name/with/meshes/two.ply\"\n");
-  EXPECT_TRUE(contains(error_of("a.pbrt"), "\".../name/with/meshes/one.ply\", \".../name/with/meshes/two.ply\"; "))
+             R"(WorldBegin
+Shape "plymesh" "string filename" "a/folder/of/a/long/name/with/meshes/one.ply"
+Shape "plymesh" "string filename" "a/folder/of/a/long/name/with/meshes/two.ply"
+)");
+  EXPECT_TRUE(contains(error_of("a.pbrt"), R"(".../name/with/meshes/one.ply", ".../name/with/meshes/two.ply"; )"))
       << error_of("a.pbrt");
 }
 
 // A single missing file causes the specific error of the code that reads it, with its location and advice.
 TEST_F(MissingFiles, ASingleOneHasItsOwnError) {
   const std::string skip = ": no such file; --missing skip renders without it";
-  dir_.write("a.pbrt", "WorldBegin\nMaterial \"conductor\" \"spectrum eta\" \"eta.spd\"\n");
-  EXPECT_EQ(error_of("a.pbrt"),
-            place("a.pbrt") +
-                ":2:22: parameter \"eta\" of Material \"conductor\" names the spectrum \"eta.spd\", "
-                "which is not built in; " +
-                place("eta.spd") + skip);
-  dir_.write("b.pbrt", "WorldBegin\nInclude \"part.pbrt\"\n");
+  dir_.write("a.pbrt", R"(WorldBegin
+Material "conductor" "spectrum eta" "eta.spd"
+)");
+  EXPECT_EQ(error_of("a.pbrt"), place("a.pbrt") +
+                                    R"(:2:22: parameter "eta" of Material "conductor" names the spectrum "eta.spd", )"
+                                    "which is not built in; " +
+                                    place("eta.spd") + skip);
+  dir_.write("b.pbrt", R"(WorldBegin
+Include "part.pbrt"
+)");
   EXPECT_EQ(error_of("b.pbrt"), place("b.pbrt") + ":2:1: " + place("part.pbrt") + skip);
-  dir_.write("c.pbrt", "WorldBegin\nLightSource \"infinite\" \"string filename\" \"sky.exr\"\n");
+  dir_.write("c.pbrt", R"(WorldBegin
+LightSource "infinite" "string filename" "sky.exr"
+)");
   EXPECT_EQ(error_of("c.pbrt"), place("c.pbrt") + ":2:1: " + place("sky.exr") + skip);
-  dir_.write("d.pbrt", "WorldBegin\nShape \"plymesh\" \"string filename\" \"no.ply\"\n");
+  dir_.write("d.pbrt", R"(WorldBegin
+Shape "plymesh" "string filename" "no.ply"
+)");
   EXPECT_EQ(error_of("d.pbrt"), place("d.pbrt") + ":2:1: " + place("no.ply") + skip);
 }
 
 // Definitions missing because of a missing file are not the error to report.
 TEST_F(MissingFiles, ComeBeforeErrorsThatTheyMayCause) {
-  dir_.write("a.pbrt", "WorldBegin\nInclude \"materials.pbrt\"\nNamedMaterial \"gold\"\nShape \"sphere\"\n");
+  dir_.write("a.pbrt", R"(WorldBegin
+Include "materials.pbrt"
+NamedMaterial "gold"
+Shape "sphere"
+)");
   EXPECT_EQ(error_of("a.pbrt"),
             place("a.pbrt") + ":2:1: " + place("materials.pbrt") + ": no such file; --missing skip renders without it");
 }
@@ -128,16 +151,20 @@ TEST_F(MissingFiles, PointersOfGitLfsAreMissingFiles) {
       "oid sha256:4d7a214614ab2935c943f9e0ff69d22eadbb8f32b1258daaa5e2ca24d17e2393\nsize 12345\n";
   dir_.write("a.ply", pointer);
   dir_.write("b.ply", pointer);
-  const std::string mesh = "Shape \"plymesh\" \"string filename\" ";
-  dir_.write("one.pbrt", "WorldBegin\n" + mesh + "\"a.ply\"\n");
+  const std::string mesh = R"(Shape "plymesh" "string filename" )";
+  dir_.write("one.pbrt", "WorldBegin\n" + mesh + R"("a.ply"
+)");
   EXPECT_TRUE(
       contains(error_of("one.pbrt"), place("a.ply") + ": only a Git LFS pointer; git lfs pull fetches the file"))
       << error_of("one.pbrt");
-  dir_.write("two.pbrt", "WorldBegin\n" + mesh + "\"a.ply\"\n" + mesh + "\"b.ply\"\n" + mesh + "\"no.ply\"\n");
+  dir_.write("two.pbrt", "WorldBegin\n" + mesh + R"("a.ply"
+)" + mesh + R"("b.ply"
+)" + mesh + R"("no.ply"
+)");
   EXPECT_TRUE(contains(error_of("two.pbrt"), "3 files are missing")) << error_of("two.pbrt");
   EXPECT_TRUE(contains(error_of("two.pbrt"), ", git lfs pull fetches 2 of them")) << error_of("two.pbrt");
   EXPECT_TRUE(contains(all_messages(read_without("two.pbrt")),
-                       "3 files are missing, the first of them here: \"a.ply\", \"b.ply\", \"no.ply\""));
+                       R"(3 files are missing, the first of them here: "a.ply", "b.ply", "no.ply")"));
 }
 
 const char* const gltf = R"({
@@ -158,7 +185,7 @@ TEST_F(MissingFiles, OfGltfScenes) {
   dir_.write("triangle.bin", {reinterpret_cast<const char*>(points.data()), points.size() * sizeof(float)});
   const std::string error = error_of("a.gltf");
   EXPECT_TRUE(contains(error, "2 files are missing, the first of them here: ")) << error;
-  EXPECT_TRUE(contains(error, "\"no.bin\", \"no.png\"")) << error;
+  EXPECT_TRUE(contains(error, R"("no.bin", "no.png")")) << error;
   const SceneDescription scene = read_without("a.gltf");
   EXPECT_EQ(scene.shapes.size(), 1u) << "the mesh of the other buffer";
   expect_named(scene, {"no.bin", "no.png"});
@@ -213,18 +240,18 @@ TEST_F(MissingFiles, TexturesOfGltfHaveTheNeutralValueOfTheirRole) {
 
 TEST_F(MissingFiles, TexturesOfPbrtAndObjHaveTheNeutralValueOfTheirRole) {
   const std::string lost =
-      "Texture \"f\" \"float\" \"imagemap\" \"string filename\" \"no.png\"\n"
-      "Texture \"s\" \"spectrum\" \"imagemap\" \"string filename\" \"no.png\"\n"
-      "Texture \"f2\" \"float\" \"scale\" \"texture tex\" \"f\" \"float scale\" 3\n"
-      "Texture \"s2\" \"spectrum\" \"scale\" \"texture tex\" \"s\" \"float scale\" 3\n";
-  dir_.write("a.pbrt",
-             "WorldBegin\n" + lost +
-                 "AreaLightSource \"diffuse\" \"string filename\" \"no.png\"\n"
-                 "Material \"diffusetransmission\" \"texture reflectance\" \"s2\" \"texture transmittance\" \"s\""
-                 " \"texture displacement\" \"f\"\n"
-                 "Shape \"sphere\" \"texture alpha\" \"f2\"\n"
-                 "Material \"conductor\" \"texture reflectance\" \"s\" \"texture roughness\" \"f2\"\n"
-                 "Shape \"sphere\"\n");
+      R"(Texture "f" "float" "imagemap" "string filename" "no.png"
+Texture "s" "spectrum" "imagemap" "string filename" "no.png"
+Texture "f2" "float" "scale" "texture tex" "f" "float scale" 3
+Texture "s2" "spectrum" "scale" "texture tex" "s" "float scale" 3
+)";
+  dir_.write("a.pbrt", "WorldBegin\n" + lost +
+                           R"(AreaLightSource "diffuse" "string filename" "no.png"
+Material "diffusetransmission" "texture reflectance" "s2" "texture transmittance" "s" "texture displacement" "f"
+Shape "sphere" "texture alpha" "f2"
+Material "conductor" "texture reflectance" "s" "texture roughness" "f2"
+Shape "sphere"
+)");
   const SceneDescription scene = read_without("a.pbrt");
   const auto number = [](const description::SpectrumParameter& p) {
     EXPECT_FALSE(p.texture);
@@ -265,7 +292,7 @@ TEST_F(MissingFiles, OfObjScenes) {
     EXPECT_TRUE(contains(all_messages(scene), "no.mtl: no such file: its materials are left out"))
         << all_messages(scene);
     EXPECT_TRUE(
-        contains(all_messages(scene), "2 files are missing, the first of them here: \"no.png\", \"holes.png\": "))
+        contains(all_messages(scene), R"(2 files are missing, the first of them here: "no.png", "holes.png": )"))
         << all_messages(scene);
     EXPECT_NO_THROW(build_scene(scene));
   }
@@ -300,13 +327,19 @@ TEST_F(MissingFiles, AreLookedForByCaseAndByTheirLastPart) {
   // A relative name may only differ in case: the same name elsewhere is another file.
   EXPECT_TRUE(contains(all_messages(image_of("images/Bark.png")), "is missing"));
   dir_.write("b.pbrt",
-             "WorldBegin\nTexture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"TEXTURES/wood.png\"\n");
-  EXPECT_TRUE(contains(all_messages(read_without("b.pbrt")), "there is no file \"TEXTURES/wood.png\": "));
+             R"(WorldBegin
+Texture "t" "spectrum" "imagemap" "string filename" "TEXTURES/wood.png"
+)");
+  EXPECT_TRUE(contains(all_messages(read_without("b.pbrt")), R"(there is no file "TEXTURES/wood.png": )"));
   dir_.write("b.pbrt",
-             "WorldBegin\nTexture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"E:\\\\x\\\\bark.png\"\n");
+             R"(WorldBegin
+Texture "t" "spectrum" "imagemap" "string filename" "E:\\x\\bark.png"
+)");
   EXPECT_TRUE(contains(all_messages(read_without("b.pbrt")), "Bark.png\" is read"));
   // The layout of downloads from Sketchfab.
-  dir_.write("source/a.pbrt", "WorldBegin\nTexture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"wood.png\"\n");
+  dir_.write("source/a.pbrt", R"(WorldBegin
+Texture "t" "spectrum" "imagemap" "string filename" "wood.png"
+)");
   EXPECT_TRUE(contains(all_messages(read_without("source/a.pbrt")), "wood.png\" is read"));
 }
 

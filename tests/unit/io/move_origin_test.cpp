@@ -72,8 +72,14 @@ INSTANTIATE_TEST_SUITE_P(Scenes, MovedOrigin,
 
 TEST(MoveOrigin, MovesInstancesAndKeepsObjects) {
   const SceneDescription scene = read_pbrt_string(
-      "LookAt 0 0 2000  0 0 0  0 1 0\nCamera \"perspective\"\nWorldBegin\nObjectBegin \"o\"\n"
-      "Translate 1 2 3 Shape \"sphere\"\nObjectEnd\nTranslate 0 0 2000 ObjectInstance \"o\"\n",
+      R"(LookAt 0 0 2000  0 0 0  0 1 0
+Camera "perspective"
+WorldBegin
+ObjectBegin "o"
+Translate 1 2 3 Shape "sphere"
+ObjectEnd
+Translate 0 0 2000 ObjectInstance "o"
+)",
       ".", "instance");
   EXPECT_EQ(scene.origin, DVec3(0, 0, 2000));
   EXPECT_EQ(DVec3(scene.objects.at(0).shapes.at(0).object_to_world.start.matrix[3]), DVec3(1, 2, 3));
@@ -82,16 +88,26 @@ TEST(MoveOrigin, MovesInstancesAndKeepsObjects) {
 
 TEST(MoveOrigin, LeavesNearCamerasAlone) {
   SceneDescription scene = read_pbrt_string(
-      "LookAt 900 0 -900  0 0 0  0 1 0\nCamera \"perspective\"\nWorldBegin\nShape \"sphere\"\n", ".", "near");
+      R"(LookAt 900 0 -900  0 0 0  0 1 0
+Camera "perspective"
+WorldBegin
+Shape "sphere"
+)",
+      ".", "near");
   EXPECT_EQ(scene.origin, DVec3(0));
   EXPECT_EQ(scene.view.camera.camera_to_world.start.matrix[3], glm::dvec4(900, 0, -900, 1));
 }
 
 TEST(MoveOrigin, MovesPortals) {
   const std::string portal =
-      "LightSource \"infinite\" \"rgb L\" [1 1 1] \"point3 portal\" [4999 0 0 5001 0 0 5001 2 0 4999 2 0]\n";
+      R"(LightSource "infinite" "rgb L" [1 1 1] "point3 portal" [4999 0 0 5001 0 0 5001 2 0 4999 2 0]
+)";
   const SceneDescription scene = read_pbrt_string(
-      "LookAt 5000 1 3  5000 1 0  0 1 0\nCamera \"perspective\"\nWorldBegin\n" + portal, ".", "portal");
+      R"(LookAt 5000 1 3  5000 1 0  0 1 0
+Camera "perspective"
+WorldBegin
+)" + portal,
+      ".", "portal");
   EXPECT_EQ(scene.origin, DVec3(4992, 0, 0));
   const auto& sky = std::get<description::InfiniteLight>(scene.lights.at(0).node);
   ASSERT_TRUE(sky.portal);
@@ -101,9 +117,13 @@ TEST(MoveOrigin, MovesPortals) {
 
 TEST(MoveOrigin, PhotonsAndBoundsKeepTheCoordinatesOfTheFile) {
   const Scene scene(read_pbrt_string(
-      "LookAt 8000 3 -6  8000 0 0  0 1 0\nCamera \"perspective\"\nWorldBegin\nTranslate 8000 0 0\n"
-      "LightSource \"point\" \"point3 from\" [0 2 0]\n"
-      "Shape \"trianglemesh\" \"point3 P\" [-1 0 -1 1 0 -1 1 0 1 -1 0 1] \"integer indices\" [0 1 2 0 2 3]\n",
+      R"(LookAt 8000 3 -6  8000 0 0  0 1 0
+Camera "perspective"
+WorldBegin
+Translate 8000 0 0
+LightSource "point" "point3 from" [0 2 0]
+Shape "trianglemesh" "point3 P" [-1 0 -1 1 0 -1 1 0 1 -1 0 1] "integer indices" [0 1 2 0 2 3]
+)",
       ".", "far"));
   EXPECT_NE(scene.description().origin.x, 0);
   RenderOptions options = test::options_for("probppm", 1);
@@ -116,12 +136,16 @@ TEST(MoveOrigin, PhotonsAndBoundsKeepTheCoordinatesOfTheFile) {
 
 TEST(MoveOrigin, WarnsWhereStepsOfCoordinatesShow) {
   const auto warning_of = [](const std::string& head, const std::string& shape) {
-    const Scene scene(read_pbrt_string(head + "Camera \"perspective\"\nWorldBegin\n" + shape, ".", "coarse"));
+    const Scene scene(read_pbrt_string(head + R"(Camera "perspective"
+WorldBegin
+)" + shape,
+                                       ".", "coarse"));
     std::string found;
     for (const description::Warning& w : scene.warnings()) found += w.message;
     return found;
   };
-  const std::string ball = "Translate 50000 0 0 Shape \"sphere\" \"float radius\" .01\n";
+  const std::string ball = R"(Translate 50000 0 0 Shape "sphere" "float radius" .01
+)";
   const std::string found = warning_of("", ball);
   EXPECT_NE(found.find("has a size of 0.031 m, but coordinates around 50000 m, which are rounded to 0.004 m"),
             std::string::npos)
@@ -129,7 +153,8 @@ TEST(MoveOrigin, WarnsWhereStepsOfCoordinatesShow) {
   EXPECT_EQ(warning_of("LookAt 50000 0 1  50000 0 0  0 1 0\n", ball), "");
   // A shift of the origin cannot undo rounding in the file itself.
   EXPECT_NE(warning_of("LookAt 50000 0 1  50000 0 0  0 1 0\n",
-                       "Shape \"trianglemesh\" \"point3 P\" [50000 0 0 50000.02 0 0 50000 .02 0]\n"),
+                       R"(Shape "trianglemesh" "point3 P" [50000 0 0 50000.02 0 0 50000 .02 0]
+)"),
             "");
 }
 

@@ -93,9 +93,9 @@ TEST(Obj, LinesMayBeContinuedAndCommented) {
 
 TEST(Obj, ErrorsHaveLineAndColumn) {
   EXPECT_EQ(error_of("v 0 0\n"), "t.obj:1:6: z is missing");
-  EXPECT_EQ(error_of("v 0 0 x\n"), "t.obj:1:7: expected a number, found \"x\"");
-  EXPECT_EQ(error_of("v 0 0 1e99\n"), "t.obj:1:7: the number \"1e99\" is too large");
-  EXPECT_EQ(error_of("v 0 0 nan\n"), "t.obj:1:7: expected a number, found \"nan\"");
+  EXPECT_EQ(error_of("v 0 0 x\n"), R"(t.obj:1:7: expected a number, found "x")");
+  EXPECT_EQ(error_of("v 0 0 1e99\n"), R"(t.obj:1:7: the number "1e99" is too large)");
+  EXPECT_EQ(error_of("v 0 0 nan\n"), R"(t.obj:1:7: expected a number, found "nan")");
   EXPECT_EQ(error_of("v 0 0 1e-99\n"), "no error");
   EXPECT_EQ(error_of(triangle + "f 1 2 4\n"), "t.obj:4:7: there is no vertex 4 here: only 3 precede this line");
   EXPECT_EQ(error_of(triangle + "f 1 2 0\n"), "t.obj:4:7: there is no vertex 0 here: only 3 precede this line");
@@ -105,11 +105,11 @@ TEST(Obj, ErrorsHaveLineAndColumn) {
   EXPECT_EQ(error_of(triangle + "vn 0 0 1\nf 1//2 2 3\n"),
             "t.obj:5:3: there is no normal 2 here: only 1 precede this line");
   EXPECT_EQ(error_of(triangle + "f 1 2 3.5\n"),
-            "t.obj:4:7: expected a corner such as 1, 1/2, 1//3 or 1/2/3, found \"3.5\"");
+            R"(t.obj:4:7: expected a corner such as 1, 1/2, 1//3 or 1/2/3, found "3.5")");
   EXPECT_EQ(error_of(triangle + "f 1 2 99999999999999999999\n"),
-            "t.obj:4:7: expected a corner such as 1, 1/2, 1//3 or 1/2/3, found \"99999999999999999999\"");
-  EXPECT_EQ(error_of("mtllib m.mtl\n", "Kd 1 1 1\n"), "dir/m.mtl:1:1: \"Kd\" appears before the first newmtl");
-  EXPECT_EQ(error_of("mtllib m.mtl\n", "newmtl a\nKd 1 -1 0\n"), "dir/m.mtl:2:6: must not be negative, but is \"-1\"");
+            R"(t.obj:4:7: expected a corner such as 1, 1/2, 1//3 or 1/2/3, found "99999999999999999999")");
+  EXPECT_EQ(error_of("mtllib m.mtl\n", "Kd 1 1 1\n"), R"(dir/m.mtl:1:1: "Kd" appears before the first newmtl)");
+  EXPECT_EQ(error_of("mtllib m.mtl\n", "newmtl a\nKd 1 -1 0\n"), R"(dir/m.mtl:2:6: must not be negative, but is "-1")");
   EXPECT_EQ(error_of("mtllib m.mtl\n", "newmtl a\nmap_Kd -clamp on\n"), "dir/m.mtl:2:17: a file name is missing");
 }
 
@@ -122,8 +122,8 @@ TEST(Obj, ByteOrderMarksAndCarriageReturns) {
     const SceneDescription scene = read(text);
     ASSERT_EQ(scene.shapes.size(), 1u) << testing::PrintToString(end);
     EXPECT_EQ(std::get<TriangleMesh>(scene.shapes[0].geometry).positions.at(2), Point(0, 1, 0));
-    EXPECT_EQ(warnings(scene), (std::vector<std::string>{"t.obj:7:1: \"nonsense\" is not supported: ignored",
-                                                         "t.obj:6:1: there is no material \"a b\": grey is used"}))
+    EXPECT_EQ(warnings(scene), (std::vector<std::string>{R"(t.obj:7:1: "nonsense" is not supported: ignored)",
+                                                         R"(t.obj:6:1: there is no material "a b": grey is used)"}))
         << testing::PrintToString(end);
   }
 }
@@ -181,10 +181,10 @@ TEST(Obj, WhatIsNotReadIsListedInALine) {
                                           "3\nusemtl a\nf 3 2 1\n",
                                       {{"dir/m.mtl", "newmtl d\nrefl x.png\ndisp y.png\nmap_Kd -a -b z.png\n"}});
   EXPECT_EQ(warnings(scene), (std::vector<std::string>{
-                                 "dir/m.mtl:2:1: \"refl\", \"disp\" in materials are not supported: ignored",
-                                 "dir/m.mtl:4:8: the options \"-a\", \"-b\" of texture maps are not supported: ignored",
-                                 "t.obj:5:1: \"p\", \"curv\", \"l\" are not supported: ignored",
-                                 "t.obj:9:1: there are no materials \"a\", \"b\", \"c\": grey is used"}));
+                                 R"(dir/m.mtl:2:1: "refl", "disp" in materials are not supported: ignored)",
+                                 R"(dir/m.mtl:4:8: the options "-a", "-b" of texture maps are not supported: ignored)",
+                                 R"(t.obj:5:1: "p", "curv", "l" are not supported: ignored)",
+                                 R"(t.obj:9:1: there are no materials "a", "b", "c": grey is used)"}));
 }
 
 TEST(Obj, WhatIsNotReadIsSaidOnce) {
@@ -193,9 +193,9 @@ TEST(Obj, WhatIsNotReadIsSaidOnce) {
   EXPECT_EQ(warnings(scene),
             (std::vector<std::string>{"t.obj:1:8: dir/none.mtl: no such file: its materials are left out",
                                       "t.obj:2:1: vertex colours that are not numbers are read as white",
-                                      "t.obj:7:1: \"l\" is not supported: ignored",
+                                      R"(t.obj:7:1: "l" is not supported: ignored)",
                                       "t.obj:9:1: faces of fewer than three corners are left out",
-                                      "t.obj:11:1: there is no material \"gold\": grey is used"}));
+                                      R"(t.obj:11:1: there is no material "gold": grey is used)"}));
 }
 
 const std::string models = LANTHORN_SOURCE_DIR "/tests/scenes/models/";
@@ -295,15 +295,14 @@ TEST(Obj, APictureCalledAfterTheModelIsSuggested) {
   EXPECT_EQ(said(faces), "");
   dir.write("head_d.png", "");
   dir.write("head_Diffuse.TGA", "");
-  EXPECT_EQ(
-      said(faces),
-      "Head.obj:1:1: no material has a picture, but \"head_Diffuse.TGA\" lies beside the file: to use it, begin "
-      "the file with \"mtllib Head.mtl\" and \"usemtl skin\", and write Head.mtl of the lines \"newmtl skin\" and "
-      "\"map_Kd head_Diffuse.TGA\"");
+  EXPECT_EQ(said(faces),
+            R"(Head.obj:1:1: no material has a picture, but "head_Diffuse.TGA" lies beside the file: to use it, begin )"
+            R"(the file with "mtllib Head.mtl" and "usemtl skin", and write Head.mtl of the lines "newmtl skin" and )"
+            R"("map_Kd head_Diffuse.TGA")");
   EXPECT_TRUE(said(triangle + "f 1 2 3\n").empty()) << "no texture coordinates";
   dir.write("a.mtl", "newmtl m\n");
   EXPECT_TRUE(said("mtllib a.mtl\nusemtl m\n" + faces)
-                  .ends_with("to use it, add the line \"map_Kd head_Diffuse.TGA\" "
+                  .ends_with(R"(to use it, add the line "map_Kd head_Diffuse.TGA" )"
                              "to its material"));
   dir.write("a.mtl", "newmtl m\nmap_Kd head_d.png\n");
   EXPECT_EQ(said("mtllib a.mtl\nusemtl m\n" + faces), "");
@@ -421,8 +420,8 @@ TEST(Mtl, InvisibleAndNamelessMaterialsAreShown) {
   for (const char* line : {"d 0\n", "Tr 1\n"}) {
     const SceneDescription scene = with_mtl(line);
     EXPECT_EQ(scene.shapes.at(0).alpha.value, 1) << line;
-    EXPECT_EQ(warnings(scene), std::vector<std::string>{"dir/m.mtl:1:1: material \"m\" would be invisible because of "
-                                                        "\"d\" or \"Tr\", usually a mistake: it is opaque"});
+    EXPECT_EQ(warnings(scene), std::vector<std::string>{R"(dir/m.mtl:1:1: material "m" would be invisible because of )"
+                                                        R"("d" or "Tr", usually a mistake: it is opaque)"});
   }
   const SceneDescription nameless =
       read(triangle + "mtllib m.mtl\nusemtl\nf 1 2 3\n", {{"dir/m.mtl", "newmtl\nKd 1 0 0\n"}});
@@ -469,9 +468,9 @@ TEST(Mtl, TextureMaps) {
       "Kd 0.5 0.5 1\nmap_kd -s 2 3 1 -o 0.5 -clamp on tex\\wood grain.png\nmap_d -imfchan r -bm 2 leaf.png\nrefl "
       "-type sphere sky.png\nmap_Ns gloss.png\nrefl more.png\n");
   EXPECT_EQ(warnings(scene), (std::vector<std::string>{
-                                 "dir/m.mtl:4:7: the options \"-imfchan\", \"-bm\" of texture maps are not supported: "
+                                 R"(dir/m.mtl:4:7: the options "-imfchan", "-bm" of texture maps are not supported: )"
                                  "ignored",
-                                 "dir/m.mtl:5:1: \"refl\", \"map_Ns\" in materials are not supported: ignored"}));
+                                 R"(dir/m.mtl:5:1: "refl", "map_Ns" in materials are not supported: ignored)"}));
   const auto& base = std::get<ImageTexture>(scene.spectrum_textures.at(0).node);
   EXPECT_EQ(base.filename, "dir/tex/wood grain.png");
   EXPECT_EQ(base.tint, (Rgb{0.5f, 0.5f, 1}));
@@ -542,7 +541,7 @@ TEST(Mtl, FilesByBlenderHaveItsRoughness) {
   EXPECT_EQ(files, (std::vector<std::string>{"dir/rough.png", "dir/metal.png"}));
   EXPECT_EQ(
       warnings(by("", maps)),
-      (std::vector<std::string>{"dir/m.mtl:4:1: \"map_Ns\", \"map_refl\" in materials are not supported: ignored"}));
+      (std::vector<std::string>{R"(dir/m.mtl:4:1: "map_Ns", "map_refl" in materials are not supported: ignored)"}));
 }
 
 TEST(Mtl, NormalAndEmissionMaps) {

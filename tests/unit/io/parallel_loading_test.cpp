@@ -22,14 +22,16 @@ TEST(ParallelLoading, MeshesAndTexturesOfPbrt) {
   const std::string mesh =
       "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\n"
       "property list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
-  std::string scene = "Camera \"perspective\"\nWorldBegin\n";
+  std::string scene = R"(Camera "perspective"
+WorldBegin
+)";
   for (int i = 0; i < files; ++i) {
     const std::string n = std::to_string(i);
     dir.write(n + ".jpg", test::with_profile(jpeg, test::profile_of_unknown_tags(static_cast<std::size_t>(i))));
     dir.write(n + ".ply", mesh);
-    scene += "Texture \"t" + n + "\" \"spectrum\" \"imagemap\" \"string filename\" \"" + n + ".jpg\"\n" +
-             "Material \"diffuse\" \"texture reflectance\" \"t" + n + "\"\n" +
-             "Shape \"plymesh\" \"string filename\" \"" + n + ".ply\"\n";
+    scene += "Texture \"t" + n + R"(" "spectrum" "imagemap" "string filename" ")" + n + ".jpg\"\n" +
+             R"(Material "diffuse" "texture reflectance" "t)" + n + "\"\n" + R"(Shape "plymesh" "string filename" ")" +
+             n + ".ply\"\n";
   }
   const SharedScene loaded = build_scene(read_scene(dir.write("a.pbrt", scene)));
   const SceneSummary summary = summarize(*loaded);

@@ -87,116 +87,136 @@ TEST(Pbrt, ErrorsHavePlaces) {
   struct Bad {
     std::string text, message;
   };
-  const std::string square = "\"point3 P\" [0 0 0 1 0 0 1 1 0 0 1 0]";
+  const std::string square = R"("point3 P" [0 0 0 1 0 0 1 1 0 0 1 0])";
   const std::vector<Bad> bad = {
       {"", "t.pbrt:1:1: the scene has no WorldBegin"},
-      {"WorldBegin\n  Frobnicate 1", "t.pbrt:2:3: unknown directive \"Frobnicate\""},
-      {"WorldBegin [", "t.pbrt:1:12: expected a directive, found \"[\""},
+      {"WorldBegin\n  Frobnicate 1", R"(t.pbrt:2:3: unknown directive "Frobnicate")"},
+      {"WorldBegin [", R"(t.pbrt:1:12: expected a directive, found "[")"},
       {"WorldBegin\n\"open", "t.pbrt:2:1: the string that starts here has no closing quote on its line"},
-      {"WorldBegin\nTexture \"a\nb\"", "t.pbrt:2:9: the string that starts here has no closing quote on its line"},
-      {"Film \"r\\qb\"", "t.pbrt:1:8: unknown escape \"\\\\q\" in a string"},
+      {R"(WorldBegin
+Texture "a
+b")",
+       "t.pbrt:2:9: the string that starts here has no closing quote on its line"},
+      {R"(Film "r\qb")", R"(t.pbrt:1:8: unknown escape "\\q" in a string)"},
       {"Translate 1 2", "t.pbrt:1:14: expected a number, found the end of the file"},
-      {"Translate 1 2\nz", "t.pbrt:2:1: expected a number, found \"z\""},
-      {"Translate 1 2 1e99", "t.pbrt:1:15: the number \"1e99\" is too large"},
-      {"Transform 1 0", "t.pbrt:1:11: expected \"[\" and 16 numbers, found \"1\""},
-      {"Transform [1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1 5]", "t.pbrt:1:44: expected \"]\" after 16 numbers, found \"5\""},
-      {"WorldBegin Transform [1 0 0 0 0 1 0 0 0 0 0 0 0 0 0 1]\nLightSource \"point\"",
+      {"Translate 1 2\nz", R"(t.pbrt:2:1: expected a number, found "z")"},
+      {"Translate 1 2 1e99", R"(t.pbrt:1:15: the number "1e99" is too large)"},
+      {"Transform 1 0", R"(t.pbrt:1:11: expected "[" and 16 numbers, found "1")"},
+      {"Transform [1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1 5]", R"(t.pbrt:1:44: expected "]" after 16 numbers, found "5")"},
+      {R"(WorldBegin Transform [1 0 0 0 0 1 0 0 0 0 0 0 0 0 0 1]
+LightSource "point")",
        "t.pbrt:2:1: the transform of a light must have an inverse"},
-      {"WorldBegin Scale 1 0 1\nTexture \"t\" \"float\" \"fbm\"",
+      {R"(WorldBegin Scale 1 0 1
+Texture "t" "float" "fbm")",
        "t.pbrt:2:1: the transform of a texture must have an inverse"},
       {"Rotate 3 0 0 0", "t.pbrt:1:1: Rotate needs an axis that is not zero"},
       {"LookAt 0 0 0 0 0 0 0 1 0",
        "t.pbrt:1:1: LookAt needs a target apart from the eye, and an up vector not along the view"},
-      {"ActiveTransform Middle", "t.pbrt:1:17: expected All, StartTime or EndTime, found \"Middle\""},
+      {"ActiveTransform Middle", R"(t.pbrt:1:17: expected All, StartTime or EndTime, found "Middle")"},
       {"TransformTimes 1 1", "t.pbrt:1:1: TransformTimes needs an end time after the start time"},
-      {"Camera perspective", "t.pbrt:1:8: expected a kind or name in quotes, found \"perspective\""},
-      {"Camera \"pinhole\"", "t.pbrt:1:1: unknown camera \"pinhole\""},
-      {"Film \"rgb\" \"xresolution\" 5", "t.pbrt:1:12: expected a parameter \"type name\", found \"xresolution\""},
-      {"Film \"rgb\" \"double x\" 5", "t.pbrt:1:12: unknown parameter type \"double\""},
-      {"Film \"rgb\" \"integer xresolution\" 5.5", "t.pbrt:1:34: expected an integer, found \"5.5\""},
-      {"Film \"rgb\" \"integer xresolution\" [5", "t.pbrt:1:36: expected a value or \"]\", found the end of the file"},
-      {"Film \"rgb\" \"integer xresolution\" [5 [", "t.pbrt:1:37: expected an integer, found \"[\""},
-      {"Film \"rgb\"\n \"float xresolution\" [5]\nWorldBegin",
-       "t.pbrt:2:2: parameter \"xresolution\" of Film \"rgb\" must be of type integer, not float"},
-      {"Film \"rgb\"\n \"integer xresolution\" [5 6]\nWorldBegin",
-       "t.pbrt:2:2: parameter \"xresolution\" of Film \"rgb\" needs one value, has 2"},
-      {"Film \"rgb\" \"string filename\" [name]", "t.pbrt:1:31: expected a string in quotes, found \"name\""},
-      {"Integrator \"path\" \"bool regularize\" yes", "t.pbrt:1:37: expected true or false, found \"yes\""},
+      {"Camera perspective", R"(t.pbrt:1:8: expected a kind or name in quotes, found "perspective")"},
+      {R"(Camera "pinhole")", R"(t.pbrt:1:1: unknown camera "pinhole")"},
+      {R"(Film "rgb" "xresolution" 5)", R"(t.pbrt:1:12: expected a parameter "type name", found "xresolution")"},
+      {R"(Film "rgb" "double x" 5)", R"(t.pbrt:1:12: unknown parameter type "double")"},
+      {R"(Film "rgb" "integer xresolution" 5.5)", R"(t.pbrt:1:34: expected an integer, found "5.5")"},
+      {R"(Film "rgb" "integer xresolution" [5)", R"(t.pbrt:1:36: expected a value or "]", found the end of the file)"},
+      {R"(Film "rgb" "integer xresolution" [5 [)", R"(t.pbrt:1:37: expected an integer, found "[")"},
+      {R"(Film "rgb"
+ "float xresolution" [5]
+WorldBegin)",
+       R"(t.pbrt:2:2: parameter "xresolution" of Film "rgb" must be of type integer, not float)"},
+      {R"(Film "rgb"
+ "integer xresolution" [5 6]
+WorldBegin)",
+       R"(t.pbrt:2:2: parameter "xresolution" of Film "rgb" needs one value, has 2)"},
+      {R"(Film "rgb" "string filename" [name])", R"(t.pbrt:1:31: expected a string in quotes, found "name")"},
+      {R"(Integrator "path" "bool regularize" yes)", R"(t.pbrt:1:37: expected true or false, found "yes")"},
       {"WorldBegin WorldBegin", "t.pbrt:1:12: this is the second WorldBegin"},
-      {"WorldBegin Camera \"perspective\"", "t.pbrt:1:12: Camera must come before WorldBegin"},
-      {"Shape \"sphere\"", "t.pbrt:1:1: Shape must come after WorldBegin"},
+      {R"(WorldBegin Camera "perspective")", "t.pbrt:1:12: Camera must come before WorldBegin"},
+      {R"(Shape "sphere")", "t.pbrt:1:1: Shape must come after WorldBegin"},
       {"WorldBegin AttributeEnd", "t.pbrt:1:12: AttributeEnd has no matching begin"},
-      {"WorldBegin\nAttributeBegin ObjectBegin \"o\"\nAttributeEnd",
+      {R"(WorldBegin
+AttributeBegin ObjectBegin "o"
+AttributeEnd)",
        "t.pbrt:3:1: AttributeEnd has no matching begin (the innermost open block begins at line 2)"},
       {"WorldBegin\n AttributeBegin\n", "t.pbrt:2:2: the block that begins here has no end"},
-      {"WorldBegin ObjectBegin \"o\" ObjectBegin \"p\"", "t.pbrt:1:28: ObjectBegin inside an object"},
-      {"WorldBegin ObjectBegin \"o\" ObjectEnd ObjectBegin \"o\"", "t.pbrt:1:38: object \"o\" is defined twice"},
-      {"WorldBegin ObjectBegin \"o\" ObjectInstance \"o\"", "t.pbrt:1:28: ObjectInstance inside an object"},
-      {"WorldBegin\nObjectInstance \"o\"", "t.pbrt:2:1: object \"o\" is not defined"},
-      {"WorldBegin\nNamedMaterial \"m\"", "t.pbrt:2:1: material \"m\" is not defined"},
-      {"WorldBegin MakeNamedMaterial \"m\"", "t.pbrt:1:12: parameter \"type\" of MakeNamedMaterial \"m\" is missing"},
-      {"WorldBegin MakeNamedMaterial \"m\" \"string type\" \"diffuse\"\nMakeNamedMaterial \"m\"",
-       "t.pbrt:2:1: material \"m\" is defined twice"},
-      {"WorldBegin Material \"gold\"", "t.pbrt:1:12: unknown material \"gold\""},
-      {"WorldBegin Material \"diffuse\" \"texture reflectance\" \"t\"",
-       "t.pbrt:1:31: parameter \"reflectance\" of Material \"diffuse\" names the spectrum texture \"t\", which is not "
+      {R"(WorldBegin ObjectBegin "o" ObjectBegin "p")", "t.pbrt:1:28: ObjectBegin inside an object"},
+      {R"(WorldBegin ObjectBegin "o" ObjectEnd ObjectBegin "o")", R"(t.pbrt:1:38: object "o" is defined twice)"},
+      {R"(WorldBegin ObjectBegin "o" ObjectInstance "o")", "t.pbrt:1:28: ObjectInstance inside an object"},
+      {R"(WorldBegin
+ObjectInstance "o")",
+       R"(t.pbrt:2:1: object "o" is not defined)"},
+      {R"(WorldBegin
+NamedMaterial "m")",
+       R"(t.pbrt:2:1: material "m" is not defined)"},
+      {R"(WorldBegin MakeNamedMaterial "m")", R"(t.pbrt:1:12: parameter "type" of MakeNamedMaterial "m" is missing)"},
+      {R"(WorldBegin MakeNamedMaterial "m" "string type" "diffuse"
+MakeNamedMaterial "m")",
+       R"(t.pbrt:2:1: material "m" is defined twice)"},
+      {R"(WorldBegin Material "gold")", R"(t.pbrt:1:12: unknown material "gold")"},
+      {R"(WorldBegin Material "diffuse" "texture reflectance" "t")",
+       R"(t.pbrt:1:31: parameter "reflectance" of Material "diffuse" names the spectrum texture "t", which is not )"
        "defined"},
-      {"WorldBegin Material \"diffuse\" \"rgb reflectance\" [1 1]",
-       "t.pbrt:1:31: parameter \"reflectance\" of Material \"diffuse\" needs three values, has 2"},
-      {"WorldBegin Material \"diffuse\" \"rgb reflectance\" [0 -1 0]",
-       "t.pbrt:1:31: parameter \"reflectance\" of Material \"diffuse\" must not be negative"},
-      {"WorldBegin Material \"diffuse\" \"spectrum reflectance\" [400 1 300 1]",
-       "t.pbrt:1:31: parameter \"reflectance\" of Material \"diffuse\" needs wavelengths in increasing order"},
-      {"WorldBegin Material \"mix\" \"string materials\" [\"a\" \"b\"]",
-       "t.pbrt:1:27: parameter \"materials\" of Material \"mix\" names \"a\", which is not defined before it"},
-      {"WorldBegin Material \"conductor\" \"rgb reflectance\" [1 1 1]\n \"rgb k\" [1 1 1]",
-       "t.pbrt:1:33: parameter \"reflectance\" of Material \"conductor\" cannot be given together with \"eta\" or "
-       "\"k\""},
-      {"WorldBegin Texture \"t\" \"colour\" \"constant\"",
-       "t.pbrt:1:12: a texture's type must be float or spectrum, not \"colour\""},
-      {"WorldBegin Texture \"t\" \"float\" \"noise\"", "t.pbrt:1:12: unknown texture \"noise\""},
-      {"WorldBegin Texture \"t\" \"float\" \"imagemap\"",
-       "t.pbrt:1:12: parameter \"filename\" of Texture \"imagemap\" is missing"},
-      {"WorldBegin Texture \"t\" \"float\" \"constant\"\nTexture \"t\" \"float\" \"constant\"",
-       "t.pbrt:2:1: texture \"t\" is defined twice"},
-      {"WorldBegin LightSource \"sun\"", "t.pbrt:1:12: unknown light \"sun\""},
-      {"WorldBegin LightSource \"point\" \"float I\" 1",
-       "t.pbrt:1:32: parameter \"I\" of LightSource \"point\" must be a spectrum (rgb, blackbody or spectrum), not "
+      {R"(WorldBegin Material "diffuse" "rgb reflectance" [1 1])",
+       R"(t.pbrt:1:31: parameter "reflectance" of Material "diffuse" needs three values, has 2)"},
+      {R"(WorldBegin Material "diffuse" "rgb reflectance" [0 -1 0])",
+       R"(t.pbrt:1:31: parameter "reflectance" of Material "diffuse" must not be negative)"},
+      {R"(WorldBegin Material "diffuse" "spectrum reflectance" [400 1 300 1])",
+       R"(t.pbrt:1:31: parameter "reflectance" of Material "diffuse" needs wavelengths in increasing order)"},
+      {R"(WorldBegin Material "mix" "string materials" ["a" "b"])",
+       R"(t.pbrt:1:27: parameter "materials" of Material "mix" names "a", which is not defined before it)"},
+      {R"(WorldBegin Material "conductor" "rgb reflectance" [1 1 1]
+ "rgb k" [1 1 1])",
+       R"(t.pbrt:1:33: parameter "reflectance" of Material "conductor" cannot be given together with "eta" or )"
+       R"("k")"},
+      {R"(WorldBegin Texture "t" "colour" "constant")",
+       R"(t.pbrt:1:12: a texture's type must be float or spectrum, not "colour")"},
+      {R"(WorldBegin Texture "t" "float" "noise")", R"(t.pbrt:1:12: unknown texture "noise")"},
+      {R"(WorldBegin Texture "t" "float" "imagemap")",
+       R"(t.pbrt:1:12: parameter "filename" of Texture "imagemap" is missing)"},
+      {R"(WorldBegin Texture "t" "float" "constant"
+Texture "t" "float" "constant")",
+       R"(t.pbrt:2:1: texture "t" is defined twice)"},
+      {R"(WorldBegin LightSource "sun")", R"(t.pbrt:1:12: unknown light "sun")"},
+      {R"(WorldBegin LightSource "point" "float I" 1)",
+       R"(t.pbrt:1:32: parameter "I" of LightSource "point" must be a spectrum (rgb, blackbody or spectrum), not )"
        "float"},
-      {"WorldBegin AreaLightSource \"sphere\"", "t.pbrt:1:12: unknown area light \"sphere\""},
-      {"WorldBegin Shape \"cube\"", "t.pbrt:1:12: unknown shape \"cube\""},
-      {"WorldBegin Shape \"trianglemesh\"", "t.pbrt:1:12: parameter \"P\" of Shape \"trianglemesh\" is missing"},
-      {"WorldBegin Shape \"trianglemesh\" " + square,
-       "t.pbrt:1:12: parameter \"indices\" of Shape \"trianglemesh\" is missing"},
-      {"WorldBegin Shape \"trianglemesh\" " + square + " \"integer indices\" [0 1]",
-       "t.pbrt:1:70: parameter \"indices\" of Shape \"trianglemesh\" needs a multiple of 3 values, has 2"},
-      {"WorldBegin Shape \"trianglemesh\" " + square + " \"integer indices\" [0 1 4]",
-       "t.pbrt:1:70: parameter \"indices\" of Shape \"trianglemesh\" has the value 4, but there are 4 points"},
-      {"WorldBegin Shape \"trianglemesh\" " + square + " \"integer indices\" [0 1 -1]",
-       "t.pbrt:1:70: parameter \"indices\" of Shape \"trianglemesh\" has the value -1, but there are 4 points"},
-      {"WorldBegin Shape \"trianglemesh\" \"point3 P\" [0 0 0 1]",
-       "t.pbrt:1:33: parameter \"P\" of Shape \"trianglemesh\" needs a multiple of 3 values, has 4"},
-      {"WorldBegin Shape \"bilinearmesh\" " + square + " \"point2 uv\" [0 0]",
-       "t.pbrt:1:70: parameter \"uv\" of Shape \"bilinearmesh\" has 1 entries, but there are 4 points"},
-      {"WorldBegin Shape \"sphere\" \"texture alpha\" \"t\"", "t.pbrt:1:12: float texture \"t\" is not defined"},
-      {"WorldBegin\nShape \"plymesh\" \"string filename\" \"no.ply\"", "t.pbrt:2:1: ./no.ply: no such file"},
-      {"WorldBegin Attribute \"camera\"",
-       "t.pbrt:1:12: unknown Attribute target \"camera\": it must be shape, light, material, medium or texture"},
-      {"ColorSpace \"adobe\"", "t.pbrt:1:1: unknown color space \"adobe\""},
-      {"Option \"seed\" x", "t.pbrt:1:1: Option \"seed\" needs an integer, not \"x\""},
-      {"WorldBegin MediumInterface \"fog\"", "t.pbrt:1:12: medium \"fog\" is not defined"},
-      {"Include \"no.pbrt\"", "t.pbrt:1:1: no.pbrt: no such file"},
+      {R"(WorldBegin AreaLightSource "sphere")", R"(t.pbrt:1:12: unknown area light "sphere")"},
+      {R"(WorldBegin Shape "cube")", R"(t.pbrt:1:12: unknown shape "cube")"},
+      {R"(WorldBegin Shape "trianglemesh")", R"(t.pbrt:1:12: parameter "P" of Shape "trianglemesh" is missing)"},
+      {R"(WorldBegin Shape "trianglemesh" )" + square,
+       R"(t.pbrt:1:12: parameter "indices" of Shape "trianglemesh" is missing)"},
+      {R"(WorldBegin Shape "trianglemesh" )" + square + R"( "integer indices" [0 1])",
+       R"(t.pbrt:1:70: parameter "indices" of Shape "trianglemesh" needs a multiple of 3 values, has 2)"},
+      {R"(WorldBegin Shape "trianglemesh" )" + square + R"( "integer indices" [0 1 4])",
+       R"(t.pbrt:1:70: parameter "indices" of Shape "trianglemesh" has the value 4, but there are 4 points)"},
+      {R"(WorldBegin Shape "trianglemesh" )" + square + R"( "integer indices" [0 1 -1])",
+       R"(t.pbrt:1:70: parameter "indices" of Shape "trianglemesh" has the value -1, but there are 4 points)"},
+      {R"(WorldBegin Shape "trianglemesh" "point3 P" [0 0 0 1])",
+       R"(t.pbrt:1:33: parameter "P" of Shape "trianglemesh" needs a multiple of 3 values, has 4)"},
+      {R"(WorldBegin Shape "bilinearmesh" )" + square + R"( "point2 uv" [0 0])",
+       R"(t.pbrt:1:70: parameter "uv" of Shape "bilinearmesh" has 1 entries, but there are 4 points)"},
+      {R"(WorldBegin Shape "sphere" "texture alpha" "t")", R"(t.pbrt:1:12: float texture "t" is not defined)"},
+      {R"(WorldBegin
+Shape "plymesh" "string filename" "no.ply")",
+       "t.pbrt:2:1: ./no.ply: no such file"},
+      {R"(WorldBegin Attribute "camera")",
+       R"(t.pbrt:1:12: unknown Attribute target "camera": it must be shape, light, material, medium or texture)"},
+      {R"(ColorSpace "adobe")", R"(t.pbrt:1:1: unknown color space "adobe")"},
+      {R"(Option "seed" x)", R"(t.pbrt:1:1: Option "seed" needs an integer, not "x")"},
+      {R"(WorldBegin MediumInterface "fog")", R"(t.pbrt:1:12: medium "fog" is not defined)"},
+      {R"(Include "no.pbrt")", "t.pbrt:1:1: no.pbrt: no such file"},
   };
   for (const Bad& b : bad) EXPECT_EQ(error_of(b.text), b.message) << b.text;
 }
 
 TEST(Pbrt, TransformsCompose) {
   const auto scene = read(
-      "WorldBegin Translate 1 2 3 Rotate 90 0 0 1 Scale 2 1 1 Shape \"sphere\"\n"
-      "Identity Transform [2 0 0 0 0 1 0 0 0 0 1 0 5 0 0 1] Shape \"sphere\"\n"
-      "ConcatTransform [1 0 0 0 0 1 0 0 0 0 1 0 1 0 0 1] Shape \"sphere\"\n"
-      "CoordinateSystem \"here\" Identity Shape \"sphere\" CoordSysTransform \"here\" Shape \"sphere\"\n"
-      "CoordSysTransform \"world\" Shape \"sphere\"");
+      R"(WorldBegin Translate 1 2 3 Rotate 90 0 0 1 Scale 2 1 1 Shape "sphere"
+Identity Transform [2 0 0 0 0 1 0 0 0 0 1 0 5 0 0 1] Shape "sphere"
+ConcatTransform [1 0 0 0 0 1 0 0 0 0 1 0 1 0 0 1] Shape "sphere"
+CoordinateSystem "here" Identity Shape "sphere" CoordSysTransform "here" Shape "sphere"
+CoordSysTransform "world" Shape "sphere")");
   ASSERT_EQ(scene.shapes.size(), 6u);
   const auto image = [&](std::size_t i) { return image_of(scene.shapes[i].object_to_world, {1, 0, 0}); };
   expect_near(image(0), {1, 4, 3});
@@ -209,8 +229,8 @@ TEST(Pbrt, TransformsCompose) {
 
 TEST(Pbrt, CameraTransformIsTheInverse) {
   const auto scene = read(
-      "LookAt 1 2 3  1 2 10  0 1 0 Camera \"perspective\" WorldBegin\n"
-      "CoordSysTransform \"camera\" Shape \"sphere\"");
+      R"(LookAt 1 2 3  1 2 10  0 1 0 Camera "perspective" WorldBegin
+CoordSysTransform "camera" Shape "sphere")");
   expect_near(image_of(scene.view.camera.camera_to_world, {0, 0, 1}), {1, 2, 4});
   expect_near(image_of(scene.view.camera.camera_to_world, {0, 1, 0}), {1, 3, 3});
   EXPECT_EQ(scene.shapes[0].object_to_world.start, scene.view.camera.camera_to_world.start);
@@ -219,9 +239,9 @@ TEST(Pbrt, CameraTransformIsTheInverse) {
 
 TEST(Pbrt, ActiveTransformMovesShapes) {
   const auto scene = read(
-      "TransformTimes 2 4 WorldBegin ActiveTransform StartTime Translate 1 0 0\n"
-      "ActiveTransform EndTime Translate 0 1 0 ActiveTransform All Translate 0 0 1 Shape \"sphere\"\n"
-      "LightSource \"point\" Identity Shape \"sphere\"");
+      R"(TransformTimes 2 4 WorldBegin ActiveTransform StartTime Translate 1 0 0
+ActiveTransform EndTime Translate 0 1 0 ActiveTransform All Translate 0 0 1 Shape "sphere"
+LightSource "point" Identity Shape "sphere")");
   const AnimatedTransform& moving = scene.shapes[0].object_to_world;
   EXPECT_EQ(moving.start_time, 2);
   EXPECT_EQ(moving.end_time, 4);
@@ -235,11 +255,10 @@ TEST(Pbrt, ActiveTransformMovesShapes) {
 
 TEST(Pbrt, AttributesAreRestored) {
   const auto scene = read(
-      "WorldBegin MakeNamedMaterial \"m\" \"string type\" \"interface\"\n"
-      "AttributeBegin Translate 1 0 0 ReverseOrientation NamedMaterial \"m\" AreaLightSource \"diffuse\" ColorSpace "
-      "\"rec2020\"\n"
-      " AttributeBegin Material \"diffuse\" Shape \"sphere\" AttributeEnd\n"
-      "AttributeEnd Shape \"sphere\" LightSource \"point\" \"rgb I\" [1 1 1]");
+      R"(WorldBegin MakeNamedMaterial "m" "string type" "interface"
+AttributeBegin Translate 1 0 0 ReverseOrientation NamedMaterial "m" AreaLightSource "diffuse" ColorSpace "rec2020"
+ AttributeBegin Material "diffuse" Shape "sphere" AttributeEnd
+AttributeEnd Shape "sphere" LightSource "point" "rgb I" [1 1 1])");
   const auto& inner = scene.shapes[0];
   const auto& outer = scene.shapes[1];
   EXPECT_TRUE(inner.reverse_orientation);
@@ -257,12 +276,12 @@ TEST(Pbrt, AttributesAreRestored) {
 
 TEST(Pbrt, AttributeGivesDefaults) {
   const auto scene = read(
-      "ColorSpace \"aces2065-1\" WorldBegin Attribute \"shape\" \"float radius\" 3 \"float unknown\" 1\n"
-      "Attribute \"light\" \"rgb L\" [2 2 2] Attribute \"material\" \"float roughness\" 0.5\n"
-      "Attribute \"texture\" \"float scale\" 7\n"
-      "Shape \"sphere\" Shape \"sphere\" \"float radius\" 4 LightSource \"infinite\" Material \"dielectric\"\n"
-      "Texture \"t\" \"float\" \"imagemap\" \"string filename\" \"a.png\"\n"
-      "AttributeBegin Attribute \"shape\" \"float radius\" 5 Shape \"sphere\" AttributeEnd Shape \"sphere\"");
+      R"(ColorSpace "aces2065-1" WorldBegin Attribute "shape" "float radius" 3 "float unknown" 1
+Attribute "light" "rgb L" [2 2 2] Attribute "material" "float roughness" 0.5
+Attribute "texture" "float scale" 7
+Shape "sphere" Shape "sphere" "float radius" 4 LightSource "infinite" Material "dielectric"
+Texture "t" "float" "imagemap" "string filename" "a.png"
+AttributeBegin Attribute "shape" "float radius" 5 Shape "sphere" AttributeEnd Shape "sphere")");
   std::vector<float> radii;
   for (const auto& shape : scene.shapes) radii.push_back(std::get<description::Sphere>(shape.geometry).radius);
   EXPECT_EQ(radii, (std::vector<float>{3, 4, 5, 3}));
@@ -276,10 +295,10 @@ TEST(Pbrt, AttributeGivesDefaults) {
 
 TEST(Pbrt, ObjectsAndInstances) {
   const auto scene = read(
-      "WorldBegin ObjectInstance \"later\" Translate 1 0 0\n"
-      "ObjectBegin \"o\" Translate 0 1 0 Shape \"sphere\" AreaLightSource \"diffuse\" Shape \"disk\" ObjectEnd\n"
-      "Scale 2 2 2 ObjectInstance \"o\" Shape \"cylinder\"\n"
-      "ObjectBegin \"later\" ObjectEnd");
+      R"(WorldBegin ObjectInstance "later" Translate 1 0 0
+ObjectBegin "o" Translate 0 1 0 Shape "sphere" AreaLightSource "diffuse" Shape "disk" ObjectEnd
+Scale 2 2 2 ObjectInstance "o" Shape "cylinder"
+ObjectBegin "later" ObjectEnd)");
   ASSERT_EQ(scene.objects.size(), 2u);
   EXPECT_EQ(scene.objects[0].name, "later");
   ASSERT_EQ(scene.objects[1].shapes.size(), 2u);
@@ -294,10 +313,10 @@ TEST(Pbrt, ObjectsAndInstances) {
 
 TEST(Pbrt, NamedMaterialsMayBeDefinedLater) {
   const auto scene = read(
-      "WorldBegin NamedMaterial \"late\" Shape \"sphere\" Material \"mix\" \"string materials\" [\"late\" \"late\"]\n"
-      "Shape \"sphere\" Material \"diffuse\" \"texture reflectance\" \"t\" Shape \"sphere\" \"texture alpha\" \"f\"\n"
-      "Texture \"t\" \"spectrum\" \"constant\" Texture \"f\" \"float\" \"constant\"\n"
-      "MakeNamedMaterial \"late\" \"string type\" \"conductor\"");
+      R"(WorldBegin NamedMaterial "late" Shape "sphere" Material "mix" "string materials" ["late" "late"]
+Shape "sphere" Material "diffuse" "texture reflectance" "t" Shape "sphere" "texture alpha" "f"
+Texture "t" "spectrum" "constant" Texture "f" "float" "constant"
+MakeNamedMaterial "late" "string type" "conductor")");
   const auto material = [&](std::size_t i) { return scene.materials[scene.shapes[i].material]; };
   EXPECT_EQ(material(0).name, "late");
   EXPECT_TRUE(std::holds_alternative<description::ConductorMaterial>(material(0).node));
@@ -308,13 +327,13 @@ TEST(Pbrt, NamedMaterialsMayBeDefinedLater) {
 
 TEST(Pbrt, IncludesAndImports) {
   const test::TemporaryDir dir;
-  dir.write("parts/a.pbrt", "Translate 1 0 0 Include \"parts/b.pbrt\"");
-  dir.write("parts/b.pbrt", "Shape \"sphere\" AttributeEnd");
+  dir.write("parts/a.pbrt", R"(Translate 1 0 0 Include "parts/b.pbrt")");
+  dir.write("parts/b.pbrt", R"(Shape "sphere" AttributeEnd)");
   dir.write("parts/i.pbrt.gz",
-            test::gzip("Translate 5 0 0 MakeNamedMaterial \"m\" \"string type\" \"diffuse\" Shape \"sphere\""));
+            test::gzip(R"(Translate 5 0 0 MakeNamedMaterial "m" "string type" "diffuse" Shape "sphere")"));
   const auto scene = read_scene(dir.write("main.pbrt",
-                                          "WorldBegin AttributeBegin Include \"parts/a.pbrt\"\n"
-                                          "Import \"parts/i.pbrt.gz\" NamedMaterial \"m\" Shape \"sphere\""));
+                                          R"(WorldBegin AttributeBegin Include "parts/a.pbrt"
+Import "parts/i.pbrt.gz" NamedMaterial "m" Shape "sphere")"));
   ASSERT_EQ(scene.shapes.size(), 3u);
   expect_near(image_of(scene.shapes[0].object_to_world, {0, 0, 0}), {1, 0, 0});
   expect_near(image_of(scene.shapes[1].object_to_world, {0, 0, 0}), {5, 0, 0});
@@ -329,27 +348,28 @@ TEST(Pbrt, IncludeErrors) {
   const auto error_in = [&](const std::string& text) {
     return test::error_text([&] { read_scene(dir.write("main.pbrt", text)); });
   };
-  dir.write("self.pbrt", "\nInclude \"./self.pbrt\"");
-  dir.write("back.pbrt", "Include \"main.pbrt\"");
+  dir.write("self.pbrt", R"(
+Include "./self.pbrt")");
+  dir.write("back.pbrt", R"(Include "main.pbrt")");
   dir.write("bad.pbrt", "\n\n  Translate x");
   dir.write("open.pbrt", "AttributeBegin");
   dir.write("close.pbrt", "AttributeEnd");
-  EXPECT_EQ(error_in("Include \"self.pbrt\""),
+  EXPECT_EQ(error_in(R"(Include "self.pbrt")"),
             folder + "self.pbrt:2:1: file \"" + folder + "self.pbrt\" includes itself");
-  EXPECT_EQ(error_in("Include \"back.pbrt\""),
+  EXPECT_EQ(error_in(R"(Include "back.pbrt")"),
             folder + "back.pbrt:1:1: file \"" + folder + "main.pbrt\" includes itself");
-  EXPECT_EQ(error_in("Include \"bad.pbrt\""), folder + "bad.pbrt:3:13: expected a number, found \"x\"");
-  EXPECT_EQ(error_in("Include \"none.pbrt\""),
+  EXPECT_EQ(error_in(R"(Include "bad.pbrt")"), folder + R"(bad.pbrt:3:13: expected a number, found "x")");
+  EXPECT_EQ(error_in(R"(Include "none.pbrt")"),
             folder + "main.pbrt:1:1: " + folder + "none.pbrt: no such file; --missing skip renders without it");
-  EXPECT_EQ(error_in("Import \"bad.pbrt\""), folder + "main.pbrt:1:1: Import must come after WorldBegin");
-  EXPECT_EQ(error_in("WorldBegin Import \"open.pbrt\""),
+  EXPECT_EQ(error_in(R"(Import "bad.pbrt")"), folder + "main.pbrt:1:1: Import must come after WorldBegin");
+  EXPECT_EQ(error_in(R"(WorldBegin Import "open.pbrt")"),
             folder +
                 "main.pbrt:1:12: the end of the imported file has no matching begin (the innermost open block begins "
                 "at line 1)");
-  EXPECT_EQ(error_in("WorldBegin AttributeBegin Import \"close.pbrt\""),
+  EXPECT_EQ(error_in(R"(WorldBegin AttributeBegin Import "close.pbrt")"),
             folder + "close.pbrt:1:1: AttributeEnd has no matching begin (the innermost open block begins at line 1)");
-  for (int i = 0; i < 70; ++i) dir.write(fmt::format("n{}.pbrt", i), fmt::format("Include \"n{}.pbrt\"", i + 1));
-  EXPECT_EQ(error_in("Include \"n0.pbrt\""),
+  for (int i = 0; i < 70; ++i) dir.write(fmt::format("n{}.pbrt", i), fmt::format(R"(Include "n{}.pbrt")", i + 1));
+  EXPECT_EQ(error_in(R"(Include "n0.pbrt")"),
             folder + "n62.pbrt:1:1: files include each other more than 64 levels deep");
 }
 
@@ -361,11 +381,16 @@ TEST(Pbrt, ManyInclusions) {
     return result;
   };
   const FileReader files = [&](const std::filesystem::path& path) -> std::string {
-    if (path == "a") return times(50, "Include \"b\"\n");
-    if (path == "b") return times(50, "Include \"c\"\n");
+    if (path == "a")
+      return times(50, R"(Include "b"
+)");
+    if (path == "b")
+      return times(50, R"(Include "c"
+)");
     return "Translate 1 0 0\n";
   };
-  const std::string text = "WorldBegin\n" + times(41, "Include \"a\"\n") + "Shape \"sphere\"";
+  const std::string text = "WorldBegin\n" + times(41, R"(Include "a"
+)") + R"(Shape "sphere")";
   const SceneDescription scene = pbrt::read(text, "", "t.pbrt", method_of_file, files);
   expect_near(image_of(scene.shapes[0].object_to_world, {0, 0, 0}), {102'500, 0, 0});
   EXPECT_EQ(scene.files.size(), 3u);
@@ -390,7 +415,9 @@ TEST(Pbrt, InclusionsThatMultiplyAreBounded) {
     for (int i = 0; i < 3 && level < 6; ++i) text += "Include \"f" + std::to_string(level + 1) + "\"\n";
     return text;
   };
-  const std::string text = "WorldBegin\nInclude \"f0\"\nShape \"sphere\"";
+  const std::string text = R"(WorldBegin
+Include "f0"
+Shape "sphere")";
   EXPECT_EQ(pbrt::read(text, "", "t.pbrt", method_of_file, files).shapes.size(), 1u);
   constexpr std::size_t inclusions = (3 * 3 * 3 * 3 * 3 * 3 * 3 - 1) / 2;
   EXPECT_EQ(reads, inclusions + 7) << "the search for the version of the format reads each file once";
@@ -424,53 +451,66 @@ TEST(Pbrt, WorkOfTheWholeSceneIsBounded) {
     return test::error_text([&] { pbrt::Parser("WorldBegin\n" + text, name, files, build, context).parse(); });
   };
   const std::string
-      light = "LightSource \"point\" \"spectrum I\" \"a.spd\"\n",
+      light = R"(LightSource "point" "spectrum I" "a.spd"
+)",
       surface =
-          "Shape \"loopsubdiv\" \"integer levels\" 2 \"point3 P\" [0 0 0 1 0 0 0 1 0] \"integer indices\" [0 1 2]\n";
+          R"(Shape "loopsubdiv" "integer levels" 2 "point3 P" [0 0 0 1 0 0 0 1 0] "integer indices" [0 1 2]
+)";
   EXPECT_EQ(error_in(light + light + surface + surface, 22, 32), "no error");
   EXPECT_EQ(error_in(light + light, 21, 0),
-            "t.pbrt:3:21: parameter \"I\" of LightSource \"point\" names a spectrum file, but all uses of spectrum "
+            R"(t.pbrt:3:21: parameter "I" of LightSource "point" names a spectrum file, but all uses of spectrum )"
             "files together are too large");
-  EXPECT_EQ(
-      error_in(surface + surface, 0, 31),
-      "t.pbrt:3:20: parameter \"levels\" of Shape \"loopsubdiv\" would make more than 67 million triangles of the "
-      "scene's subdivision surfaces");
+  EXPECT_EQ(error_in(surface + surface, 0, 31),
+            R"(t.pbrt:3:20: parameter "levels" of Shape "loopsubdiv" would make more than 67 million triangles of the )"
+            "scene's subdivision surfaces");
 }
 
 TEST(Pbrt, CountsAreBounded) {
-  std::string parameters = "Film \"rgb\"", defaults;
-  for (int i = 0; i < 1001; ++i) parameters += "\n\"float x\" 1";
-  for (int i = 0; i < 4097; ++i) defaults += "Attribute \"shape\" \"float x\" 1\n";
+  std::string parameters = R"(Film "rgb")", defaults;
+  for (int i = 0; i < 1001; ++i)
+    parameters += R"(
+"float x" 1)";
+  for (int i = 0; i < 4097; ++i)
+    defaults += R"(Attribute "shape" "float x" 1
+)";
   EXPECT_EQ(error_of(parameters), "t.pbrt:1002:1: a directive has more than 1000 parameters");
   EXPECT_EQ(error_of(defaults), "t.pbrt:4097:1: more than 4096 defaults are set for shape");
   std::string numbers;
   for (int i = 0; i < 40'000; ++i) numbers += " 1";
-  EXPECT_EQ(
-      error_of("Attribute \"shape\" \"float x\" [" + numbers + "]\nAttribute \"shape\" \"float y\" [" + numbers + "]"),
-      "t.pbrt:2:1: the defaults that are set for shape have more than 256 KiB of values");
+  EXPECT_EQ(error_of(R"(Attribute "shape" "float x" [)" + numbers + R"(]
+Attribute "shape" "float y" [)" +
+                     numbers + "]"),
+            "t.pbrt:2:1: the defaults that are set for shape have more than 256 KiB of values");
 }
 
 TEST(Pbrt, OtherExtensionsAreErrors) { EXPECT_THROW(read_scene("scene.xml"), Error); }
 
 TEST(Pbrt, WarnsOncePerKind) {
   const auto scene = read(
-      "Option \"disablepixeljitter\" true\nOption \"disablepixeljitter\" true\nSampler \"sobol\" \"integer frob\" 1\n"
-      "WorldBegin\nIdentity\nIdentity\nShape \"sphere\" \"float size\" 1 \"float radius\" 1 \"float "
-      "radius\" 2\n"
-      "Shape \"sphere\" \"float size\" 1\nShape \"disk\" \"float size\" 1\nTransformBegin TransformEnd\nWorldEnd\n"
-      "CoordSysTransform \"none\" CoordSysTransform \"none\"");
+      R"(Option "disablepixeljitter" true
+Option "disablepixeljitter" true
+Sampler "sobol" "integer frob" 1
+WorldBegin
+Identity
+Identity
+Shape "sphere" "float size" 1 "float radius" 1 "float radius" 2
+Shape "sphere" "float size" 1
+Shape "disk" "float size" 1
+TransformBegin TransformEnd
+WorldEnd
+CoordSysTransform "none" CoordSysTransform "none")");
   std::vector<std::string> messages;
   for (const auto& w : scene.warnings)
     messages.push_back(fmt::format("{}:{} {}", w.location.line, w.location.column, w.message));
   const std::vector<std::string> expected = {
-      "1:1 Option \"disablepixeljitter\" is not used by Lanthorn: ignored (and 1 more like it)",
-      "3:17 parameter \"frob\" of Sampler \"sobol\" is not used by Lanthorn: ignored",
-      "7:16 parameter \"size\" of Shape \"sphere\" is not used by Lanthorn: ignored (and 1 more like it)",
-      "7:31 parameter \"radius\" of Shape \"sphere\" is given twice: the last value is used",
-      "9:14 parameter \"size\" of Shape \"disk\" is not used by Lanthorn: ignored",
+      R"(1:1 Option "disablepixeljitter" is not used by Lanthorn: ignored (and 1 more like it))",
+      R"(3:17 parameter "frob" of Sampler "sobol" is not used by Lanthorn: ignored)",
+      R"(7:16 parameter "size" of Shape "sphere" is not used by Lanthorn: ignored (and 1 more like it))",
+      R"(7:31 parameter "radius" of Shape "sphere" is given twice: the last value is used)",
+      R"(9:14 parameter "size" of Shape "disk" is not used by Lanthorn: ignored)",
       "10:1 TransformBegin and TransformEnd are read as AttributeBegin and AttributeEnd",
       "11:1 WorldEnd has no meaning in pbrt-v4: ignored",
-      "12:1 there is no coordinate system \"none\": the transform does not change (and 1 more like it)"};
+      R"(12:1 there is no coordinate system "none": the transform does not change (and 1 more like it))"};
   EXPECT_EQ(messages, expected);
   EXPECT_EQ(std::get<description::Sphere>(scene.shapes[0].geometry).radius, 2);
 }

@@ -222,24 +222,24 @@ TEST(Ply, ErrorsNameFileAndLine) {
   const std::string good = "0 0 0\n1 0 0\n1 1 0\n";
   const std::vector<BadFile> files = {
       {"", "bad.ply:1:1: the file ends inside its header"},
-      {"obj\n", "bad.ply:1:1: is not a PLY file: its first line is not \"ply\""},
+      {"obj\n", R"(bad.ply:1:1: is not a PLY file: its first line is not "ply")"},
       {"ply\nend_header\n", "bad.ply:2:1: the header has no format line"},
-      {"ply\nformat ebcdic 1.0\n", "bad.ply:2:1: unknown encoding \"ebcdic\""},
-      {"ply\nformat ascii 2.0\n", "bad.ply:2:1: expected \"format ENCODING 1.0\""},
+      {"ply\nformat ebcdic 1.0\n", R"(bad.ply:2:1: unknown encoding "ebcdic")"},
+      {"ply\nformat ascii 2.0\n", R"(bad.ply:2:1: expected "format ENCODING 1.0")"},
       {"ply\nproperty float x\n", "bad.ply:2:1: a property before the first element"},
       {"ply\nelement vertex -1\n", "bad.ply:2:1: expected a count after the element's name"},
-      {"ply\nelement vertex 1\nproperty half x\n", "bad.ply:3:1: unknown type \"half\""},
+      {"ply\nelement vertex 1\nproperty half x\n", R"(bad.ply:3:1: unknown type "half")"},
       {"ply\nelement face 1\nproperty list float int x\n", "bad.ply:3:1: a list's count must be an integer"},
-      {"ply\nfrob\n", "bad.ply:2:1: unknown header line \"frob\""},
+      {"ply\nfrob\n", R"(bad.ply:2:1: unknown header line "frob")"},
       {small_file("0 0 0\n1 0 zero\n1 1 0\n3 0 1 2\n"), "bad.ply:11: expected a number"},
       {small_file(good + "3 0 1 3\n"), "bad.ply:13: a face uses vertex 3, but there are 3"},
       {small_file(good + "3 0 1 -1\n"), "bad.ply:13: a face has an invalid vertex index"},
       {small_file(good + "3 0 1 0.5\n"), "bad.ply:13: a face has an invalid vertex index"},
       {small_file(good + "9999999 0 1 2\n"), "bad.ply:13: a list has an invalid length"},
       {small_file(good + "-3 0 1 2\n"), "bad.ply:13: a list has an invalid length"},
-      {small_file(good, "4000000000"), "bad.ply:10: the file is too short for 4000000000 times element \"vertex\""},
+      {small_file(good, "4000000000"), R"(bad.ply:10: the file is too short for 4000000000 times element "vertex")"},
       {small_file(good, "18446744073709551615"),
-       "bad.ply:10: the file is too short for 18446744073709551615 times element \"vertex\""},
+       R"(bad.ply:10: the file is too short for 18446744073709551615 times element "vertex")"},
       {"ply\nformat ascii 1.0\nelement face 0\nproperty list uchar int vertex_indices\nend_header\n",
        "bad.ply:6: the file has no vertices"},
       {"ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nend_header\n0 0 "
@@ -248,7 +248,7 @@ TEST(Ply, ErrorsNameFileAndLine) {
       {"ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nend_header\n0 0 0\n",
        "bad.ply:6: the vertices have no x, y and z"},
       {"ply\nformat binary_little_endian 1.0\nelement junk 1000000000000\nend_header\n",
-       "bad.ply: element \"junk\" has no properties"}};
+       R"(bad.ply: element "junk" has no properties)"}};
   for (const BadFile& file : files) EXPECT_EQ(test::error_text([&] { parse_ply(file.text, "bad.ply"); }), file.message);
 }
 

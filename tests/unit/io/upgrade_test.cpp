@@ -31,7 +31,8 @@ std::vector<std::string> warnings_of(const std::string& text) {
   return result;
 }
 
-const std::string v3_head = "Film \"image\" \"integer xresolution\" 24 \"integer yresolution\" 24\n";
+const std::string v3_head = R"(Film "image" "integer xresolution" 24 "integer yresolution" 24
+)";
 
 // The headers are for different versions, and describe the same film.
 struct Pair {
@@ -41,122 +42,164 @@ struct Pair {
   std::string v4_film = {};
 };
 
-const std::string camera = "LookAt 0 1.5 5  0 0.3 0  0 1 0\nCamera \"perspective\" \"float fov\" 40\n";
+const std::string camera = R"(LookAt 0 1.5 5  0 0.3 0  0 1 0
+Camera "perspective" "float fov" 40
+)";
 const std::string room =
-    "LightSource \"distant\" \"point3 from\" [1 3 2] \"point3 to\" [0 0 0]\n"
-    "Shape \"disk\" \"float radius\" 4 \"float height\" 0\n";
+    R"(LightSource "distant" "point3 from" [1 3 2] "point3 to" [0 0 0]
+Shape "disk" "float radius" 4 "float height" 0
+)";
 
 std::string v3_text(const Pair& p) {
   return camera + p.v3_options +
-         "Film \"image\" \"integer xresolution\" [32] \"integer yresolution\" [24]\n"
-         "PixelFilter \"box\" \"float xwidth\" [0.5] \"float ywidth\" [0.5]\nWorldBegin\n" +
-         p.v3 + "WorldEnd\n";
+         R"(Film "image" "integer xresolution" [32] "integer yresolution" [24]
+PixelFilter "box" "float xwidth" [0.5] "float ywidth" [0.5]
+WorldBegin
+)" + p.v3 +
+         "WorldEnd\n";
 }
 
 std::string v4_text(const Pair& p) {
-  return camera + p.v4_options + "Film \"rgb\" \"integer xresolution\" [32] \"integer yresolution\" [24] " + p.v4_film +
-         "\nPixelFilter \"box\" \"float xradius\" [0.5] \"float yradius\" [0.5]\nWorldBegin\n" + p.v4;
+  return camera + p.v4_options + R"(Film "rgb" "integer xresolution" [32] "integer yresolution" [24] )" + p.v4_film +
+         R"(
+PixelFilter "box" "float xradius" [0.5] "float yradius" [0.5]
+WorldBegin
+)" + p.v4;
 }
 
 // Numbers that only the v4 text contains were computed independently: GGX alpha by pbrt-v3's polynomial, luminances of
 // black bodies from Planck's law and the CIE's table.
 std::vector<Pair> pairs() {
-  const std::string sky3 = "LightSource \"infinite\" \"color L\" [.5 .6 .7] \"color scale\" [2 2 2]\n";
-  const std::string sky4 = "LightSource \"infinite\" \"rgb L\" [.5 .6 .7] \"float scale\" 2\n";
-  const std::string ball = "Translate 0 .5 0\nShape \"sphere\" \"float radius\" .8\n";
+  const std::string sky3 = R"(LightSource "infinite" "color L" [.5 .6 .7] "color scale" [2 2 2]
+)";
+  const std::string sky4 = R"(LightSource "infinite" "rgb L" [.5 .6 .7] "float scale" 2
+)";
+  const std::string ball = R"(Translate 0 .5 0
+Shape "sphere" "float radius" .8
+)";
   return {
       {"matte and a lamp", "", "",
-       "AttributeBegin\nAreaLightSource \"area\" \"color L\" [8 7 6] \"color scale\" [.5 .5 .5] \"integer nsamples\" "
-       "4\n"
-       "Translate 0 3 0\nShape \"sphere\" \"float radius\" .5\nAttributeEnd\n"
-       "MakeNamedMaterial \"red\" \"string type\" \"matte\" \"color Kd\" [.8 .1 .1]\nNamedMaterial \"red\"\n" +
-           ball,
-       "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [8 7 6] \"float scale\" .5\n"
-       "Translate 0 3 0\nShape \"sphere\" \"float radius\" .5\nAttributeEnd\n"
-       "MakeNamedMaterial \"red\" \"string type\" \"diffuse\" \"rgb reflectance\" [.8 .1 .1]\nNamedMaterial \"red\"\n" +
-           ball},
-      {"plastic", "", "",
-       sky3 + "Material \"plastic\" \"rgb Kd\" [.5 .4 .1] \"rgb Ks\" [.5 .5 .5] \"float roughness\" .1\n" + ball,
+       R"(AttributeBegin
+AreaLightSource "area" "color L" [8 7 6] "color scale" [.5 .5 .5] "integer nsamples" 4
+Translate 0 3 0
+Shape "sphere" "float radius" .5
+AttributeEnd
+MakeNamedMaterial "red" "string type" "matte" "color Kd" [.8 .1 .1]
+NamedMaterial "red"
+)" + ball,
+       R"(AttributeBegin
+AreaLightSource "diffuse" "rgb L" [8 7 6] "float scale" .5
+Translate 0 3 0
+Shape "sphere" "float radius" .5
+AttributeEnd
+MakeNamedMaterial "red" "string type" "diffuse" "rgb reflectance" [.8 .1 .1]
+NamedMaterial "red"
+)" + ball},
+      {"plastic", "", "", sky3 + R"(Material "plastic" "rgb Kd" [.5 .4 .1] "rgb Ks" [.5 .5 .5] "float roughness" .1
+)" + ball,
        sky4 +
-           "MakeNamedMaterial \"a\" \"string type\" \"diffuse\" \"rgb reflectance\" [1 .8 .2]\n"
-           "MakeNamedMaterial \"b\" \"string type\" \"coateddiffuse\" \"rgb reflectance\" [0 0 0]\n"
-           " \"float roughness\" .461760 \"bool remaproughness\" false\n"
-           "Material \"mix\" \"string materials\" [\"a\" \"b\"] \"float amount\" .5\n" +
-           ball},
+           R"(MakeNamedMaterial "a" "string type" "diffuse" "rgb reflectance" [1 .8 .2]
+MakeNamedMaterial "b" "string type" "coateddiffuse" "rgb reflectance" [0 0 0]
+ "float roughness" .461760 "bool remaproughness" false
+Material "mix" "string materials" ["a" "b"] "float amount" .5
+)" + ball},
       {"metal and mirror", "", "",
        sky3 +
-           "Material \"mirror\" \"color Kr\" [.7 .8 .9]\nShape \"disk\" \"float radius\" 3\n"
-           "Material \"metal\" \"rgb eta\" [.2 .9 1.1] \"rgb k\" [3.9 2.5 2.2] \"float uroughness\" .05 \"float "
-           "vroughness\" .2\n" +
-           ball,
+           R"(Material "mirror" "color Kr" [.7 .8 .9]
+Shape "disk" "float radius" 3
+Material "metal" "rgb eta" [.2 .9 1.1] "rgb k" [3.9 2.5 2.2] "float uroughness" .05 "float vroughness" .2
+)" + ball,
        sky4 +
-           "Material \"conductor\" \"rgb reflectance\" [.7 .8 .9]\nShape \"disk\" \"float radius\" 3\n"
-           "Material \"conductor\" \"rgb eta\" [.2 .9 1.1] \"rgb k\" [3.9 2.5 2.2] \"bool remaproughness\" false\n"
-           " \"float uroughness\" .312547 \"float vroughness\" .683836\n" +
-           ball},
-      {"glass", "Integrator \"sppm\" \"integer numiterations\" 3\n",
-       "Integrator \"sppm\"\nSampler \"halton\" \"integer pixelsamples\" 3\n",
-       sky3 + "Material \"glass\" \"float index\" 1.7\n" + ball,
-       sky4 + "Material \"dielectric\" \"float eta\" 1.7\n" + ball},
+           R"(Material "conductor" "rgb reflectance" [.7 .8 .9]
+Shape "disk" "float radius" 3
+Material "conductor" "rgb eta" [.2 .9 1.1] "rgb k" [3.9 2.5 2.2] "bool remaproughness" false
+ "float uroughness" .312547 "float vroughness" .683836
+)" + ball},
+      {"glass", R"(Integrator "sppm" "integer numiterations" 3
+)",
+       R"(Integrator "sppm"
+Sampler "halton" "integer pixelsamples" 3
+)",
+       sky3 + R"(Material "glass" "float index" 1.7
+)" + ball,
+       sky4 + R"(Material "dielectric" "float eta" 1.7
+)" + ball},
       {"textures", "", "",
        sky3 +
-           "Texture \"a\" \"color\" \"checkerboard\" \"color tex1\" [.9 .1 .1] \"color tex2\" [.1 .9 .1] \"string "
-           "aamode\" \"none\"\n"
-           "Texture \"b\" \"color\" \"scale\" \"texture tex1\" \"a\" \"color tex2\" [.5 .5 .5]\n"
-           "AttributeBegin\nTexture \"a\" \"color\" \"fbm\"\nMaterial \"matte\" \"texture Kd\" \"a\"\nShape \"disk\" "
-           "\"float radius\" 3\nAttributeEnd\n"
-           "Material \"matte\" \"texture Kd\" \"b\"\n" +
-           ball,
+           R"(Texture "a" "color" "checkerboard" "color tex1" [.9 .1 .1] "color tex2" [.1 .9 .1] "string aamode" "none"
+Texture "b" "color" "scale" "texture tex1" "a" "color tex2" [.5 .5 .5]
+AttributeBegin
+Texture "a" "color" "fbm"
+Material "matte" "texture Kd" "a"
+Shape "disk" "float radius" 3
+AttributeEnd
+Material "matte" "texture Kd" "b"
+)" + ball,
        sky4 +
-           "Texture \"a\" \"spectrum\" \"checkerboard\" \"rgb tex1\" [.9 .1 .1] \"rgb tex2\" [.1 .9 .1]\n"
-           "Texture \"b\" \"spectrum\" \"scale\" \"texture tex\" \"a\" \"float scale\" .5\n"
-           "AttributeBegin\nTexture \"f\" \"float\" \"fbm\"\n"
-           "Texture \"c\" \"spectrum\" \"mix\" \"float tex1\" 0 \"float tex2\" 1 \"texture amount\" \"f\"\n"
-           "Material \"diffuse\" \"texture reflectance\" \"c\"\nShape \"disk\" \"float radius\" 3\nAttributeEnd\n"
-           "Material \"diffuse\" \"texture reflectance\" \"b\"\n" +
-           ball},
+           R"(Texture "a" "spectrum" "checkerboard" "rgb tex1" [.9 .1 .1] "rgb tex2" [.1 .9 .1]
+Texture "b" "spectrum" "scale" "texture tex" "a" "float scale" .5
+AttributeBegin
+Texture "f" "float" "fbm"
+Texture "c" "spectrum" "mix" "float tex1" 0 "float tex2" 1 "texture amount" "f"
+Material "diffuse" "texture reflectance" "c"
+Shape "disk" "float radius" 3
+AttributeEnd
+Material "diffuse" "texture reflectance" "b"
+)" + ball},
       {"black body and filter", "", "",
-       "LightSource \"point\" \"blackbody I\" [3000 20] \"point from\" [1 3 2]\nMaterial \"matte\"\n" + ball,
-       "LightSource \"point\" \"blackbody I\" 3000 \"float scale\" 8.320374 \"point3 from\" [1 3 2]\nMaterial "
-       "\"diffuse\"\n" +
-           ball},
-      {"transforms and overrides", "", "",
-       sky3 + "Material \"matte\" \"color Kd\" [.1 .1 .8]\nTransformBegin\nTranslate 0 .5 0\nMaterial \"matte\" "
-              "\"color Kd\" [.8 .8 .1]\n"
-              "Shape \"sphere\" \"float radius\" .8 \"color Kd\" [.1 .8 .1]\nTransformEnd\nShape \"disk\" \"float "
-              "radius\" 3\n",
-       sky4 + "AttributeBegin\nTranslate 0 .5 0\nMaterial \"diffuse\" \"rgb reflectance\" [.1 .8 .1]\n"
-              "Shape \"sphere\" \"float radius\" .8\nAttributeEnd\nMaterial \"diffuse\" \"rgb reflectance\" [.8 .8 "
-              ".1]\nShape \"disk\" \"float radius\" 3\n"},
+       R"(LightSource "point" "blackbody I" [3000 20] "point from" [1 3 2]
+Material "matte"
+)" + ball,
+       R"(LightSource "point" "blackbody I" 3000 "float scale" 8.320374 "point3 from" [1 3 2]
+Material "diffuse"
+)" + ball},
+      {"transforms and overrides", "", "", sky3 + R"(Material "matte" "color Kd" [.1 .1 .8]
+TransformBegin
+Translate 0 .5 0
+Material "matte" "color Kd" [.8 .8 .1]
+Shape "sphere" "float radius" .8 "color Kd" [.1 .8 .1]
+TransformEnd
+Shape "disk" "float radius" 3
+)",
+       sky4 + R"(AttributeBegin
+Translate 0 .5 0
+Material "diffuse" "rgb reflectance" [.1 .8 .1]
+Shape "sphere" "float radius" .8
+AttributeEnd
+Material "diffuse" "rgb reflectance" [.8 .8 .1]
+Shape "disk" "float radius" 3
+)"},
       {"uber with opacity", "", "",
-       sky3 + room + "Material \"uber\" \"rgb Kd\" [.6 .3 .3] \"rgb Ks\" [0 0 0] \"rgb opacity\" [.4 .4 .4]\n" + ball,
+       sky3 + room + R"(Material "uber" "rgb Kd" [.6 .3 .3] "rgb Ks" [0 0 0] "rgb opacity" [.4 .4 .4]
+)" + ball,
        sky4 + room +
-           "Material \"diffuse\" \"rgb reflectance\" [.6 .3 .3]\nTranslate 0 .5 0\n"
-           "Shape \"sphere\" \"float radius\" .8 \"float alpha\" .4\n"},
-      {"shutter and meshes", "Camera \"perspective\" \"float halffov\" 20 \"float shutterclose\" .5\n",
-       "Camera \"perspective\" \"float fov\" 40 \"float shutterclose\" .5\n",
-       sky3 + "Shape \"heightfield\" \"integer nu\" 2 \"integer nv\" 2 \"float Pz\" [0 .5 .5 1]\n"
-              "Shape \"trianglemesh\" \"point P\" [-1 0 0 1 0 0 0 1 0] \"integer indices\" [0 1 2] \"float st\" [0 0 1 "
-              "0 0 1]\n",
-       sky4 + "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 .5 0 1 .5 1 1 1] \"point2 uv\" [0 0 1 0 0 1 1 1]\n"
-              " \"integer indices\" [0 1 3 0 3 2]\n"
-              "Shape \"trianglemesh\" \"point3 P\" [-1 0 0 1 0 0 0 1 0] \"integer indices\" [0 1 2] \"point2 uv\" [0 0 "
-              "1 0 0 1]\n",
-       "\"float iso\" 200"},
+           R"(Material "diffuse" "rgb reflectance" [.6 .3 .3]
+Translate 0 .5 0
+Shape "sphere" "float radius" .8 "float alpha" .4
+)"},
+      {"shutter and meshes", R"(Camera "perspective" "float halffov" 20 "float shutterclose" .5
+)",
+       R"(Camera "perspective" "float fov" 40 "float shutterclose" .5
+)",
+       sky3 + R"(Shape "heightfield" "integer nu" 2 "integer nv" 2 "float Pz" [0 .5 .5 1]
+Shape "trianglemesh" "point P" [-1 0 0 1 0 0 0 1 0] "integer indices" [0 1 2] "float st" [0 0 1 0 0 1]
+)",
+       sky4 + R"(Shape "trianglemesh" "point3 P" [0 0 0 1 0 .5 0 1 .5 1 1 1] "point2 uv" [0 0 1 0 0 1 1 1]
+ "integer indices" [0 1 3 0 3 2]
+Shape "trianglemesh" "point3 P" [-1 0 0 1 0 0 0 1 0] "integer indices" [0 1 2] "point2 uv" [0 0 1 0 0 1]
+)",
+       R"("float iso" 200)"},
       {"mix and translucent", "", "",
        sky3 +
-           "MakeNamedMaterial \"a\" \"string type\" \"matte\" \"rgb Kd\" [.9 0 0]\n"
-           "MakeNamedMaterial \"b\" \"string type\" \"translucent\" \"rgb Kd\" [.4 .4 .8] \"rgb Ks\" [0 0 0] \"rgb "
-           "reflect\" [.25 .5 .75]\n"
-           "Material \"mix\" \"string namedmaterial1\" \"a\" \"string namedmaterial2\" \"b\" \"rgb amount\" [.25 .25 "
-           ".25]\n" +
-           ball,
+           R"(MakeNamedMaterial "a" "string type" "matte" "rgb Kd" [.9 0 0]
+MakeNamedMaterial "b" "string type" "translucent" "rgb Kd" [.4 .4 .8] "rgb Ks" [0 0 0] "rgb reflect" [.25 .5 .75]
+Material "mix" "string namedmaterial1" "a" "string namedmaterial2" "b" "rgb amount" [.25 .25 .25]
+)" + ball,
        sky4 +
-           "MakeNamedMaterial \"a\" \"string type\" \"diffuse\" \"rgb reflectance\" [.9 0 0]\n"
-           "MakeNamedMaterial \"b\" \"string type\" \"diffusetransmission\" \"rgb reflectance\" [.1 .2 .6] \"rgb "
-           "transmittance\" [.2 .2 .4]\n"
-           "Material \"mix\" \"string materials\" [\"b\" \"a\"] \"float amount\" .25\n" +
-           ball},
+           R"(MakeNamedMaterial "a" "string type" "diffuse" "rgb reflectance" [.9 0 0]
+MakeNamedMaterial "b" "string type" "diffusetransmission" "rgb reflectance" [.1 .2 .6] "rgb transmittance" [.2 .2 .4]
+Material "mix" "string materials" ["b" "a"] "float amount" .25
+)" + ball},
   };
 }
 
@@ -186,11 +229,24 @@ INSTANTIATE_TEST_SUITE_P(V3, UpgradedPictures, testing::ValuesIn(pairs()),
 // normal incidence; or for a sphere, the mean over all directions, weighted by their cosine.
 double mean_albedo(const std::string& material) {
   const Scene scene = test::scene_from_text(
-      "LookAt 0 0 5  0 0 0  0 1 0\nCamera \"orthographic\" \"float screenwindow\" [-1 1 -1 1]\n" + v3_head +
-      "WorldBegin\nLightSource \"infinite\"\nMaterial " + material + "\nShape \"sphere\"\n");
+      R"(LookAt 0 0 5  0 0 0  0 1 0
+Camera "orthographic" "float screenwindow" [-1 1 -1 1]
+)" + v3_head +
+      R"(WorldBegin
+LightSource "infinite"
+Material )" +
+      material + R"(
+Shape "sphere"
+)");
   const Scene black = test::scene_from_text(
-      "LookAt 0 0 5  0 0 0  0 1 0\nCamera \"orthographic\" \"float screenwindow\" [-1 1 -1 1]\n" + v3_head +
-      "WorldBegin\nLightSource \"infinite\"\nMaterial \"matte\" \"color Kd\" [0 0 0]\nShape \"sphere\"\n");
+      R"(LookAt 0 0 5  0 0 0  0 1 0
+Camera "orthographic" "float screenwindow" [-1 1 -1 1]
+)" + v3_head +
+      R"(WorldBegin
+LightSource "infinite"
+Material "matte" "color Kd" [0 0 0]
+Shape "sphere"
+)");
   const auto mean = [](const Scene& s) {
     RenderOptions options = test::options_for("path", 256);
     options.color = ColorMode::rgb;
@@ -208,31 +264,30 @@ struct Sum {
 // The mean Fresnel reflectance at index 1.5 is 0.0918 for a smooth surface. For GGX with shadowing it is 0.054 at an
 // alpha of 0.3, and 0.040 at 0.49 (by separate Monte Carlo integration). Coats of that alpha are fits.
 std::vector<Sum> sums() {
-  const std::string smooth = " \"float roughness\" .001 \"bool remaproughness\" \"false\"";
-  return {
-      {"plastic", "\"plastic\" \"rgb Kd\" [.5 .5 .5] \"rgb Ks\" [.4 .4 .4]" + smooth, .5 + .4 * .0918},
-      {"bright plastic", "\"plastic\" \"rgb Kd\" [.8 .8 .8] \"rgb Ks\" [1 1 1]" + smooth, .8 + .0918},
-      {"uber with a mirror", "\"uber\" \"rgb Kd\" [.4 .4 .4] \"rgb Ks\" [.2 .2 .2] \"rgb Kr\" [.5 .5 .5]" + smooth,
-       .4 + .7 * .0918},
-      {"translucent", "\"translucent\" \"rgb Kd\" [.3 .3 .3] \"rgb Ks\" [0 0 0] \"rgb transmit\" [0 0 0]", .15},
-      {"substrate",
-       "\"substrate\" \"rgb Kd\" [.5 .5 .5] \"rgb Ks\" [.04 .04 .04] \"float uroughness\" 0 \"float vroughness\" 0 "
-       "\"bool remaproughness\" \"false\"",
-       .8214 * .5 * .96 + .0918},
-      {"substrate that mirrors",
-       "\"substrate\" \"rgb Kd\" [.8 .8 .8] \"rgb Ks\" [.5 .5 .5] \"float uroughness\" 0 \"float vroughness\" 0 "
-       "\"bool remaproughness\" \"false\"",
-       .8214 * .8 * .5 + .5 + .5 / 21},
-      {"anisotropic substrate that mirrors",
-       "\"substrate\" \"rgb Kd\" [.8 .8 .8] \"rgb Ks\" [.5 .5 .5] \"float uroughness\" .05 \"float vroughness\" .2 "
-       "\"bool remaproughness\" \"false\"",
-       .8214 * .8 * .5 + .5 + .5 / 21},
-      {"disney", "\"disney\" \"rgb color\" [.6 .6 .6] \"float roughness\" .05", .6 + .0918},
-      {"rough substrate",
-       "\"substrate\" \"rgb Kd\" [.6 .6 .6] \"rgb Ks\" [.04 .04 .04] \"float uroughness\" .3 \"float vroughness\" .3 "
-       "\"bool remaproughness\" \"false\"",
-       .8214 * .6 * .96 + .054},
-      {"bright rough disney", "\"disney\" \"rgb color\" [.9 .9 .9] \"float roughness\" .7", .9 + .04}};
+  const std::string smooth = R"( "float roughness" .001 "bool remaproughness" "false")";
+  return {{"plastic", R"("plastic" "rgb Kd" [.5 .5 .5] "rgb Ks" [.4 .4 .4])" + smooth, .5 + .4 * .0918},
+          {"bright plastic", R"("plastic" "rgb Kd" [.8 .8 .8] "rgb Ks" [1 1 1])" + smooth, .8 + .0918},
+          {"uber with a mirror", R"("uber" "rgb Kd" [.4 .4 .4] "rgb Ks" [.2 .2 .2] "rgb Kr" [.5 .5 .5])" + smooth,
+           .4 + .7 * .0918},
+          {"translucent", R"("translucent" "rgb Kd" [.3 .3 .3] "rgb Ks" [0 0 0] "rgb transmit" [0 0 0])", .15},
+          {"substrate",
+           R"("substrate" "rgb Kd" [.5 .5 .5] "rgb Ks" [.04 .04 .04] "float uroughness" 0 "float vroughness" 0 )"
+           R"("bool remaproughness" "false")",
+           .8214 * .5 * .96 + .0918},
+          {"substrate that mirrors",
+           R"("substrate" "rgb Kd" [.8 .8 .8] "rgb Ks" [.5 .5 .5] "float uroughness" 0 "float vroughness" 0 )"
+           R"("bool remaproughness" "false")",
+           .8214 * .8 * .5 + .5 + .5 / 21},
+          {"anisotropic substrate that mirrors",
+           R"("substrate" "rgb Kd" [.8 .8 .8] "rgb Ks" [.5 .5 .5] "float uroughness" .05 "float vroughness" .2 )"
+           R"("bool remaproughness" "false")",
+           .8214 * .8 * .5 + .5 + .5 / 21},
+          {"disney", R"("disney" "rgb color" [.6 .6 .6] "float roughness" .05)", .6 + .0918},
+          {"rough substrate",
+           R"("substrate" "rgb Kd" [.6 .6 .6] "rgb Ks" [.04 .04 .04] "float uroughness" .3 "float vroughness" .3 )"
+           R"("bool remaproughness" "false")",
+           .8214 * .6 * .96 + .054},
+          {"bright rough disney", R"("disney" "rgb color" [.9 .9 .9] "float roughness" .7)", .9 + .04}};
 }
 
 class UpgradedAlbedos : public testing::TestWithParam<Sum> {};
@@ -245,38 +300,62 @@ INSTANTIATE_TEST_SUITE_P(V3, UpgradedAlbedos, testing::ValuesIn(sums()),
 TEST(Upgrade, TheFirstSignTellsTheVersion) {
   const auto first_warning = [](const std::string& text) { return warnings_of(text).front(); };
   const std::string message = " belongs to pbrt-v3: the file is translated to pbrt-v4";
-  EXPECT_EQ(first_warning(v3_head + "WorldBegin"), "1 Film \"image\"" + message);
-  EXPECT_EQ(first_warning("WorldBegin\nMaterial \"matte\""), "2 Material \"matte\"" + message);
-  EXPECT_EQ(first_warning("WorldBegin\nMakeNamedMaterial \"m\" \"string type\" [\"glass\"]"),
-            "2 Material \"glass\"" + message);
-  EXPECT_EQ(first_warning("PixelFilter \"box\" \"float xwidth\" 1\nWorldBegin"), "1 \"float xwidth\"" + message);
-  EXPECT_EQ(first_warning("WorldBegin\nTexture \"t\" \"color\" \"constant\""), "2 Texture \"color\"" + message);
-  EXPECT_EQ(first_warning("WorldBegin\nShape \"sphere\"\nWorldEnd"), "3 WorldEnd" + message);
-  EXPECT_EQ(warnings_of("WorldBegin\nTexture \"matte\" \"float\" \"constant\"\nMaterial \"\" # \"color\"").size(), 0u);
-  EXPECT_EQ(first_warning("Film \"rgb\"\nWorldBegin\nWorldEnd"), "3 WorldEnd has no meaning in pbrt-v4: ignored");
+  EXPECT_EQ(first_warning(v3_head + "WorldBegin"), R"(1 Film "image")" + message);
+  EXPECT_EQ(first_warning(R"(WorldBegin
+Material "matte")"),
+            R"(2 Material "matte")" + message);
+  EXPECT_EQ(first_warning(R"(WorldBegin
+MakeNamedMaterial "m" "string type" ["glass"])"),
+            R"(2 Material "glass")" + message);
+  EXPECT_EQ(first_warning(R"(PixelFilter "box" "float xwidth" 1
+WorldBegin)"),
+            R"(1 "float xwidth")" + message);
+  EXPECT_EQ(first_warning(R"(WorldBegin
+Texture "t" "color" "constant")"),
+            R"(2 Texture "color")" + message);
+  EXPECT_EQ(first_warning(R"(WorldBegin
+Shape "sphere"
+WorldEnd)"),
+            "3 WorldEnd" + message);
+  EXPECT_EQ(warnings_of(R"(WorldBegin
+Texture "matte" "float" "constant"
+Material "" # "color")")
+                .size(),
+            0u);
+  EXPECT_EQ(first_warning(R"(Film "rgb"
+WorldBegin
+WorldEnd)"),
+            "3 WorldEnd has no meaning in pbrt-v4: ignored");
 }
 
 TEST(Upgrade, IncludedFilesTellTheVersion) {
   const test::TemporaryDir dir;
   dir.write("film.pbrt", v3_head);
-  const SceneDescription scene =
-      read_pbrt_string("Include \"film.pbrt\"\nWorldBegin\nMaterial \"matte\"", dir.path(), "t.pbrt");
+  const SceneDescription scene = read_pbrt_string(R"(Include "film.pbrt"
+WorldBegin
+Material "matte")",
+                                                  dir.path(), "t.pbrt");
   EXPECT_EQ(scene.view.film.width, 24);
 }
 
 TEST(Upgrade, MixturesAreErrors) {
-  EXPECT_EQ(error_of(v3_head + "WorldBegin\nMaterial \"diffuse\""),
-            "t.pbrt:3:1: unknown material \"diffuse\"; it is of pbrt-v4, but Film \"image\" in line 1 is of pbrt-v3");
-  EXPECT_EQ(error_of("Film \"rgb\"\nWorldBegin\nMaterial \"matte\""),
-            "t.pbrt:3:1: unknown material \"matte\"; it is of pbrt-v3, but Film \"rgb\" in line 1 is of pbrt-v4");
+  EXPECT_EQ(error_of(v3_head + R"(WorldBegin
+Material "diffuse")"),
+            R"(t.pbrt:3:1: unknown material "diffuse"; it is of pbrt-v4, but Film "image" in line 1 is of pbrt-v3)");
+  EXPECT_EQ(error_of(R"(Film "rgb"
+WorldBegin
+Material "matte")"),
+            R"(t.pbrt:3:1: unknown material "matte"; it is of pbrt-v3, but Film "rgb" in line 1 is of pbrt-v4)");
   EXPECT_EQ(
-      error_of(v3_head + "ColorSpace \"rec2020\""),
-      "t.pbrt:2:1: unknown directive \"ColorSpace\"; it is of pbrt-v4, but Film \"image\" in line 1 is of pbrt-v3");
-  EXPECT_EQ(error_of(v3_head + "WorldBegin\nMaterial \"mate\""), "t.pbrt:3:1: unknown material \"mate\"");
-  EXPECT_EQ(error_of("Film \"rgb\" \"color x\" [1 1 1]"), "t.pbrt:1:12: unknown parameter type \"color\"");
+      error_of(v3_head + R"(ColorSpace "rec2020")"),
+      R"(t.pbrt:2:1: unknown directive "ColorSpace"; it is of pbrt-v4, but Film "image" in line 1 is of pbrt-v3)");
+  EXPECT_EQ(error_of(v3_head + R"(WorldBegin
+Material "mate")"),
+            R"(t.pbrt:3:1: unknown material "mate")");
+  EXPECT_EQ(error_of(R"(Film "rgb" "color x" [1 1 1])"), R"(t.pbrt:1:12: unknown parameter type "color")");
   EXPECT_EQ(
-      error_of("SurfaceIntegrator \"photonmap\""),
-      "t.pbrt:1:1: directive \"SurfaceIntegrator\" belongs to pbrt-v2: only pbrt-v3 and pbrt-v4 files are supported");
+      error_of(R"(SurfaceIntegrator "photonmap")"),
+      R"(t.pbrt:1:1: directive "SurfaceIntegrator" belongs to pbrt-v2: only pbrt-v3 and pbrt-v4 files are supported)");
 }
 
 TEST(Upgrade, ErrorsHavePlaces) {
@@ -286,35 +365,42 @@ TEST(Upgrade, ErrorsHavePlaces) {
   EXPECT_EQ(error_of(head + "AttributeBegin\nTransformEnd"),
             "t.pbrt:4:1: TransformEnd has no matching begin (the innermost open block begins at line 3)");
   EXPECT_EQ(error_of(head + "TransformBegin"), "t.pbrt:3:1: the block that begins here has no end");
-  EXPECT_EQ(error_of(head + "Material \"mix\" \"string namedmaterial1\" \"a\""),
-            "t.pbrt:3:1: Material \"mix\" needs \"namedmaterial1\" and \"namedmaterial2\"");
-  EXPECT_EQ(error_of(head + "Material \"matte\" \"float sigma\" [1 2]"),
-            "t.pbrt:3:18: parameter \"sigma\" of Material \"matte\" must be one value of type float");
-  EXPECT_EQ(error_of(head + "LightSource \"point\" \"blackbody I\" [0 1]"),
-            "t.pbrt:3:21: blackbody \"I\" needs a temperature above 0 kelvin and a factor");
-  EXPECT_EQ(error_of(head + "Shape \"heightfield\" \"integer nu\" 2 \"integer nv\" 2 \"float Pz\" [1 2 3]"),
-            "t.pbrt:3:1: Shape \"heightfield\" needs \"nu\" and \"nv\" from 2 to 32768 and nu * nv numbers \"Pz\"");
+  EXPECT_EQ(error_of(head + R"(Material "mix" "string namedmaterial1" "a")"),
+            R"(t.pbrt:3:1: Material "mix" needs "namedmaterial1" and "namedmaterial2")");
+  EXPECT_EQ(error_of(head + R"(Material "matte" "float sigma" [1 2])"),
+            R"(t.pbrt:3:18: parameter "sigma" of Material "matte" must be one value of type float)");
+  EXPECT_EQ(error_of(head + R"(LightSource "point" "blackbody I" [0 1])"),
+            R"(t.pbrt:3:21: blackbody "I" needs a temperature above 0 kelvin and a factor)");
+  EXPECT_EQ(error_of(head + R"(Shape "heightfield" "integer nu" 2 "integer nv" 2 "float Pz" [1 2 3])"),
+            R"(t.pbrt:3:1: Shape "heightfield" needs "nu" and "nv" from 2 to 32768 and nu * nv numbers "Pz")");
 }
 
 // Each approximation is reported once, with its first place and the number of places.
 TEST(Upgrade, NotesAreCounted) {
-  const std::vector<std::string> warnings =
-      warnings_of(v3_head +
-                  "Integrator \"whitted\"\nWorldBegin\nShape \"cone\"\nShape \"cone\"\nShape \"nurbs\"\n"
-                  "Material \"matte\" \"float sigma\" 20\nMaterial \"glass\" \"rgb Kt\" [1 0 0]\nMaterial \"fourier\"\n"
-                  "Texture \"t\" \"float\" \"constant\" Shape \"sphere\" \"texture shadowalpha\" \"t\"\n"
-                  "NamedMaterial \"m\"\nMaterial \"matte\" \"texture Kd\" \"u\"\n");
+  const std::vector<std::string> warnings = warnings_of(v3_head +
+                                                        R"(Integrator "whitted"
+WorldBegin
+Shape "cone"
+Shape "cone"
+Shape "nurbs"
+Material "matte" "float sigma" 20
+Material "glass" "rgb Kt" [1 0 0]
+Material "fourier"
+Texture "t" "float" "constant" Shape "sphere" "texture shadowalpha" "t"
+NamedMaterial "m"
+Material "matte" "texture Kd" "u"
+)");
   const std::vector<std::string> expected = {
-      "1 Film \"image\" belongs to pbrt-v3: the file is translated to pbrt-v4",
-      "2 the integrator \"whitted\" is replaced by \"path\", which also includes all other light paths",
-      "4 shapes of kind \"cone\", which pbrt-v4 does not have, are converted to triangles (2 times)",
-      "6 shapes of kind \"nurbs\", which pbrt-v4 does not have, are left out",
-      "7 the roughness \"sigma\" of the material \"matte\" is left out",
-      "8 \"Kt\" of Material \"glass\" is left out: the material is clear",
-      "9 the data of materials \"fourier\" cannot be read: they are replaced by \"diffuse\"",
-      "10 \"shadowalpha\", a transparency for shadows only, is ignored",
-      "11 material \"m\" is not defined before it is used: the current material does not change, as in pbrt-v3",
-      "12 texture \"u\" is not defined before it is used: \"Kd\" keeps its default, as in pbrt-v3"};
+      R"(1 Film "image" belongs to pbrt-v3: the file is translated to pbrt-v4)",
+      R"(2 the integrator "whitted" is replaced by "path", which also includes all other light paths)",
+      R"(4 shapes of kind "cone", which pbrt-v4 does not have, are converted to triangles (2 times))",
+      R"(6 shapes of kind "nurbs", which pbrt-v4 does not have, are left out)",
+      R"(7 the roughness "sigma" of the material "matte" is left out)",
+      R"(8 "Kt" of Material "glass" is left out: the material is clear)",
+      R"(9 the data of materials "fourier" cannot be read: they are replaced by "diffuse")",
+      R"(10 "shadowalpha", a transparency for shadows only, is ignored)",
+      R"(11 material "m" is not defined before it is used: the current material does not change, as in pbrt-v3)",
+      R"(12 texture "u" is not defined before it is used: "Kd" keeps its default, as in pbrt-v3)"};
   EXPECT_EQ(warnings, expected);
 }
 
@@ -324,8 +410,15 @@ const auto& material_of(const SceneDescription& scene, std::size_t shape) {
 
 TEST(Upgrade, EitherEndEndsAnAttributeOrAnObject) {
   const SceneDescription scene = read(v3_head +
-                                      "WorldBegin\nAttributeBegin\nObjectBegin \"o\"\nTranslate 1 0 0\n"
-                                      "Shape \"sphere\"\nAttributeEnd\nObjectEnd\nObjectInstance \"o\"\n");
+                                      R"(WorldBegin
+AttributeBegin
+ObjectBegin "o"
+Translate 1 0 0
+Shape "sphere"
+AttributeEnd
+ObjectEnd
+ObjectInstance "o"
+)");
   ASSERT_EQ(scene.objects.size(), 1u);
   EXPECT_EQ(scene.objects[0].shapes.size(), 1u);
   ASSERT_EQ(scene.instances.size(), 1u);
@@ -333,13 +426,26 @@ TEST(Upgrade, EitherEndEndsAnAttributeOrAnObject) {
 }
 
 TEST(Upgrade, NamesEndWithTheirBlocks) {
-  const SceneDescription scene =
-      read(v3_head +
-           "WorldBegin\nMakeNamedMaterial \"m\" \"string type\" \"matte\" \"color Kd\" [.1 .1 .1]\n"
-           "AttributeBegin\nMakeNamedMaterial \"m\" \"string type\" \"mirror\"\nNamedMaterial \"m\"\nShape \"sphere\"\n"
-           "AttributeEnd\nNamedMaterial \"m\"\nShape \"sphere\"\n"
-           "ObjectBegin \"o\"\nShape \"sphere\"\nObjectEnd\nObjectInstance \"o\"\n"
-           "ObjectBegin \"o\"\nShape \"sphere\"\nShape \"sphere\"\nObjectEnd\nObjectInstance \"o\"\n");
+  const SceneDescription scene = read(v3_head +
+                                      R"(WorldBegin
+MakeNamedMaterial "m" "string type" "matte" "color Kd" [.1 .1 .1]
+AttributeBegin
+MakeNamedMaterial "m" "string type" "mirror"
+NamedMaterial "m"
+Shape "sphere"
+AttributeEnd
+NamedMaterial "m"
+Shape "sphere"
+ObjectBegin "o"
+Shape "sphere"
+ObjectEnd
+ObjectInstance "o"
+ObjectBegin "o"
+Shape "sphere"
+Shape "sphere"
+ObjectEnd
+ObjectInstance "o"
+)");
   EXPECT_TRUE(std::holds_alternative<description::ConductorMaterial>(material_of(scene, 0).node));
   EXPECT_TRUE(std::holds_alternative<description::DiffuseMaterial>(material_of(scene, 1).node));
   ASSERT_EQ(scene.instances.size(), 2u);
@@ -350,8 +456,14 @@ TEST(Upgrade, NamesEndWithTheirBlocks) {
 // In pbrt-v4 they would be dark.
 TEST(Upgrade, LampsWithoutAMaterialEmit) {
   const SceneDescription scene = read(v3_head +
-                                      "WorldBegin\nMaterial \"none\"\nAttributeBegin\nAreaLightSource \"diffuse\"\n"
-                                      "Shape \"sphere\"\nAttributeEnd\nShape \"sphere\"\n");
+                                      R"(WorldBegin
+Material "none"
+AttributeBegin
+AreaLightSource "diffuse"
+Shape "sphere"
+AttributeEnd
+Shape "sphere"
+)");
   EXPECT_TRUE(scene.shapes[0].area_light);
   EXPECT_TRUE(std::holds_alternative<description::DiffuseMaterial>(material_of(scene, 0).node));
   EXPECT_TRUE(std::holds_alternative<description::InterfaceMaterial>(material_of(scene, 1).node));
@@ -359,12 +471,16 @@ TEST(Upgrade, LampsWithoutAMaterialEmit) {
 
 // Colour textures get a float twin where numbers are needed.
 TEST(Upgrade, TexturesAsAmounts) {
-  const SceneDescription scene =
-      read(v3_head +
-           "WorldBegin\nTexture \"t\" \"color\" \"checkerboard\" \"color tex1\" [.2 .4 .6] \"color tex2\" [1 1 1]\n"
-           "MakeNamedMaterial \"a\" \"string type\" \"matte\"\nMakeNamedMaterial \"b\" \"string type\" \"mirror\"\n"
-           "Material \"mix\" \"string namedmaterial1\" \"a\" \"string namedmaterial2\" \"b\" \"texture amount\" \"t\"\n"
-           "Shape \"sphere\"\nMaterial \"uber\" \"texture opacity\" \"t\"\nShape \"sphere\"\n");
+  const SceneDescription scene = read(v3_head +
+                                      R"(WorldBegin
+Texture "t" "color" "checkerboard" "color tex1" [.2 .4 .6] "color tex2" [1 1 1]
+MakeNamedMaterial "a" "string type" "matte"
+MakeNamedMaterial "b" "string type" "mirror"
+Material "mix" "string namedmaterial1" "a" "string namedmaterial2" "b" "texture amount" "t"
+Shape "sphere"
+Material "uber" "texture opacity" "t"
+Shape "sphere"
+)");
   const auto& mix = std::get<description::MixMaterial>(material_of(scene, 0).node);
   ASSERT_TRUE(mix.amount.texture);
   const auto& twin =
@@ -386,12 +502,15 @@ TEST(Upgrade, WritesTheTranslation) {
   dir.write("old/parts/one.ply",
             "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
             "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
-  dir.write("old/parts/mesh.pbrt", "Shape \"plymesh\" \"string filename\" \"parts/one.ply\"\n");
-  dir.write(
-      "old/scene.pbrt",
-      camera + v3_head +
-          "WorldBegin # a comment\nLightSource \"point\" \"spectrum I\" \"light.spd\"\nTransform [1 0 0 0 0 1 0 0 0 0 "
-          "1 0 .1 .2 .3 1]\nMaterial \"plastic\" \"color Kd\" [.3 .2 .1]\nInclude \"parts/mesh.pbrt\"\n");
+  dir.write("old/parts/mesh.pbrt", R"(Shape "plymesh" "string filename" "parts/one.ply"
+)");
+  dir.write("old/scene.pbrt", camera + v3_head +
+                                  R"(WorldBegin # a comment
+LightSource "point" "spectrum I" "light.spd"
+Transform [1 0 0 0 0 1 0 0 0 0 1 0 .1 .2 .3 1]
+Material "plastic" "color Kd" [.3 .2 .1]
+Include "parts/mesh.pbrt"
+)");
   const UpgradedScene upgraded = upgrade_pbrt(dir.path() / "old/scene.pbrt", dir.path() / "new");
   dir.write("new/scene.pbrt", upgraded.text);
   EXPECT_EQ(upgraded.files.size(), 2u);
@@ -404,18 +523,27 @@ TEST(Upgrade, WritesTheTranslation) {
   EXPECT_EQ(after.files.count("../old/parts/one.ply"), 1u);
   EXPECT_EQ(test::error_text([&] { upgrade_pbrt(dir.path() / "new/scene.pbrt", dir.path()); }),
             (dir.path() / "new/scene.pbrt").string() +
-                ": Film \"rgb\" in line 4 belongs to pbrt-v4: there is nothing to convert");
+                R"(: Film "rgb" in line 4 belongs to pbrt-v4: there is nothing to convert)");
 }
 
 // Features of pbrt-v2 only are translated, or skipped with a warning; the rest is as in pbrt-v3.
 TEST(Upgrade, FilesOfPbrtV2AreRead) {
   const std::string world =
-      "WorldBegin\nAttributeBegin\nAreaLightSource \"area\" \"color L\" [3 2 1] \"integer nsamples\" 4\nShape "
-      "\"disk\"\n"
-      "AttributeEnd\nMaterial \"measured\" \"string filename\" \"no.brdf\"\nShape \"sphere\"\n";
-  const std::string head = "SurfaceIntegrator \"path\" \"integer maxdepth\" 7\nVolumeIntegrator \"single\"\n" +
-                           v3_head + "Renderer \"metropolis\" \"integer samplesperpixel\" 128\n" + world;
-  const std::string text = head + "Volume \"homogeneous\" \"color sigma_s\" [1 1 1]\nWorldEnd\n";
+      R"(WorldBegin
+AttributeBegin
+AreaLightSource "area" "color L" [3 2 1] "integer nsamples" 4
+Shape "disk"
+AttributeEnd
+Material "measured" "string filename" "no.brdf"
+Shape "sphere"
+)";
+  const std::string head = R"(SurfaceIntegrator "path" "integer maxdepth" 7
+VolumeIntegrator "single"
+)" + v3_head + R"(Renderer "metropolis" "integer samplesperpixel" 128
+)" + world;
+  const std::string text = head + R"(Volume "homogeneous" "color sigma_s" [1 1 1]
+WorldEnd
+)";
   const SceneDescription scene = read(text);
   EXPECT_EQ(scene.hints.integrator, "path");
   EXPECT_EQ(scene.hints.max_depth, 7);
@@ -428,19 +556,25 @@ TEST(Upgrade, FilesOfPbrtV2AreRead) {
       return warning.ends_with("directive \"" + std::string(name) + "\" belongs to pbrt-v2: ignored");
     })) << name;
   const auto milk = [](const std::string& name) {
-    return read(v3_head + "WorldBegin\nMaterial \"subsurface\" \"color sigma_a\" [1 2 3] \"color " + name +
-                "\" [4 5 6]\nShape \"sphere\"");
+    return read(v3_head + R"(WorldBegin
+Material "subsurface" "color sigma_a" [1 2 3] "color )" +
+                name +
+                R"(" [4 5 6]
+Shape "sphere")");
   };
   EXPECT_EQ(milk("sigma_prime_s").media.size(), 1u);
-  EXPECT_EQ(warnings_of(v3_head + "WorldBegin\nMaterial \"subsurface\" \"color sigma_prime_s\" [4 5 6]").size(), 1u);
+  EXPECT_EQ(warnings_of(v3_head + R"(WorldBegin
+Material "subsurface" "color sigma_prime_s" [4 5 6])")
+                .size(),
+            1u);
 }
 
 // A name from pbrt-v2, with its parameters there.
 TEST(Upgrade, PhotonMapsAreOurs) {
   const std::string head = v3_head +
-                           "Integrator \"photonmap\" \"integer causticphotons\" 5000 \"integer indirectphotons\" "
-                           "7000 \"integer nused\" 1000 \"float maxdist\" .25 \"integer maxphotondepth\" 7 "
-                           "\"integer finalgathersamples\" 9 \"float gatherangle\" 10 ";
+                           R"(Integrator "photonmap" "integer causticphotons" 5000 "integer indirectphotons" )"
+                           R"(7000 "integer nused" 1000 "float maxdist" .25 "integer maxphotondepth" 7 )"
+                           R"("integer finalgathersamples" 9 "float gatherangle" 10 )";
   const auto hints = read(head + "WorldBegin WorldEnd").hints;
   EXPECT_EQ(hints.integrator, "photonmap");
   EXPECT_EQ(hints.parameters,
@@ -452,10 +586,10 @@ TEST(Upgrade, PhotonMapsAreOurs) {
     const std::vector<std::string> all = warnings_of(head + more + "WorldBegin WorldEnd");
     return all.empty() ? std::string() : all.back();
   };
-  const std::string replaced = "2 the integrator \"photonmap\" is of pbrt-v2: Lanthorn's photonmap replaces it";
+  const std::string replaced = R"(2 the integrator "photonmap" is of pbrt-v2: Lanthorn's photonmap replaces it)";
   EXPECT_EQ(said(""), replaced);
-  EXPECT_EQ(said("\"bool finalgather\" false "),
-            replaced + ", which uses final gathering although \"finalgather\" is false");
+  EXPECT_EQ(said(R"("bool finalgather" false )"),
+            replaced + R"(, which uses final gathering although "finalgather" is false)");
 }
 
 // Quadrics that pbrt-v4 lacks: their points and normals, against the surfaces' equation f(p) = 0 and grad f.
@@ -467,15 +601,15 @@ TEST(Upgrade, QuadricsAreMeshes) {
     Bounds bounds;
   };
   const std::vector<Quadric> quadrics = {
-      {"\"cone\" \"float radius\" 2 \"float height\" 3",
+      {R"("cone" "float radius" 2 "float height" 3)",
        [](const Point& p) { return std::hypot(p.x, p.y) - 2 * (1 - p.z / 3); },
        [](const Point& p) { return Vec3(Vec3(p.x, p.y, 0) / std::hypot(p.x, p.y) + Vec3(0, 0, 2.0f / 3)); },
        {{-2, -2, 0}, {2, 2, 3}}},
-      {"\"paraboloid\" \"float radius\" 2 \"float zmin\" 1 \"float zmax\" 4",
+      {R"("paraboloid" "float radius" 2 "float zmin" 1 "float zmax" 4)",
        [](const Point& p) { return p.x * p.x + p.y * p.y - p.z; },
        [](const Point& p) { return Vec3(2 * p.x, 2 * p.y, -1); },
        {{-2, -2, 1}, {2, 2, 4}}},
-      {"\"hyperboloid\" \"point p1\" [1 1 -1] \"point p2\" [1 -1 1]",
+      {R"("hyperboloid" "point p1" [1 1 -1] "point p2" [1 -1 1])",
        [](const Point& p) { return p.x * p.x + p.y * p.y - p.z * p.z - 1; },
        [](const Point& p) { return Vec3(2 * p.x, 2 * p.y, -2 * p.z); },
        {{-std::sqrt(2.0f), -std::sqrt(2.0f), -1}, {std::sqrt(2.0f), std::sqrt(2.0f), 1}}}};
@@ -496,22 +630,24 @@ TEST(Upgrade, QuadricsAreMeshes) {
       EXPECT_NEAR(bounds.max[k], q.bounds.max[k], 1e-3f) << q.text;
     }
   }
-  EXPECT_EQ(error_of(v3_head + "WorldBegin Shape \"paraboloid\" \"float zmax\" 0\nWorldEnd"),
-            "t.pbrt:2:12: Shape \"paraboloid\" needs 0 <= zmin < zmax");
+  EXPECT_EQ(error_of(v3_head + R"(WorldBegin Shape "paraboloid" "float zmax" 0
+WorldEnd)"),
+            R"(t.pbrt:2:12: Shape "paraboloid" needs 0 <= zmin < zmax)");
 }
 
 // The texture "uv" returns fractional parts: (-1) u + 0 becomes 1 - u, 0.5 u + 2.25 becomes 0.25 + 0.5 u.
 TEST(Upgrade, CoordinatesAsColoursStayBetween0And1) {
   const SceneDescription scene =
       read(v3_head +
-           "WorldBegin Texture \"t\" \"color\" \"uv\" \"float uscale\" -1 \"float vscale\" .5 \"float vdelta\" 2.25\n"
-           "Material \"matte\" \"texture Kd\" \"t\" Shape \"sphere\"\nWorldEnd");
+           R"(WorldBegin Texture "t" "color" "uv" "float uscale" -1 "float vscale" .5 "float vdelta" 2.25
+Material "matte" "texture Kd" "t" Shape "sphere"
+WorldEnd)");
   const auto& bilerp =
       std::get<description::BilerpTexture<description::SpectrumParameter>>(scene.spectrum_textures.at(0).node);
   const auto& mapping = std::get<description::UvMapping>(bilerp.mapping);
   EXPECT_EQ(mapping.linear * Vec2(0.25f, 1) + mapping.offset, Vec2(0.75f, 0.75f));
-  EXPECT_EQ(warnings_of(v3_head + "WorldBegin Texture \"t\" \"color\" \"uv\" \"float uscale\" 3 WorldEnd").back(),
-            "2 textures \"uv\" do not repeat");
+  EXPECT_EQ(warnings_of(v3_head + R"(WorldBegin Texture "t" "color" "uv" "float uscale" 3 WorldEnd)").back(),
+            R"(2 textures "uv" do not repeat)");
 }
 
 }  // namespace

@@ -33,15 +33,18 @@ void expect_frame(const SurfacePoint& at) {
 
 // The unit square in z = 0, u along x and v along y.
 const char* const square =
-    "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point3 P\" [0 0 0 1 0 0 1 1 0 0 1 0]"
-    " \"point2 uv\" [0 0 1 0 1 1 0 1]\n";
-const char* const square_patch = "Shape \"bilinearmesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0 1 1 0]\n";
+    R"(Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [0 0 0 1 0 0 1 1 0 0 1 0] "point2 uv" [0 0 1 0 1 1 0 1]
+)";
+const char* const square_patch = R"(Shape "bilinearmesh" "point3 P" [0 0 0 1 0 0 0 1 0 1 1 0]
+)";
 
 std::string ramp(const std::string& slopes) {
   // Displacement h = a x + b y + c z in the space where it is defined.
-  return "Texture \"h\" \"float\" \"bilerp\" \"float v01\" 0 \"float v10\" 1 \"float v11\" 1 \"string mapping\" "
-         "\"planar\" \"vector3 v1\" [" +
-         slopes + "]\nMaterial \"diffuse\" \"texture displacement\" \"h\"\n";
+  return R"(Texture "h" "float" "bilerp" "float v01" 0 "float v10" 1 "float v11" 1 "string mapping" )"
+         R"("planar" "vector3 v1" [)" +
+         slopes + R"(]
+Material "diffuse" "texture displacement" "h"
+)";
 }
 
 // The normal n of a surface raised by h: n - (grad h - n (n . grad h)).
@@ -57,7 +60,7 @@ class NormalMaps : public ::testing::Test {
     EXPECT_TRUE(output->open(path, OIIO::ImageSpec(1, 1, 3, OIIO::TypeDesc::FLOAT)));
     EXPECT_TRUE(output->write_image(OIIO::TypeDesc::FLOAT, texel.data()));
     EXPECT_TRUE(output->close());
-    return "Material \"diffuse\" \"string normalmap\" \"" + path + "\"\n";
+    return R"(Material "diffuse" "string normalmap" ")" + path + "\"\n";
   }
   test::TemporaryDir folder;
   const Vec3 tilted = normalize(Vec3(0.3f, 0.2f, 0.9f));
@@ -65,7 +68,7 @@ class NormalMaps : public ::testing::Test {
 
 TEST_F(NormalMaps, ConstantTiltIsThatOfShadingNormals) {
   const std::string with_normals =
-      std::string(square).substr(0, std::string(square).size() - 1) + " \"normal N\" [" +
+      std::string(square).substr(0, std::string(square).size() - 1) + R"( "normal N" [)" +
       [&] {
         std::string n;
         for (int i = 0; i < 4; ++i)
@@ -93,7 +96,7 @@ TEST_F(NormalMaps, EightBitTexelsAreLinear) {
   ASSERT_TRUE(output->open(path, OIIO::ImageSpec(1, 1, 3, OIIO::TypeDesc::UINT8)));
   ASSERT_TRUE(output->write_image(OIIO::TypeDesc::UINT8, texel.data()));
   ASSERT_TRUE(output->close());
-  const Scene scene = world("Material \"conductor\" \"string normalmap\" \"" + path + "\"\n" + square);
+  const Scene scene = world(R"(Material "conductor" "string normalmap" ")" + path + "\"\n" + square);
   const auto at = look(scene, {0.3f, 0.6f, 1}, {0, 0, -1});
   expect_near(at->shading.n, normalize(Vec3(2 * 192 / 255.0f - 1, 2 * 128 / 255.0f - 1, 2 * 230 / 255.0f - 1)), 1e-5f);
 }
@@ -112,7 +115,11 @@ TEST_F(NormalMaps, FollowTransforms) {
     expect_near(normal("Scale 1 -3 1\n", shape, {0.3f, -0.6f, 0}), Vec3(tilted.x, -tilted.y, tilted.z), 1e-5f);
     expect_near(normal("Rotate 90 0 0 1\n", shape, {-0.6f, 0.3f, 0}), Vec3(-tilted.y, tilted.x, tilted.z), 1e-5f);
     expect_near(normal("ReverseOrientation\n", shape, {0.3f, 0.6f, 0}), Vec3(tilted.x, tilted.y, -tilted.z), 1e-5f);
-    const std::string object = "ObjectBegin \"o\"\n" + shape + "ObjectEnd\nScale -1 1 1\nObjectInstance \"o\"\n";
+    const std::string object = R"(ObjectBegin "o"
+)" + shape + R"(ObjectEnd
+Scale -1 1 1
+ObjectInstance "o"
+)";
     expect_near(normal("", object, {-0.3f, 0.6f, 0}), Vec3(-tilted.x, tilted.y, tilted.z), 1e-5f);
   }
 }
@@ -120,7 +127,8 @@ TEST_F(NormalMaps, FollowTransforms) {
 // x is along the mesh's own tangents if it has them.
 TEST_F(NormalMaps, FollowTangents) {
   const std::string shape = std::string(square).substr(0, std::string(square).size() - 1);
-  const Scene scene = world(map(tilted) + shape + " \"vector3 S\" [3 3 0 3 3 0 3 3 0 3 3 0]\n");
+  const Scene scene = world(map(tilted) + shape + R"( "vector3 S" [3 3 0 3 3 0 3 3 0 3 3 0]
+)");
   const auto at = look(scene, {0.3f, 0.6f, 1}, {0, 0, -1});
   const float half = std::sqrt(0.5f);
   expect_near(at->shading.n, {half * (tilted.x - tilted.y), half * (tilted.x + tilted.y), tilted.z}, 1e-5f);
@@ -138,10 +146,10 @@ TEST_F(NormalMaps, StayAboveTheHorizon) {
 TEST_F(NormalMaps, BelongToThePartOfAMixThatIsSeen) {
   const auto normal = [&](const char* amount) {
     std::string named = map(tilted);
-    named.replace(0, std::string("Material \"diffuse\"").size(), "MakeNamedMaterial \"b\" \"string type\" \"diffuse\"");
-    const Scene scene =
-        world("MakeNamedMaterial \"a\" \"string type\" \"diffuse\"\n" + named +
-              "Material \"mix\" \"string materials\" [\"a\" \"b\"] \"float amount\" " + amount + "\n" + square);
+    named.replace(0, std::string(R"(Material "diffuse")").size(), R"(MakeNamedMaterial "b" "string type" "diffuse")");
+    const Scene scene = world(R"(MakeNamedMaterial "a" "string type" "diffuse"
+)" + named + R"(Material "mix" "string materials" ["a" "b"] "float amount" )" +
+                              amount + "\n" + square);
     return look(scene, {0.3f, 0.6f, 1}, {0, 0, -1})->shading.n;
   };
   expect_near(normal("0"), {0, 0, 1}, 1e-6f);
@@ -156,7 +164,7 @@ TEST_F(NormalMaps, NeedColours) {
   ASSERT_TRUE(output->write_image(OIIO::TypeDesc::FLOAT, &texel));
   ASSERT_TRUE(output->close());
   const std::string error =
-      test::error_text([&] { world("Material \"diffuse\" \"string normalmap\" \"" + path + "\"\n" + square); });
+      test::error_text([&] { world(R"(Material "diffuse" "string normalmap" ")" + path + "\"\n" + square); });
   EXPECT_NE(error.find("test scene:4:1: the normal map"), std::string::npos) << error;
   EXPECT_NE(error.find("must have three channels"), std::string::npos) << error;
 }
@@ -165,7 +173,12 @@ TEST_F(NormalMaps, NeedColours) {
 TEST_F(NormalMaps, GiveWayToDisplacementsUnlessTheyHaveColoursOfNormals) {
   const auto normal = [&](const Vec3& texel) {
     SceneDescription scene = read_pbrt_string(
-        "Camera \"perspective\"\nWorldBegin\nLightSource \"infinite\"\n" + ramp("0.3 -0.2 0") + square, ".", "test");
+        R"(Camera "perspective"
+WorldBegin
+LightSource "infinite"
+)" + ramp("0.3 -0.2 0") +
+            square,
+        ".", "test");
     map(texel);
     description::NormalMap& normals = scene.materials.back().normal_map.emplace();
     normals.image.filename = (folder.path() / "n.exr").string();
@@ -181,7 +194,8 @@ TEST_F(NormalMaps, GiveWayToDisplacementsUnlessTheyHaveColoursOfNormals) {
 
 TEST(Displacement, OfALinearRampOnAPlane) {
   const Vec3 expected = normalize(Vec3(-0.3f, 0.2f, 1));
-  for (const char* shape : {square, square_patch, "Translate 0.5 0.5 0 Shape \"disk\" \"float radius\" 2\n"})
+  for (const char* shape : {square, square_patch, R"(Translate 0.5 0.5 0 Shape "disk" "float radius" 2
+)"})
     for (const float z : {1.0f, -1.0f}) {
       const Scene scene = world(ramp("0.3 -0.2 0") + shape);
       const auto at = look(scene, {0.3f, 0.6f, z}, {0, 0, -z});
@@ -190,9 +204,10 @@ TEST(Displacement, OfALinearRampOnAPlane) {
     }
   // Relative to u and v, on a square of 2 x 4 m.
   const Scene by_uv = world(
-      "Texture \"h\" \"float\" \"bilerp\" \"float v00\" 0 \"float v10\" 0.5 \"float v01\" 2 \"float v11\" 2.5\n"
-      "Material \"diffuse\" \"texture displacement\" \"h\"\nScale 2 4 1\n" +
-      std::string(square));
+      R"(Texture "h" "float" "bilerp" "float v00" 0 "float v10" 0.5 "float v01" 2 "float v11" 2.5
+Material "diffuse" "texture displacement" "h"
+Scale 2 4 1
+)" + std::string(square));
   expect_near(look(by_uv, {1.3f, 1.7f, 1}, {0, 0, -1})->shading.n, normalize(Vec3(-0.25f, -0.5f, 1)));
   // Inside out, the surface is raised towards its other side.
   const Scene reversed = world(ramp("0.3 -0.2 0") + "ReverseOrientation\n" + square);
@@ -202,20 +217,29 @@ TEST(Displacement, OfALinearRampOnAPlane) {
 TEST(Displacement, OfSolidRampsOnCurvedShapesWhereverTheyArePlaced) {
   const Vec3 gradient(0.2f, -0.1f, 0.3f);
   const std::vector<std::string> shapes = {
-      "Shape \"sphere\"\n", "Shape \"sphere\" \"float zmin\" -0.5 \"float zmax\" 0.9 \"float phimax\" 300\n",
-      "Shape \"cylinder\"\n", "Shape \"bilinearmesh\" \"point3 P\" [-1 -1 0  1 -1 0.5  -1 1 0.4  1 1 -0.3]\n",
-      "Shape \"bilinearmesh\" \"point3 P\" [-1 -1 0  1 -1 0.5  -1 1 0.4  1 1 -0.3] \"point2 uv\" [0 0 3 1 1 2 5 4]\n",
-      "Shape \"trianglemesh\" \"integer indices\" [0 1 2] \"point3 P\" [-2 -1 0.1  2 -1 0.5  0 2 -0.4] \"point2 uv\" "
-      "[0 0 "
-      "5 1 -1 3]\n",
+      R"(Shape "sphere"
+)",
+      R"(Shape "sphere" "float zmin" -0.5 "float zmax" 0.9 "float phimax" 300
+)",
+      R"(Shape "cylinder"
+)",
+      R"(Shape "bilinearmesh" "point3 P" [-1 -1 0  1 -1 0.5  -1 1 0.4  1 1 -0.3]
+)",
+      R"(Shape "bilinearmesh" "point3 P" [-1 -1 0  1 -1 0.5  -1 1 0.4  1 1 -0.3] "point2 uv" [0 0 3 1 1 2 5 4]
+)",
+      R"(Shape "trianglemesh" "integer indices" [0 1 2] "point3 P" [-2 -1 0.1  2 -1 0.5  0 2 -0.4] "point2 uv" [0 0 5 1 -1 3]
+)",
       // A surface without a parametrisation.
-      "Shape \"trianglemesh\" \"integer indices\" [0 1 2] \"point3 P\" [-2 -1 0.1  2 -1 0.5  0 2 -0.4] \"point2 uv\" "
-      "[1 1 "
-      "1 1 1 1]\n"};
-  const std::vector<std::string> places = {
-      "%", "Rotate 40 1 2 3 Scale 1 0.5 2\n%", "Scale -1 1 1 Rotate 20 0 1 0\n%",
-      "ObjectBegin \"o\"\nRotate 15 1 0 0\n%ObjectEnd\nRotate 50 3 1 2 Scale 1 -2 1\nObjectInstance \"o\"\n",
-      "ActiveTransform EndTime Rotate 5 0 1 0\nActiveTransform All\n%"};
+      R"(Shape "trianglemesh" "integer indices" [0 1 2] "point3 P" [-2 -1 0.1  2 -1 0.5  0 2 -0.4] "point2 uv" [1 1 1 1 1 1]
+)"};
+  const std::vector<std::string> places = {"%", "Rotate 40 1 2 3 Scale 1 0.5 2\n%", "Scale -1 1 1 Rotate 20 0 1 0\n%",
+                                           R"(ObjectBegin "o"
+Rotate 15 1 0 0
+%ObjectEnd
+Rotate 50 3 1 2 Scale 1 -2 1
+ObjectInstance "o"
+)",
+                                           "ActiveTransform EndTime Rotate 5 0 1 0\nActiveTransform All\n%"};
   HashRng rng(3);
   for (const std::string& shape : shapes)
     for (const std::string& place : places) {
@@ -251,11 +275,11 @@ TEST(Displacement, OfAnImage) {
   ASSERT_TRUE(output->open(path, OIIO::ImageSpec(size, size, 1, OIIO::TypeDesc::FLOAT)));
   ASSERT_TRUE(output->write_image(OIIO::TypeDesc::FLOAT, texels.data()));
   ASSERT_TRUE(output->close());
-  const Scene scene =
-      world("Texture \"h\" \"float\" \"imagemap\" \"string filename\" \"" + path +
-            "\" \"float uscale\" 400 \"float vscale\" 0.5\nMaterial \"diffuse\" \"texture displacement\" "
-            "\"h\"\nScale 400 2 1\n" +
-            square);
+  const Scene scene = world(R"(Texture "h" "float" "imagemap" "string filename" ")" + path +
+                            R"(" "float uscale" 400 "float vscale" 0.5
+Material "diffuse" "texture displacement" "h"
+Scale 400 2 1
+)" + square);
   for (float s = 3.1f; s < 3.9f; s += 0.013f) {
     const auto at = look(scene, {s, 0.9f, 1}, {0, 0, -1});
     expect_near(at->shading.n, normalize(Vec3(-0.8f * (s - 3), 0, 1)), 0.01f);
@@ -263,8 +287,11 @@ TEST(Displacement, OfAnImage) {
 }
 
 TEST(Displacement, OfAConstantChangesNothing) {
-  const Scene plain = world("Shape \"sphere\"\n");
-  const Scene raised_evenly = world("Material \"diffuse\" \"float displacement\" 0.3\nShape \"sphere\"\n");
+  const Scene plain = world(R"(Shape "sphere"
+)");
+  const Scene raised_evenly = world(R"(Material "diffuse" "float displacement" 0.3
+Shape "sphere"
+)");
   const auto a = look(plain, {0.3f, 0.2f, 4}, {0, 0, -1}), b = look(raised_evenly, {0.3f, 0.2f, 4}, {0, 0, -1});
   EXPECT_EQ(a->shading.n, b->shading.n);
   EXPECT_EQ(a->shading.s, b->shading.s);
@@ -272,10 +299,15 @@ TEST(Displacement, OfAConstantChangesNothing) {
 
 // At the poles of a sphere, u has no direction.
 TEST(Displacement, IsFiniteAtPoles) {
-  for (const char* texture : {"Texture \"h\" \"float\" \"fbm\"\n", "Texture \"h\" \"float\" \"bilerp\"\n",
-                              "Texture \"h\" \"float\" \"dots\" \"float uscale\" 9 \"float vscale\" 9\n"}) {
-    const Scene scene =
-        world(std::string(texture) + "Material \"diffuse\" \"texture displacement\" \"h\"\n" + "Shape \"sphere\"\n");
+  for (const char* texture : {R"(Texture "h" "float" "fbm"
+)",
+                              R"(Texture "h" "float" "bilerp"
+)",
+                              R"(Texture "h" "float" "dots" "float uscale" 9 "float vscale" 9
+)"}) {
+    const Scene scene = world(std::string(texture) + R"(Material "diffuse" "texture displacement" "h"
+)" + R"(Shape "sphere"
+)");
     for (const float x : {0.0f, 1e-20f, 1e-7f, 1e-3f}) {
       const auto at = look(scene, {x, 0, 4}, {0, 0, -1});
       ASSERT_TRUE(at);

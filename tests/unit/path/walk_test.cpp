@@ -49,8 +49,9 @@ struct FlightRecorder {
 std::vector<SeenFlight> flights_through(const std::string& fog, RayCounts& counts) {
   const Scene scene = test::world(
       fog +
-      "AttributeBegin MediumInterface \"fog\" \"\" Material \"interface\" Shape \"sphere\" \"float radius\" 1 "
-      "AttributeEnd\nShape \"bilinearmesh\" \"point3 P\" [-9 -1 9  9 -1 9  -9 -1 -9  9 -1 -9]\n");
+      R"(AttributeBegin MediumInterface "fog" "" Material "interface" Shape "sphere" "float radius" 1 AttributeEnd
+Shape "bilinearmesh" "point3 P" [-9 -1 9  9 -1 9  -9 -1 -9  9 -1 -9]
+)");
   std::vector<SeenFlight> flights;
   for (std::uint32_t i = 0; i < 400; ++i) {
     Sampler sampler = Sampler::for_pixel(1, Stream::camera, i, 0);
@@ -64,8 +65,8 @@ std::vector<SeenFlight> flights_through(const std::string& fog, RayCounts& count
 TEST(Walk, ShowsEachFlightWithItsDensity) {
   RayCounts counts;
   const auto flights = flights_through(
-      "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [.25 .25 .25] "
-      "\"rgb sigma_s\" [.75 .75 .75]\n",
+      R"(MakeNamedMedium "fog" "string type" "homogeneous" "rgb sigma_a" [.25 .25 .25] "rgb sigma_s" [.75 .75 .75]
+)",
       counts);
   EXPECT_EQ(flights.size(), counts.walk) << "each ray is a flight";
   int scattered = 0, passed = 0, in_vacuum = 0;
@@ -99,9 +100,8 @@ TEST(Walk, ShowsEachFlightWithItsDensity) {
 TEST(Walk, DoesNotKnowTheDensityOfTrackedFlights) {
   RayCounts counts;
   const auto flights = flights_through(
-      "MakeNamedMedium \"fog\" \"string type\" \"uniformgrid\" \"rgb sigma_a\" [.2 .2 .2] \"rgb sigma_s\" [1 1 1] "
-      "\"integer nx\" 1 \"integer ny\" 1 \"integer nz\" 1 \"float density\" [1] \"point3 p0\" [-1 -1 -1] "
-      "\"point3 p1\" [1 1 1]\n",
+      R"(MakeNamedMedium "fog" "string type" "uniformgrid" "rgb sigma_a" [.2 .2 .2] "rgb sigma_s" [1 1 1] "integer nx" 1 "integer ny" 1 "integer nz" 1 "float density" [1] "point3 p0" [-1 -1 -1] "point3 p1" [1 1 1]
+)",
       counts);
   int in_fog = 0;
   for (const SeenFlight& f : flights) {
@@ -114,8 +114,10 @@ TEST(Walk, DoesNotKnowTheDensityOfTrackedFlights) {
 // Radiance along rays from a point, as baking needs it: in a white furnace, L = E / (1 - rho) everywhere.
 TEST(RadianceAlong, IsThatOfAFurnaceFromAnyPointInAnyDirection) {
   const Scene scene = test::world(
-      "AreaLightSource \"diffuse\" \"rgb L\" [.5 .5 .5]\nMaterial \"diffuse\" \"rgb reflectance\" [.5 .5 .5]\n"
-      "ReverseOrientation Shape \"sphere\" \"float radius\" 1\n");
+      R"(AreaLightSource "diffuse" "rgb L" [.5 .5 .5]
+Material "diffuse" "rgb reflectance" [.5 .5 .5]
+ReverseOrientation Shape "sphere" "float radius" 1
+)");
   test::Mean mean;
   for (std::uint32_t i = 0; i < 4096; ++i) {
     Sampler sampler = Sampler::for_pixel(test::seed(0), Stream::camera, i, 0);

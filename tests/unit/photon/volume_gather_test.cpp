@@ -48,7 +48,8 @@ class OnePhoton {
   static constexpr Kernel kernel{KernelShape::epanechnikov};
   VolumeGather gather_by(float radius) const { return {estimator_, kernel, radius, chunks_, ColorMode::rgb}; }
 
-  const Scene scene_ = test::world("MakeNamedMedium \"fog\" \"string type\" \"homogeneous\"\n");
+  const Scene scene_ = test::world(R"(MakeNamedMedium "fog" "string type" "homogeneous"
+)");
   const Wavelengths w_ = Wavelengths::rgb(0.5f);
   mutable Sampler sampler_ = Sampler::for_pixel(0, Stream::camera, 0, 0);
   mutable RayCounts counts_;

@@ -109,7 +109,7 @@ std::string ball(float x, float radius) {
       const int first = j * (across + 1) + i, below = first + across + 1;
       for (const int k : {first, first + 1, below, first + 1, below + 1, below}) indices += std::to_string(k) + " ";
     }
-  return "Shape \"trianglemesh\" \"integer indices\" [" + indices + "] \"point3 P\" [" + points + "] \"normal N\" [" +
+  return R"(Shape "trianglemesh" "integer indices" [)" + indices + R"(] "point3 P" [)" + points + R"(] "normal N" [)" +
          normals + "]\n";
 }
 
@@ -127,10 +127,12 @@ Material "diffuse" "rgb reflectance" [.5 .6 .7]
 Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-3 0 -2  3 0 -2  3 0 2  -3 0 2]
 Material "conductor" "spectrum eta" "metal-Cu-eta" "spectrum k" "metal-Cu-k" "float roughness" [.4] "bool remaproughness" false
 )" + ball(-1.8f, 0.7f) +
-      "Material \"conductor\" \"rgb reflectance\" [.9 .8 .7] \"float roughness\" [0]\n" + ball(-0.6f, 0.5f) +
-      "Material \"dielectric\" \"float eta\" [1.5]\n" + ball(0.6f, 0.5f) +
-      "Material \"diffusetransmission\" \"rgb reflectance\" [.3 .2 .1] \"rgb transmittance\" [.2 .4 .1]\n" +
-      ball(1.8f, 0.7f);
+      R"(Material "conductor" "rgb reflectance" [.9 .8 .7] "float roughness" [0]
+)" + ball(-0.6f, 0.5f) +
+      R"(Material "dielectric" "float eta" [1.5]
+)" + ball(0.6f, 0.5f) +
+      R"(Material "diffusetransmission" "rgb reflectance" [.3 .2 .1] "rgb transmittance" [.2 .4 .1]
+)" + ball(1.8f, 0.7f);
   SceneDescription description = read_pbrt_string(text, ".", "test scene");
   description::SphericalTexels texels{64, 32, {}};
   for (int i = 0; i < 64 * 32; ++i)
@@ -178,14 +180,16 @@ TEST_F(EnvironmentTest, FrameIsThePictureOfTheCpu) {
 // The sun is smaller than the distance between the directions all around.
 TEST(EnvironmentFingerprint, ChangesWithASmallSun) {
   const auto of = [](const std::string& light) {
-    return environment_fingerprint(test::scene_from_text("WorldBegin\nLightSource \"distant\" \"float angle\" .5 " +
-                                                         light + "\nShape \"sphere\"\n"));
+    return environment_fingerprint(test::scene_from_text(R"(WorldBegin
+LightSource "distant" "float angle" .5 )" + light + R"(
+Shape "sphere"
+)"));
   };
-  const std::string up = "\"point3 from\" [.1 1 .2] \"point3 to\" [0 0 0] ";
-  const auto one = of(up + "\"rgb L\" [1 1 1]");
-  EXPECT_EQ(of(up + "\"rgb L\" [1 1 1]"), one);
-  EXPECT_NE(of(up + "\"rgb L\" [1 1 .9]"), one);
-  EXPECT_NE(of("\"point3 from\" [.2 1 .1] \"point3 to\" [0 0 0] \"rgb L\" [1 1 1]"), one);
+  const std::string up = R"("point3 from" [.1 1 .2] "point3 to" [0 0 0] )";
+  const auto one = of(up + R"("rgb L" [1 1 1])");
+  EXPECT_EQ(of(up + R"("rgb L" [1 1 1])"), one);
+  EXPECT_NE(of(up + R"("rgb L" [1 1 .9])"), one);
+  EXPECT_NE(of(R"("point3 from" [.2 1 .1] "point3 to" [0 0 0] "rgb L" [1 1 1])"), one);
 }
 
 }  // namespace

@@ -50,13 +50,16 @@ Shape "trianglemesh" "integer indices" [0 1 2 0 2 3 0 1 4 1 2 4 2 3 4 3 0 4] "po
 )";
 }
 
-constexpr const char* mirror = "Material \"conductor\" \"float roughness\" [0]\n";
-constexpr const char* point_light = "LightSource \"point\" \"rgb I\" [3 2 1] \"point3 from\" [.3 1.5 -.2]\n";
+constexpr const char* mirror = R"(Material "conductor" "float roughness" [0]
+)";
+constexpr const char* point_light = R"(LightSource "point" "rgb I" [3 2 1] "point3 from" [.3 1.5 -.2]
+)";
 constexpr const char* spot_light =
-    "LightSource \"spot\" \"rgb I\" [9 9 9] \"point3 from\" [.5 1.8 -.8] \"point3 to\" [-.3 0 .4] "
-    "\"float coneangle\" [35] \"float conedeltaangle\" [12]\n";
+    R"(LightSource "spot" "rgb I" [9 9 9] "point3 from" [.5 1.8 -.8] "point3 to" [-.3 0 .4] "float coneangle" [35] "float conedeltaangle" [12]
+)";
 constexpr const char* sun =
-    "LightSource \"distant\" \"rgb L\" [2 2 2] \"point3 from\" [.4 1 -.8] \"point3 to\" [0 0 0]\n";
+    R"(LightSource "distant" "rgb L" [2 2 2] "point3 from" [.4 1 -.8] "point3 to" [0 0 0]
+)";
 /// A square lamp facing down.
 std::string lamp_of(const std::string& radiance, double half, double height) {
   return fmt::format(R"(

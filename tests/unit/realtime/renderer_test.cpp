@@ -169,7 +169,8 @@ TEST_F(RendererTest, ShapesHiddenFromTheCameraHaveShadows) {
 // A view has no profile, but the light's power.
 TEST_F(RendererTest, AreaLightsWithASpreadKeepTheirPower) {
   SceneDescription description =
-      read_pbrt_string(std::string(floor_and_blade) + "AreaLightSource \"diffuse\" \"rgb L\" [3 2 1] Shape \"disk\"\n",
+      read_pbrt_string(std::string(floor_and_blade) + R"(AreaLightSource "diffuse" "rgb L" [3 2 1] Shape "disk"
+)",
                        ".", "test scene");
   description.lights.clear();
   const auto views_of = [&] {

@@ -28,8 +28,8 @@ class SurfaceTexturesTest : public test::OpenGl {};
 // A square of side 2 in front of the wall. u runs along x or against it, v along y or against it.
 std::string square(float x, float y, const std::string& options = "", bool is_mirrored = false) {
   const auto at = [&](float dx, float dy) { return std::to_string(x + dx) + " " + std::to_string(y + dy) + " 0  "; };
-  return "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point3 P\" [" + at(-1, -1) + at(1, -1) + at(1, 1) +
-         at(-1, 1) + "] \"point2 uv\" [" + (is_mirrored ? "0 1 1 1 1 0 0 0" : "0 0 1 0 1 1 0 1") + "] " + options +
+  return R"(Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [)" + at(-1, -1) + at(1, -1) + at(1, 1) +
+         at(-1, 1) + R"(] "point2 uv" [)" + (is_mirrored ? "0 1 1 1 1 0 0 0" : "0 0 1 0 1 1 0 1") + "] " + options +
          "\n";
 }
 
@@ -70,17 +70,18 @@ MakeNamedMaterial "plaster" "string type" "diffuse" "rgb reflectance" [.2 .6 .3]
 MakeNamedMaterial "metal" "string type" "conductor" "rgb reflectance" [.9 .5 .2] "float roughness" [.6]
 Material "mix" "string materials" ["plaster" "metal"] "texture amount" "halves"
 )" + square(-1.2f, 1.2f) +
-      "Material \"diffuse\" \"rgb reflectance\" [.7 .7 .7] \"string normalmap\" \"" + normal_map(folder) + "\"\n" +
+      R"(Material "diffuse" "rgb reflectance" [.7 .7 .7] "string normalmap" ")" + normal_map(folder) + "\"\n" +
       square(1.2f, 1.2f) + R"(
 AttributeBegin
 Texture "window" "spectrum" "bilerp" "rgb v00" [.1 .2 .3] "rgb v10" [5 1 2] "rgb v01" [2 7 1] "rgb v11" [9 3 8]
 AreaLightSource "diffuse" "texture L" "window" "bool twosided" true
 Material "diffuse" "rgb reflectance" [.1 .1 .1]
 )" + square(-1.2f, -1.2f) +
-      "AttributeEnd\nMaterial \"diffuse\" \"rgb reflectance\" [.1 .2 .9] \"string normalmap\" \"" + normal_map(folder) +
-      "\"\n" + square(1.2f, -1.2f, "\"texture alpha\" \"halves\"", true);
+      R"(AttributeEnd
+Material "diffuse" "rgb reflectance" [.1 .2 .9] "string normalmap" ")" +
+      normal_map(folder) + "\"\n" + square(1.2f, -1.2f, R"("texture alpha" "halves")", true);
   SceneDescription description =
-      read_pbrt_string(before_wall("LightSource \"infinite\" \"rgb L\" [1 1 1]", squares), ".", "test scene");
+      read_pbrt_string(before_wall(R"(LightSource "infinite" "rgb L" [1 1 1])", squares), ".", "test scene");
   description::SphericalTexels sky{64, 32, {}};
   for (int i = 0; i < 64 * 32; ++i) {
     const float azimuth = 2 * pi * (static_cast<float>(i % 64) + 0.5f) / 64,
@@ -132,11 +133,13 @@ double mean_over(const Image& image, int x0, int y0, int x1, int y1) {
 // Two black squares of opacities .3 and .5, one behind the other, in front of the wall. The wall is visible in .35 of
 // 180 pixels of 50 frames; five standard deviations are .025.
 TEST_F(SurfaceTexturesTest, FramesSeeThroughSurfacesByChance) {
-  const std::string light = "LightSource \"distant\" \"point3 from\" [0 0 -1] \"point3 to\" [0 0 0]\n";
-  const std::string black = "Material \"diffuse\" \"rgb reflectance\" [0 0 0]\n";
+  const std::string light = R"(LightSource "distant" "point3 from" [0 0 -1] "point3 to" [0 0 0]
+)";
+  const std::string black = R"(Material "diffuse" "rgb reflectance" [0 0 0]
+)";
   const Scene scene =
-      test::scene_from_text(before_wall(light, black + square(0, 0, "\"float alpha\" [.3]") + "Translate 0 0 -.5\n" +
-                                                   square(0, 0, "\"float alpha\" [.5]")));
+      test::scene_from_text(before_wall(light, black + square(0, 0, R"("float alpha" [.3])") + "Translate 0 0 -.5\n" +
+                                                   square(0, 0, R"("float alpha" [.5])")));
   const Scene bare = test::scene_from_text(before_wall(light, ""));
   FrameSettings settings;
   settings.shadows = ShadowKind::none;
@@ -149,14 +152,15 @@ TEST_F(SurfaceTexturesTest, FramesSeeThroughSurfacesByChance) {
 // In the sun, the left half of the square casts no shadow, and a square of opacity .25 casts a faint one.
 TEST_F(SurfaceTexturesTest, MapsShadowByOpacity) {
   const auto shadow = [&](const std::string& alpha) {
-    const std::string sun = "LightSource \"distant\" \"point3 from\" [-4 0 -1] \"point3 to\" [0 0 0]\n";
+    const std::string sun = R"(LightSource "distant" "point3 from" [-4 0 -1] "point3 to" [0 0 0]
+)";
     const Scene scene = test::scene_from_text(before_wall(sun, square(-4.5f, 0, alpha)));
     FrameSettings settings;
     settings.views.is_random = false;
     return mean_of_frames(scene, settings, 1);
   };
-  const Image opaque = shadow(""), holed = shadow("\"texture alpha\" \"halves\""),
-              light = shadow("\"float alpha\" [.25]");
+  const Image opaque = shadow(""), holed = shadow(R"("texture alpha" "halves")"),
+              light = shadow(R"("float alpha" [.25])");
   // The shadow is at x = -1.5 to .5. Its halves meet at -.5, in column 26 or 20, depending on whether x grows to the
   // right or left.
   const double lit = mean_over(opaque, 2, 2, 46, 8);
@@ -175,8 +179,9 @@ TEST_F(SurfaceTexturesTest, MapsShadowByOpacity) {
 
 // A quarter of a square of 4 m² and opacity .25 is in the voxels.
 TEST_F(SurfaceTexturesTest, VoxelsHoldSurfacesByOpacity) {
-  const Scene scene =
-      test::scene_from_text("WorldBegin\nLightSource \"point\"\n" + square(0, 0, "\"float alpha\" [.25]"));
+  const Scene scene = test::scene_from_text(R"(WorldBegin
+LightSource "point"
+)" + square(0, 0, R"("float alpha" [.25])"));
   const GpuScene gpu_scene(scene);
   const GpuTriangles triangles(gpu_scene);
   const Voxels voxels =
@@ -188,13 +193,14 @@ TEST_F(SurfaceTexturesTest, VoxelsHoldSurfacesByOpacity) {
 
 // While the eye moves, the GPU draws plaster with patches of rough metal, and eye paths draw polished metal.
 TEST_F(SurfaceTexturesTest, StandInsAreNearEyePaths) {
-  const auto scene = [&](const std::string& roughness) {
-    return test::scene_from_text(before_wall("LightSource \"point\" \"rgb I\" [9 9 9] \"point3 from\" [0 1 -4]", R"(
+  const auto scene =
+      [&](const std::string& roughness) {
+        return test::scene_from_text(before_wall(R"(LightSource "point" "rgb I" [9 9 9] "point3 from" [0 1 -4])", R"(
 MakeNamedMaterial "plaster" "string type" "diffuse" "rgb reflectance" [.2 .6 .3]
 MakeNamedMaterial "metal" "string type" "conductor" "rgb reflectance" [.9 .5 .2] "float roughness" )" + roughness + R"(
 Material "mix" "string materials" ["plaster" "metal"] "texture amount" "halves"
 )" + square(0, 0)));
-  };
+      };
   FrameSettings settings;
   const Scene rough = scene("[.6]"), polished = scene("[.001]");
   Renderer renderer(rough);
@@ -218,7 +224,9 @@ Material "mix" "string materials" ["plaster" "metal"] "texture amount" "halves"
 
 // Moving a lamp keeps textured surfaces; another texture on them does not.
 TEST_F(SurfaceTexturesTest, AreMadeAnewForOtherTexturesAlone) {
-  const Scene scene = test::scene_from_text(before_wall("LightSource \"point\"\n", R"(
+  const Scene scene = test::scene_from_text(before_wall(R"(LightSource "point"
+)",
+                                                        R"(
 Texture "stripes" "spectrum" "checkerboard" "float uscale" [9] "float vscale" [1] "rgb tex1" [.1 .2 .3] "rgb tex2" [.8 .7 .9]
 Material "diffuse" "texture reflectance" "stripes"
 )" + square(0, 0)));

@@ -21,7 +21,9 @@ namespace {
 class VoxelsTest : public test::OpenGl {};
 
 std::string view(const std::string& look_at, int fov) {
-  return "LookAt " + look_at + "\nCamera \"perspective\" \"float fov\" [" + std::to_string(fov) + "]\n" +
+  return "LookAt " + look_at + R"(
+Camera "perspective" "float fov" [)" +
+         std::to_string(fov) + "]\n" +
          R"(Film "rgb" "integer xresolution" [32] "integer yresolution" [24]
 PixelFilter "box"
 WorldBegin
@@ -185,10 +187,11 @@ Image indirect_of(Renderer& renderer, const Scene& scene, FrameSettings settings
 TEST_F(VoxelsTest, EnergyIsBoundedInsideABall) {
   for (const float albedo : {0.5f, 0.9f}) {
     const Scene scene = test::scene_from_text(view("0 0 -.5  0 0 1  0 1 0", 80) +
-                                              "LightSource \"point\" \"rgb I\" [1 1 1]\nMaterial \"diffuse\" \"rgb "
-                                              "reflectance\" [" +
-                                              std::to_string(albedo) + " " + std::to_string(albedo) + " " +
-                                              std::to_string(albedo) + "]\nShape \"sphere\"\n");
+                                              R"(LightSource "point" "rgb I" [1 1 1]
+Material "diffuse" "rgb reflectance" [)" + std::to_string(albedo) +
+                                              " " + std::to_string(albedo) + " " + std::to_string(albedo) + R"(]
+Shape "sphere"
+)");
     Renderer renderer(scene);
     float expected = 0;
     for (int bounces = 1; bounces <= 4; ++bounces) {
@@ -282,7 +285,7 @@ Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-99 0 -99  99 0
 TEST_F(VoxelsTest, LightFollowsALampThatMoves) {
   const auto room = [](float x) {
     return test::scene_from_text(view("0 1 -5.5  0 1 0  0 1 0", 50) +
-                                 "LightSource \"point\" \"rgb I\" [3 3 3] \"point3 from\" [" + std::to_string(x) +
+                                 R"(LightSource "point" "rgb I" [3 3 3] "point3 from" [)" + std::to_string(x) +
                                  R"( 1 0]
 Material "diffuse" "rgb reflectance" [.7 .7 .7]
 Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-3 0 1  3 0 1  3 0 -1  -3 0 -1]
@@ -306,8 +309,10 @@ Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [3 0 -1  3 0 1  
 
 TEST_F(VoxelsTest, FramesAreTheSameFromRunToRun) {
   const Scene scene = test::scene_from_text(view("0 0 -.5  0 0 1  0 1 0", 80) +
-                                            "LightSource \"point\" \"rgb I\" [1 1 1] \"point3 from\" [.3 .2 .1]\n"
-                                            "Material \"diffuse\"\nShape \"sphere\"\n");
+                                            R"(LightSource "point" "rgb I" [1 1 1] "point3 from" [.3 .2 .1]
+Material "diffuse"
+Shape "sphere"
+)");
   Renderer first(scene), second(scene);
   EXPECT_EQ(indirect_of(first, scene, cone_settings(2)).pixels, indirect_of(second, scene, cone_settings(2)).pixels);
 }

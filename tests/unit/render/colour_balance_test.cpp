@@ -18,11 +18,12 @@
 namespace lanthorn::colour_balance_test {
 namespace {
 
-const std::string grey_corner =
-    test::camera +
-    "LightSource \"point\" \"point3 from\" [0 1.5 0.5]\nMaterial \"diffuse\" \"rgb reflectance\" [.5 .5 .5]\n"
-    "Shape \"trianglemesh\" \"point3 P\" [-2 0 -2  2 0 -2  2 0 2  -2 0 2] \"integer indices\" [0 1 2 0 2 3]\n"
-    "Shape \"trianglemesh\" \"point3 P\" [-2 0 -1  2 0 -1  2 3 -1  -2 3 -1] \"integer indices\" [0 1 2 0 2 3]\n";
+const std::string grey_corner = test::camera +
+                                R"(LightSource "point" "point3 from" [0 1.5 0.5]
+Material "diffuse" "rgb reflectance" [.5 .5 .5]
+Shape "trianglemesh" "point3 P" [-2 0 -2  2 0 -2  2 0 2  -2 0 2] "integer indices" [0 1 2 0 2 3]
+Shape "trianglemesh" "point3 P" [-2 0 -1  2 0 -1  2 3 -1  -2 3 -1] "integer indices" [0 1 2 0 2 3]
+)";
 constexpr std::array methods{"probppm", "sppm", "ppm", "vcm", "bdpt", "bpm", "photonmap"};
 
 RenderOptions spectral_options(const char* method, std::uint64_t passes, std::uint64_t seed) {
@@ -97,16 +98,18 @@ double relative_variance(const Scene& scene, const char* method, ColorMode color
 // Without dispersion, noise is at most 1.15 times as much as in RGB after equal passes. Measured: 1.03 (path), .7 (bpm,
 // which has two eye paths a pass); with wavelengths in proportion to the eye's response, 1.95 and 1.24.
 TEST(ColourBalance, SpectralPicturesAreAsSmoothAsThoseInRgb) {
-  const Scene scene = test::scene_from_text(
-      test::camera +
-      "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [8 8 8]\nMaterial \"diffuse\" \"rgb reflectance\" [0 0 "
-      "0]\n"
-      "Shape \"trianglemesh\" \"point3 P\" [-.4 2 -.2  .4 2 -.2  .4 2 .6  -.4 2 .6] \"integer indices\" [0 1 2 0 2 3]\n"
-      "AttributeEnd\nMaterial \"diffuse\" \"rgb reflectance\" [.5 .5 .5]\n"
-      "Shape \"trianglemesh\" \"point3 P\" [-1 0 -1  1 0 -1  1 0 1  -1 0 1] \"integer indices\" [0 1 2 0 2 3]\n"
-      "Shape \"trianglemesh\" \"point3 P\" [-1 0 -1  1 0 -1  1 2 -1  -1 2 -1] \"integer indices\" [0 1 2 0 2 3]\n"
-      "Material \"diffuse\" \"rgb reflectance\" [.63 .065 .05]\n"
-      "Shape \"trianglemesh\" \"point3 P\" [-1 0 1  -1 0 -1  -1 2 -1  -1 2 1] \"integer indices\" [0 1 2 0 2 3]\n");
+  const Scene scene = test::scene_from_text(test::camera +
+                                            R"(AttributeBegin
+AreaLightSource "diffuse" "rgb L" [8 8 8]
+Material "diffuse" "rgb reflectance" [0 0 0]
+Shape "trianglemesh" "point3 P" [-.4 2 -.2  .4 2 -.2  .4 2 .6  -.4 2 .6] "integer indices" [0 1 2 0 2 3]
+AttributeEnd
+Material "diffuse" "rgb reflectance" [.5 .5 .5]
+Shape "trianglemesh" "point3 P" [-1 0 -1  1 0 -1  1 0 1  -1 0 1] "integer indices" [0 1 2 0 2 3]
+Shape "trianglemesh" "point3 P" [-1 0 -1  1 0 -1  1 2 -1  -1 2 -1] "integer indices" [0 1 2 0 2 3]
+Material "diffuse" "rgb reflectance" [.63 .065 .05]
+Shape "trianglemesh" "point3 P" [-1 0 1  -1 0 -1  -1 2 -1  -1 2 1] "integer indices" [0 1 2 0 2 3]
+)");
   for (const char* const method : {"path", "bpm"})
     EXPECT_LT(relative_variance(scene, method, ColorMode::spectral) / relative_variance(scene, method, ColorMode::rgb),
               1.15)

@@ -33,15 +33,15 @@ RenderPlan plan_of(const std::string& header, const RenderOptions& options = {})
 TEST(DefaultMethod, IsAutoWhereTheFileNamesNone) {
   EXPECT_EQ(plan_of("").info->name, "auto");
   EXPECT_EQ(default_method("").notice, "");
-  EXPECT_EQ(plan_of("Integrator \"radiosity\"").info->name, "auto") << "the reader warns of the name";
+  EXPECT_EQ(plan_of(R"(Integrator "radiosity")").info->name, "auto") << "the reader warns of the name";
   EXPECT_EQ(default_method("radiosity").notice, "");
 }
 
 TEST(DefaultMethod, IsAutoInPlaceOfPbrtsIntegratorsWithTheirDepthAndSamples) {
   for (const auto& [name, ours] : of_pbrt) {
     SCOPED_TRACE(name);
-    const RenderPlan plan =
-        plan_of("Integrator \"" + name + "\" \"integer maxdepth\" 7\nSampler \"halton\" \"integer pixelsamples\" 5");
+    const RenderPlan plan = plan_of("Integrator \"" + name + R"(" "integer maxdepth" 7
+Sampler "halton" "integer pixelsamples" 5)");
     EXPECT_EQ(plan.info->name, "auto");
     EXPECT_EQ(plan.settings.max_depth, name == "sppm" ? 14 : 7);
     EXPECT_EQ(plan.stop.passes, (PassRange{0, 5}));
@@ -65,7 +65,7 @@ TEST(DefaultMethod, GivesWayToTheOptions) {
   RenderOptions options;
   for (const std::string method : {"path", "sppm", "probppm"}) {
     options.integrator = method;
-    for (const std::string header : {"", "Integrator \"sppm\"", "Integrator \"vcm\""})
+    for (const std::string header : {"", R"(Integrator "sppm")", R"(Integrator "vcm")"})
       EXPECT_EQ(plan_of(header, options).info->name, method) << header;
   }
 }
@@ -73,7 +73,7 @@ TEST(DefaultMethod, GivesWayToTheOptions) {
 // The photon count of an sppm pass does not apply to the light paths of auto.
 TEST(DefaultMethod, PhotonsOfAFileAreNotForAutoUnlessTheFileNamesIt) {
   const auto light_paths = [](const std::string& integrator, const RenderOptions& options) {
-    return plan_of("Integrator \"" + integrator + "\" \"integer photonsperiteration\" 1234", options).settings.photons;
+    return plan_of("Integrator \"" + integrator + R"(" "integer photonsperiteration" 1234)", options).settings.photons;
   };
   RenderOptions options;
   const std::uint64_t automatic = plan_of("").settings.photons;
@@ -98,7 +98,7 @@ TEST(DefaultMethod, PhotonsOfAFileAreNotForAutoUnlessTheFileNamesIt) {
 
 // The radius of the file's sppm is a parameter that auto lacks; -i sppm uses it.
 TEST(DefaultMethod, ParametersOfAFileAreForTheMethodsThatHaveThem) {
-  const std::string header = "Integrator \"sppm\" \"float radius\" 0.125";
+  const std::string header = R"(Integrator "sppm" "float radius" 0.125)";
   EXPECT_FALSE(plan_of(header).parameters.all().contains("radius"));
   RenderOptions options;
   options.integrator = "sppm";

@@ -78,8 +78,9 @@ Outcome run(const char* method, unsigned threads, const StopRule& rule) {
   const ThreadLimit limit(threads);
   most_running = cut_short = 0;
   const Scene scene = test::scene_from_text(
-      "Film \"rgb\" \"integer xresolution\" [8] \"integer yresolution\" [8]\n"
-      "WorldBegin\nLightSource \"infinite\"");
+      R"(Film "rgb" "integer xresolution" [8] "integer yresolution" [8]
+WorldBegin
+LightSource "infinite")");
   RenderPlan plan = test::plan_render(scene, test::options_for(method, 1));
   Outcome result;
   Observer observer;

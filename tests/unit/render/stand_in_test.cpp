@@ -80,8 +80,9 @@ class StandInTest : public testing::Test {
 
   const ThreadLimit limit_{1};
   const Scene scene_ = test::scene_from_text(
-      "Film \"rgb\" \"integer xresolution\" [160] \"integer yresolution\" [120]\n"
-      "WorldBegin\nLightSource \"infinite\"");
+      R"(Film "rgb" "integer xresolution" [160] "integer yresolution" [120]
+WorldBegin
+LightSource "infinite")");
 };
 
 // A pass takes at least 1.9 s.

@@ -572,9 +572,9 @@ TEST(Identity, NamesTheFirstDifference) {
   EXPECT_EQ(difference("b", {{"x.z", 2}}), "b.x.z (1 and 2)");
   EXPECT_EQ(difference("a", 5), "a (not set and 5)");
   EXPECT_EQ(difference("", 5), " (not set and 5)");
-  EXPECT_EQ(difference("scene_hash", "07"), "the content of the scene file (\"00\" and \"07\")");
-  EXPECT_EQ(difference("files", {{"a.ply", "07"}}), "the content of a.ply (\"01\" and \"07\")");
-  EXPECT_EQ(difference("files", {{"a.ply", nullptr}}), "the content of a.ply (\"01\" and not set)");
+  EXPECT_EQ(difference("scene_hash", "07"), R"(the content of the scene file ("00" and "07"))");
+  EXPECT_EQ(difference("files", {{"a.ply", "07"}}), R"(the content of a.ply ("01" and "07"))");
+  EXPECT_EQ(difference("files", {{"a.ply", nullptr}}), R"(the content of a.ply ("01" and not set))");
 }
 
 }  // namespace

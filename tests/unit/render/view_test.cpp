@@ -25,10 +25,12 @@ RenderPlan render_by(const Scene& scene, const ViewDescription& view, const Rend
 TEST(View, IsNoPartOfTheScene) {
   const Scene scene = test::scene_from_text(test::camera + test::box);
   const Scene other = test::scene_from_text(
-      "LookAt 0.5 1.5 3  0 0.8 0  0 1 0\n"
-      "Camera \"perspective\" \"float fov\" [50] \"float lensradius\" [0.05] \"float focaldistance\" [3]\n"
-      "Film \"rgb\" \"integer xresolution\" [20] \"integer yresolution\" [16]\nPixelFilter \"triangle\"\nWorldBegin\n" +
-      test::box);
+      R"(LookAt 0.5 1.5 3  0 0.8 0  0 1 0
+Camera "perspective" "float fov" [50] "float lensradius" [0.05] "float focaldistance" [3]
+Film "rgb" "integer xresolution" [20] "integer yresolution" [16]
+PixelFilter "triangle"
+WorldBegin
+)" + test::box);
   for (const char* integrator : {"path", "light", "probppm", "sppm", "vcm", "mlt", "photonmap"}) {
     RenderOptions options = test::options_for(integrator, 2);
     options.photons = 1000;

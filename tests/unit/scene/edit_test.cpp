@@ -214,9 +214,16 @@ TEST(SceneEdit, MeshesOfACopyServeForNewGeometry) {
 // light to the other.
 TEST(SceneEdit, LightsStayInTheMediumAroundThem) {
   const SharedScene scene = build_scene(read_pbrt_string(
-      "Camera \"perspective\"\nWorldBegin\nMakeNamedMedium \"fog\" \"string type\" \"homogeneous\"\n"
-      "LightSource \"point\"\nLightSource \"point\" \"point3 from\" [3 0 0]\nObjectBegin \"ball\"\n"
-      "MediumInterface \"fog\" \"\" Material \"interface\" Shape \"sphere\"\nObjectEnd\nObjectInstance \"ball\"\n",
+      R"(Camera "perspective"
+WorldBegin
+MakeNamedMedium "fog" "string type" "homogeneous"
+LightSource "point"
+LightSource "point" "point3 from" [3 0 0]
+ObjectBegin "ball"
+MediumInterface "fog" "" Material "interface" Shape "sphere"
+ObjectEnd
+ObjectInstance "ball"
+)",
       ".", "fog.pbrt"));
   const auto in_fog = [](const Scene& s) {
     return std::pair(s.light_media(0).outside == MediumId(1), s.light_media(1).outside == MediumId(1));
@@ -235,10 +242,13 @@ TEST(SceneEdit, LightsStayInTheMediumAroundThem) {
 TEST(SceneEdit, ImagesAreNotReadAgain) {
   const test::TemporaryDir dir;
   const std::string image = dir.write("a.pfm", std::string("PF\n1 1\n-1\n") + std::string(12, '\0'));
-  const SharedScene scene = build_scene(
-      read_pbrt_string("WorldBegin\nTexture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"" + image +
-                           "\"\nMaterial \"diffuse\" \"texture reflectance\" \"t\"\nShape \"sphere\"\n",
-                       ".", "image.pbrt"));
+  const SharedScene scene = build_scene(read_pbrt_string(R"(WorldBegin
+Texture "t" "spectrum" "imagemap" "string filename" ")" + image +
+                                                             R"("
+Material "diffuse" "texture reflectance" "t"
+Shape "sphere"
+)",
+                                                         ".", "image.pbrt"));
   std::filesystem::remove(image);
   // New materials look their images up.
   EXPECT_NO_THROW(test::edited(*scene, [](SceneDescription& description) { description.materials.edit(); }));

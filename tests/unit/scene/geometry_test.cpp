@@ -35,7 +35,7 @@ std::string tessellated(const std::function<Vec3(float, float)>& surface, int n)
       const int a = i * (n + 1) + j, b = a + n + 1;
       indices << a << ' ' << b << ' ' << b + 1 << ' ' << a << ' ' << b + 1 << ' ' << a + 1 << ' ';
     }
-  return "Shape \"trianglemesh\" \"point3 P\" [" + points.str() + "] \"integer indices\" [" + indices.str() + "]\n";
+  return R"(Shape "trianglemesh" "point3 P" [)" + points.str() + R"(] "integer indices" [)" + indices.str() + "]\n";
 }
 
 // A transformation that shears, stretches and mirrors, with no special symmetry.
@@ -62,29 +62,35 @@ std::vector<ExactShape> exact_shapes() {
     return Vec3(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta));
   };
   return {
-      {"sphere", "Shape \"sphere\" \"float radius\" 1\n",
+      {"sphere", R"(Shape "sphere" "float radius" 1
+)",
        [=](float u, float v) { return on_sphere(pi * v, 2 * pi * u); }},
       {"cut sphere",
-       "Shape \"sphere\" \"float radius\" 1 \"float zmin\" -0.4 \"float zmax\" 0.7 \"float phimax\" 250\n",
+       R"(Shape "sphere" "float radius" 1 "float zmin" -0.4 "float zmax" 0.7 "float phimax" 250
+)",
        [=](float u, float v) { return on_sphere(lerp(v, std::acos(-0.4f), std::acos(0.7f)), 250 * degree * u); }},
-      {"cylinder", "Shape \"cylinder\" \"float radius\" 0.8 \"float zmin\" -0.6 \"float zmax\" 0.9\n",
+      {"cylinder", R"(Shape "cylinder" "float radius" 0.8 "float zmin" -0.6 "float zmax" 0.9
+)",
        [](float u, float v) {
          return Vec3(0.8f * std::cos(2 * pi * u), 0.8f * std::sin(2 * pi * u), lerp(v, -0.6f, 0.9f));
        }},
       {"cut cylinder",
-       "Shape \"cylinder\" \"float radius\" 0.8 \"float zmin\" -0.6 \"float zmax\" 0.9 \"float phimax\" 100\n",
+       R"(Shape "cylinder" "float radius" 0.8 "float zmin" -0.6 "float zmax" 0.9 "float phimax" 100
+)",
        [](float u, float v) {
          const float phi = 100 * degree * u;
          return Vec3(0.8f * std::cos(phi), 0.8f * std::sin(phi), lerp(v, -0.6f, 0.9f));
        }},
       {"ring",
-       "Shape \"disk\" \"float radius\" 0.9 \"float innerradius\" 0.3 \"float height\" 0.2 \"float phimax\" 300\n",
+       R"(Shape "disk" "float radius" 0.9 "float innerradius" 0.3 "float height" 0.2 "float phimax" 300
+)",
        [](float u, float v) {
          const float phi = 300 * degree * u;
          const float r = lerp(v, 0.9f, 0.3f);
          return Vec3(r * std::cos(phi), r * std::sin(phi), 0.2f);
        }},
-      {"patch", "Shape \"bilinearmesh\" \"point3 P\" [-1 -1 0.5  1 -1 -0.4  -1 1 -0.6  1 0.8 0.7]\n",
+      {"patch", R"(Shape "bilinearmesh" "point3 P" [-1 -1 0.5  1 -1 -0.4  -1 1 -0.6  1 0.8 0.7]
+)",
        [](float u, float v) {
          const Vec3 bottom = (1 - u) * Vec3(-1, -1, 0.5f) + u * Vec3(1, -1, -0.4f);
          const Vec3 top = (1 - u) * Vec3(-1, 1, -0.6f) + u * Vec3(1, 0.8f, 0.7f);
@@ -126,7 +132,9 @@ TEST(SceneShapes, ExactShapesAgreeWithFineMeshesUnderAnyTransform) {
 
 TEST(SceneShapes, HitsLieOnTheQuadricToWithinTheirErrorBound) {
   // A point p of the sphere of radius r about c: | |p - c| - r | is the distance from the surface.
-  const Scene scene = world("Translate 100 -50 30\nShape \"sphere\" \"float radius\" 3\n");
+  const Scene scene = world(R"(Translate 100 -50 30
+Shape "sphere" "float radius" 3
+)");
   HashRng rng(2);
   for (int i = 0; i < 2000; ++i) {
     const auto at = scene.intersect(random_ray(rng, {100, -50, 30}, 3), test::white);
@@ -138,7 +146,8 @@ TEST(SceneShapes, HitsLieOnTheQuadricToWithinTheirErrorBound) {
 }
 
 TEST(SceneShapes, FarOriginsDoNotMissSmallSpheres) {
-  const Scene scene = world("Shape \"sphere\" \"float radius\" 0.001\n");
+  const Scene scene = world(R"(Shape "sphere" "float radius" 0.001
+)");
   HashRng rng(3);
   for (int i = 0; i < 1000; ++i) {
     const Point from = 1000.0f * sample_uniform_sphere(rng.next2());
@@ -156,22 +165,20 @@ TEST(SceneShapes, ParametersRunAsInPbrt) {
     Vec2 uv;
   };
   const std::array<Case, 5> cases{{
-      {"Shape \"sphere\" \"float radius\" 2", {0, 2, 0}, {0, 1, 0}, {0.25f, 0.5f}},
-      {"Shape \"sphere\" \"float radius\" 2 \"float zmin\" 0",
+      {R"(Shape "sphere" "float radius" 2)", {0, 2, 0}, {0, 1, 0}, {0.25f, 0.5f}},
+      {R"(Shape "sphere" "float radius" 2 "float zmin" 0)",
        {0, 2 * std::sqrt(0.75f), 1},
        {0, std::sqrt(0.75f), 0.5f},
        {0.25f, 1.0f / 3}},
-      {"Shape \"cylinder\" \"float radius\" 2 \"float zmin\" -1 \"float zmax\" 3",
-       {-2, 0, 2},
-       {-1, 0, 0},
-       {0.5f, 0.75f}},
-      {"Shape \"disk\" \"float radius\" 2 \"float innerradius\" 1", {0, 1.5f, 0}, {0, 0, 1}, {0.25f, 0.5f}},
-      {"Shape \"bilinearmesh\" \"point3 P\" [0 0 0  2 0 0  0 4 0  2 4 0]", {0.5f, 3, 0}, {0, 0, 1}, {0.25f, 0.75f}},
+      {R"(Shape "cylinder" "float radius" 2 "float zmin" -1 "float zmax" 3)", {-2, 0, 2}, {-1, 0, 0}, {0.5f, 0.75f}},
+      {R"(Shape "disk" "float radius" 2 "float innerradius" 1)", {0, 1.5f, 0}, {0, 0, 1}, {0.25f, 0.5f}},
+      {R"(Shape "bilinearmesh" "point3 P" [0 0 0  2 0 0  0 4 0  2 4 0])", {0.5f, 3, 0}, {0, 0, 1}, {0.25f, 0.75f}},
   }};
   for (const Case& c : cases) {
     SCOPED_TRACE(c.shape);
     const std::string textured =
-        "Texture \"t\" \"spectrum\" \"checkerboard\" Material \"diffuse\" \"texture reflectance\" \"t\"\n";
+        R"(Texture "t" "spectrum" "checkerboard" Material "diffuse" "texture reflectance" "t"
+)";
     const auto at = look(world(textured + c.shape), c.on_surface + c.outside, -c.outside);
     ASSERT_TRUE(at);
     EXPECT_NEAR(dot(at->normal, c.outside), 1, 1e-5f);
@@ -207,30 +214,40 @@ TEST(SceneShapes, PatchHitsLieOnRayAndPatch) {
 // and patches in world space, so that mirroring alone changes nothing, and quadrics in object space.
 TEST(SceneOrientation, FollowsPbrt) {
   const char* const triangle =
-      "Shape \"trianglemesh\" \"point3 P\" [-9 -9 0 9 -9 0 0 9 0] \"integer indices\" [0 1 2]\n";
+      R"(Shape "trianglemesh" "point3 P" [-9 -9 0 9 -9 0 0 9 0] "integer indices" [0 1 2]
+)";
   const char* const with_normals =
-      "Shape \"trianglemesh\" \"point3 P\" [-9 -9 0 9 -9 0 0 9 0] \"normal N\" [0 0 -1 0 0 -1 0 0 -1] \"integer "
-      "indices\" [0 1 2]\n";
-  const char* const patch = "Shape \"bilinearmesh\" \"point3 P\" [-9 -9 0 9 -9 0 -9 9 0 9 9 0]\n";
-  const char* const bent = "Shape \"bilinearmesh\" \"point3 P\" [-9 -9 0 9 -9 0 -9 9 0 9 9 0.5]\n";
-  const char* const disk = "Shape \"disk\" \"float radius\" 9\n";
-  const char* const sphere = "Translate 0 0 -9 Shape \"sphere\" \"float radius\" 9\n";
+      R"(Shape "trianglemesh" "point3 P" [-9 -9 0 9 -9 0 0 9 0] "normal N" [0 0 -1 0 0 -1 0 0 -1] "integer indices" [0 1 2]
+)";
+  const char* const patch = R"(Shape "bilinearmesh" "point3 P" [-9 -9 0 9 -9 0 -9 9 0 9 9 0]
+)";
+  const char* const bent = R"(Shape "bilinearmesh" "point3 P" [-9 -9 0 9 -9 0 -9 9 0 9 9 0.5]
+)";
+  const char* const disk = R"(Shape "disk" "float radius" 9
+)";
+  const char* const sphere = R"(Translate 0 0 -9 Shape "sphere" "float radius" 9
+)";
   struct Case {
     const char* shape;
     float plain, reversed, mirrored, both;  // sign of the normal's z
   };
   const char* const cylinder =
-      "Translate 0 0 -9 Rotate 90 0 1 0 Shape \"cylinder\" \"float radius\" 9 \"float zmin\" -9 \"float zmax\" 9\n";
+      R"(Translate 0 0 -9 Rotate 90 0 1 0 Shape "cylinder" "float radius" 9 "float zmin" -9 "float zmax" 9
+)";
   const char* const half_sphere =
-      "Translate 0 0 -9 Shape \"sphere\" \"float radius\" 9 \"float zmin\" 0 \"float phimax\" 180\n";
+      R"(Translate 0 0 -9 Shape "sphere" "float radius" 9 "float zmin" 0 "float phimax" 180
+)";
   const char* const subdivided =
-      "Shape \"loopsubdiv\" \"point3 P\" [-9 -9 0 9 -9 0 0 9 0] \"integer indices\" [0 1 2]\n";
+      R"(Shape "loopsubdiv" "point3 P" [-9 -9 0 9 -9 0 0 9 0] "integer indices" [0 1 2]
+)";
   const char* const tube =
-      "Shape \"curve\" \"string type\" \"cylinder\" \"point3 P\" [-9 0 -4 -3 0 -4 3 0 -4 9 0 -4] \"float width\" 8\n";
-  const char* const flat = "Shape \"curve\" \"point3 P\" [-9 0 0 -3 0 0 3 0 0 9 0 0] \"float width\" 2\n";
+      R"(Shape "curve" "string type" "cylinder" "point3 P" [-9 0 -4 -3 0 -4 3 0 -4 9 0 -4] "float width" 8
+)";
+  const char* const flat = R"(Shape "curve" "point3 P" [-9 0 0 -3 0 0 3 0 0 9 0 0] "float width" 2
+)";
   const char* const ribbon =
-      "Shape \"curve\" \"string type\" \"ribbon\" \"point3 P\" [-9 0 0 -3 0 0 3 0 0 9 0 0] \"float width\" 8 \"normal "
-      "N\" [0 0 -1 0 0 -1]\n";
+      R"(Shape "curve" "string type" "ribbon" "point3 P" [-9 0 0 -3 0 0 3 0 0 9 0 0] "float width" 8 "normal N" [0 0 -1 0 0 -1]
+)";
   // Curves follow pbrt-v4 only in that flat ones face the viewer: in pbrt-v4 tubes are flat, and mirroring turns them.
   const std::array<Case, 12> cases{{{triangle, 1, -1, 1, -1},
                                     {cylinder, 1, -1, -1, 1},
@@ -262,11 +279,15 @@ TEST(SceneOrientation, FollowsPbrt) {
 }
 
 TEST(SceneOrientation, InstancesKeepTheSideOfTheirShapes) {
-  for (const char* shape :
-       {"Shape \"disk\" \"float radius\" 9\n", "Shape \"bilinearmesh\" \"point3 P\" [-9 -9 0 9 -9 0 -9 9 0 9 9 0]\n"})
+  for (const char* shape : {R"(Shape "disk" "float radius" 9
+)",
+                            R"(Shape "bilinearmesh" "point3 P" [-9 -9 0 9 -9 0 -9 9 0 9 9 0]
+)"})
     for (const char* scale : {"Scale 1 1 1\n", "Scale -1 1 1\n", "Scale 2 -3 1\n"}) {
-      const Scene scene =
-          world(std::string("ObjectBegin \"o\"\n") + shape + "ObjectEnd\n" + scale + "ObjectInstance \"o\"\n");
+      const Scene scene = world(std::string(R"(ObjectBegin "o"
+)") + shape + "ObjectEnd\n" + scale +
+                                R"(ObjectInstance "o"
+)");
       const auto at = look(scene, {0.1f, 0.2f, 5}, {0, 0, -1});
       ASSERT_TRUE(at);
       EXPECT_NEAR(at->normal.z, 1, 1e-5f);
@@ -275,8 +296,8 @@ TEST(SceneOrientation, InstancesKeepTheSideOfTheirShapes) {
 
 TEST(SceneOrientation, ShadingNormalsAreInterpolatedAndDecideTheSide) {
   const Scene scene = world(
-      "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0] \"normal N\" [0 0 -1  0.6 0 -0.8  0 0.6 -0.8] \"integer "
-      "indices\" [0 1 2]\n");
+      R"(Shape "trianglemesh" "point3 P" [0 0 0 1 0 0 0 1 0] "normal N" [0 0 -1  0.6 0 -0.8  0 0.6 -0.8] "integer indices" [0 1 2]
+)");
   const auto at = look(scene, {0.25f, 0.25f, 3}, {0, 0, -1});
   ASSERT_TRUE(at);
   const Vec3 expected = normalize(Vec3(0.15f, 0.15f, -0.9f));
@@ -286,21 +307,21 @@ TEST(SceneOrientation, ShadingNormalsAreInterpolatedAndDecideTheSide) {
 
 TEST(SceneInstances, AreTheSameAsBakedShapes) {
   const std::string shapes =
-      "Material \"conductor\" \"float uroughness\" 0.1 \"float vroughness\" 0.3\n"
-      "Shape \"trianglemesh\" \"point3 P\" [-1 -1 0.2 1 -1 0 -0.3 1 0.5] \"normal N\" [0.1 0 1 0 0.2 1 0 0 1] \"point2 "
-      "uv\" [0 0 2 0 1 3] \"integer indices\" [0 1 2]\n"
-      "Shape \"bilinearmesh\" \"point3 P\" [-1 -1 0.5  1 -1 1.4  -1 1 1.6  1 0.8 0.7]\n"
-      "Shape \"cylinder\" \"float radius\" 0.4 \"float zmin\" -1 \"float zmax\" 0\n"
-      "Shape \"curve\" \"string type\" \"cylinder\" \"point3 P\" [-1 -1 -1 -0.3 0 -1 0.3 0 -1 1 1 -1] \"float width\" "
-      "0.5\n"
-      "Shape \"curve\" \"point3 P\" [1 -1 -1 0.3 0 -0.5 -0.3 0 -0.5 -1 1 -0.5] \"float width\" 0.5\n"
-      "Shape \"curve\" \"string type\" \"ribbon\" \"point3 P\" [1 -1 0 0.3 0 0.5 -0.3 0 0.5 -1 1 0.5] \"normal N\" [0 "
-      "0 1 "
-      "0.5 0 1] \"float width\" 0.5\n";
+      R"(Material "conductor" "float uroughness" 0.1 "float vroughness" 0.3
+Shape "trianglemesh" "point3 P" [-1 -1 0.2 1 -1 0 -0.3 1 0.5] "normal N" [0.1 0 1 0 0.2 1 0 0 1] "point2 uv" [0 0 2 0 1 3] "integer indices" [0 1 2]
+Shape "bilinearmesh" "point3 P" [-1 -1 0.5  1 -1 1.4  -1 1 1.6  1 0.8 0.7]
+Shape "cylinder" "float radius" 0.4 "float zmin" -1 "float zmax" 0
+Shape "curve" "string type" "cylinder" "point3 P" [-1 -1 -1 -0.3 0 -1 0.3 0 -1 1 1 -1] "float width" 0.5
+Shape "curve" "point3 P" [1 -1 -1 0.3 0 -0.5 -0.3 0 -0.5 -1 1 -0.5] "float width" 0.5
+Shape "curve" "string type" "ribbon" "point3 P" [1 -1 0 0.3 0 0.5 -0.3 0 0.5 -1 1 0.5] "normal N" [0 0 1 0.5 0 1] "float width" 0.5
+)";
   // No mirroring: pbrt's rule would flip quadrics.
   const std::string transform = "ConcatTransform [0.9 0.3 0 0  0.2 1.3 0.1 0  0 0.4 0.7 0  3 -2 1 1]\n";
   const Scene baked = world(transform + shapes);
-  const Scene placed = world("ObjectBegin \"o\"\n" + shapes + "ObjectEnd\n" + transform + "ObjectInstance \"o\"\n");
+  const Scene placed = world(R"(ObjectBegin "o"
+)" + shapes + "ObjectEnd\n" + transform +
+                             R"(ObjectInstance "o"
+)");
   HashRng rng(5);
   int hits = 0;
   for (int i = 0; i < 3000; ++i) {
@@ -324,19 +345,33 @@ TEST(SceneMotion, EqualsStillScenesAtEveryTime) {
                                translate({0.5f, 0.3f, -0.2f}) * rotate(130, {1, 1, 0}) * scale({0.7f, 1, 1.1f}), 0, 1);
   const std::string moving = "ActiveTransform StartTime\n" + concat_transform(path.start) +
                              "ActiveTransform EndTime\n" + concat_transform(path.end) + "ActiveTransform All\n";
-  const std::string mesh = "Shape \"bilinearmesh\" \"point3 P\" [-1 -1 0  1 -1 0  -1 1 0  1 1 0]\n";
-  const std::string sphere = "Shape \"sphere\" \"float radius\" 0.6\n";
+  const std::string mesh = R"(Shape "bilinearmesh" "point3 P" [-1 -1 0  1 -1 0  -1 1 0  1 1 0]
+)";
+  const std::string sphere = R"(Shape "sphere" "float radius" 0.6
+)";
   const std::string head =
-      "TransformTimes 0 1\nCamera \"perspective\" \"float shutteropen\" 0 \"float shutterclose\" 1\n";
+      R"(TransformTimes 0 1
+Camera "perspective" "float shutteropen" 0 "float shutterclose" 1
+)";
   const std::string tube =
-      "Shape \"curve\" \"string type\" \"cylinder\" \"point3 P\" [-1 -1 0 -0.3 0 0.4 0.3 0 -0.5 1 1 0] \"float width\" "
-      "0.6\n";
+      R"(Shape "curve" "string type" "cylinder" "point3 P" [-1 -1 0 -0.3 0 0.4 0.3 0 -0.5 1 1 0] "float width" 0.6
+)";
   const std::array<std::pair<std::string, std::string>, 5> cases{{
       {moving + tube, tube},
       {moving + mesh, mesh},
       {moving + sphere, sphere},
-      {"ObjectBegin \"o\"\n" + mesh + sphere + "ObjectEnd\n" + moving + "ObjectInstance \"o\"\n", mesh + sphere},
-      {"ObjectBegin \"o\"\nAttributeBegin\n" + moving + sphere + "AttributeEnd\nObjectEnd\nObjectInstance \"o\"\n",
+      {R"(ObjectBegin "o"
+)" + mesh + sphere +
+           "ObjectEnd\n" + moving + R"(ObjectInstance "o"
+)",
+       mesh + sphere},
+      {R"(ObjectBegin "o"
+AttributeBegin
+)" + moving +
+           sphere + R"(AttributeEnd
+ObjectEnd
+ObjectInstance "o"
+)",
        sphere},
   }};
   for (const auto& [animated, shape] : cases) {
@@ -398,7 +433,7 @@ TEST(SceneRobustness, ClosedMeshesAreWatertight) {
       indices << a << ' ' << b << ' ' << c << ' ' << a << ' ' << c << ' ' << d << ' ';
     }
   const std::string mesh =
-      "Shape \"trianglemesh\" \"point3 P\" [" + points.str() + "] \"integer indices\" [" + indices.str() + "]\n";
+      R"(Shape "trianglemesh" "point3 P" [)" + points.str() + R"(] "integer indices" [)" + indices.str() + "]\n";
   for (const char* place : {"", "Rotate 33 1 2 3\n"}) {
     const Scene scene = world(place + mesh);
     const Transform to_world = *place == 0 ? Transform() : rotate(33, {1, 2, 3});
@@ -431,10 +466,16 @@ std::vector<Body> convex_bodies() {
   for (const char* rotation :
        {"", "Rotate 90 1 0 0 ", "Rotate 180 1 0 0 ", "Rotate 270 1 0 0 ", "Rotate 90 0 1 0 ", "Rotate 270 0 1 0 "})
     cube << "AttributeBegin " << rotation
-         << "Shape \"bilinearmesh\" \"point3 P\" [-1 -1 1  1 -1 1  -1 1 1  1 1 1] AttributeEnd\n";
-  const std::string sphere = "Shape \"sphere\"\n";
+         << R"(Shape "bilinearmesh" "point3 P" [-1 -1 1  1 -1 1  -1 1 1  1 1 1] AttributeEnd
+)";
+  const std::string sphere = R"(Shape "sphere"
+)";
   const auto placed = [](const std::string& shape) {
-    return "ObjectBegin \"o\"\n" + shape + "ObjectEnd\nObjectInstance \"o\"\n";
+    return R"(ObjectBegin "o"
+)" + shape +
+           R"(ObjectEnd
+ObjectInstance "o"
+)";
   };
   return {{"cube", cube.str()},
           {"sphere", sphere},
@@ -508,10 +549,14 @@ TEST(SceneRobustness, RaysLeaveFlattenedInstancesFarAway) {
     for (int i = 0; i < 30; ++i) {
       const Transform t = translate(far * sample_uniform_sphere(rng.next2())) * random_rotation(rng) *
                           scale({1, 0.01f, 0.7f}) * random_rotation(rng);
-      for (const char* shape :
-           {"Shape \"sphere\"\n", "Shape \"bilinearmesh\" \"point3 P\" [-1 -1 0  1 -1 0  -1 1 0  1 1 0]\n"}) {
-        const Scene scene = world(std::string("ObjectBegin \"o\"\n") + shape + "ObjectEnd\n" + concat_transform(t) +
-                                  "ObjectInstance \"o\"\n");
+      for (const char* shape : {R"(Shape "sphere"
+)",
+                                R"(Shape "bilinearmesh" "point3 P" [-1 -1 0  1 -1 0  -1 1 0  1 1 0]
+)"}) {
+        const Scene scene = world(std::string(R"(ObjectBegin "o"
+)") + shape + "ObjectEnd\n" + concat_transform(t) +
+                                  R"(ObjectInstance "o"
+)");
         EXPECT_EQ(found_again(scene, rng, 200, 2,
                               [&] {
                                 const Vec2 u = 2.0f * rng.next2() - Vec2(1);
@@ -533,7 +578,7 @@ TEST(SceneRobustness, RaysLeaveLargeThinTrianglesNearACorner) {
         const std::array<Point, 3> corners{Point(0), Point(1000, 0, 0), Point(700, 1000 * thin, 0)};
         std::ostringstream text;
         text.precision(9);
-        text << "Shape \"trianglemesh\" \"integer indices\" [0 1 2] \"point3 P\" [";
+        text << R"(Shape "trianglemesh" "integer indices" [0 1 2] "point3 P" [)";
         for (unsigned k = 0; k < 3; ++k) {
           const Point p = t.point(corners[(k + first) % 3]);
           text << p.x << ' ' << p.y << ' ' << p.z << ' ';
@@ -552,7 +597,9 @@ TEST(SceneRobustness, RaysLeaveLargeThinTrianglesNearACorner) {
 TEST(SceneRobustness, OffsetsAreRoundingErrorsNotScales) {
   for (const float size : {1e-3f, 1.0f, 1e6f}) {
     std::ostringstream text;
-    text << "Scale " << size << ' ' << size << ' ' << size << "\nRotate 29 1 2 3\nShape \"bilinearmesh\" \"point3 P\" "
+    text << "Scale " << size << ' ' << size << ' ' << size << R"(
+Rotate 29 1 2 3
+Shape "bilinearmesh" "point3 P" )"
          << "[-1 -1 1  1 -1 1  -1 1 1  1 1 1]\n";
     const Scene scene = world(text.str());
     const Point target = rotate(29, {1, 2, 3}).point({0.3f, -0.4f, 1});
@@ -561,7 +608,8 @@ TEST(SceneRobustness, OffsetsAreRoundingErrorsNotScales) {
     EXPECT_LT(std::sqrt(length_squared(offset_origin(*at, at->normal) - at->position)), 1e-5f * size);
   }
   // Points on a large axis-aligned floor are exact.
-  const Scene floor = world("Shape \"bilinearmesh\" \"point3 P\" [-1e4 0 1e4  1e4 0 1e4  -1e4 0 -1e4  1e4 0 -1e4]\n");
+  const Scene floor = world(R"(Shape "bilinearmesh" "point3 P" [-1e4 0 1e4  1e4 0 1e4  -1e4 0 -1e4  1e4 0 -1e4]
+)");
   const auto at = look(floor, {123.4f, 5, -77}, {0.3f, -1, 0.2f});
   ASSERT_TRUE(at);
   EXPECT_EQ(offset_origin(*at, {0, 1, 0}).y, 0.0f);
@@ -570,16 +618,17 @@ TEST(SceneRobustness, OffsetsAreRoundingErrorsNotScales) {
 
 // Rays hit shapes of all kinds, with and without an instance, at all distances up to the one at which a warning starts.
 TEST(SceneRobustness, WhatIsTooFarIsWarnedOf) {
-  const std::vector<std::string> shapes{
-      "Shape \"sphere\"", "Shape \"disk\"", "Shape \"bilinearmesh\" \"point3 P\" [-1 -1 0  1 -1 0  -1 1 0  1 1 0]",
-      "Shape \"bilinearmesh\" \"point3 P\" [-1 -1 0  1 -1 0.1  -1 1 0  1 1 0]",
-      "Shape \"curve\" \"point3 P\" [-1 0 0  0 0 0  0 0 0  1 0 0] \"float width\" 0.1"};
+  const std::vector<std::string> shapes{R"(Shape "sphere")", R"(Shape "disk")",
+                                        R"(Shape "bilinearmesh" "point3 P" [-1 -1 0  1 -1 0  -1 1 0  1 1 0])",
+                                        R"(Shape "bilinearmesh" "point3 P" [-1 -1 0  1 -1 0.1  -1 1 0  1 1 0])",
+                                        R"(Shape "curve" "point3 P" [-1 0 0  0 0 0  0 0 0  1 0 0] "float width" 0.1)"};
   struct Placed {
     std::string before, after;  // scene text before and after the scale
   };
   for (const std::string& shape : shapes)
     for (const auto& [before, after] :
-         {Placed{"", "\n" + shape}, Placed{"ObjectBegin \"o\" " + shape + " ObjectEnd ", "\nObjectInstance \"o\""},
+         {Placed{"", "\n" + shape}, Placed{R"(ObjectBegin "o" )" + shape + " ObjectEnd ", R"(
+ObjectInstance "o")"},
           Placed{"", "ActiveTransform EndTime Translate 0.1 0 0 ActiveTransform All\n" + shape}}) {
       const Scene near = world(before + "Scale 0.8e12 0.8e12 0.8e12 " + after);
       EXPECT_TRUE(near.warnings().empty()) << after;
@@ -593,8 +642,9 @@ TEST(SceneRobustness, WhatIsTooFarIsWarnedOf) {
 
 TEST(SceneRobustness, ShadowRaysStopShortOfTheLight) {
   const Scene scene = world(
-      "Shape \"bilinearmesh\" \"point3 P\" [-1 0 1  1 0 1  -1 0 -1  1 0 -1]\n"
-      "Translate 0 1 0 Shape \"bilinearmesh\" \"point3 P\" [-1 0 1  1 0 1  -1 0 -1  1 0 -1]\n");
+      R"(Shape "bilinearmesh" "point3 P" [-1 0 1  1 0 1  -1 0 -1  1 0 -1]
+Translate 0 1 0 Shape "bilinearmesh" "point3 P" [-1 0 1  1 0 1  -1 0 -1  1 0 -1]
+)");
   const auto at = look(scene, {0.1f, 0.5f, 0}, {0, -1, 0});
   ASSERT_TRUE(at);
   const Point on_light(0.3f, 1, 0.2f), beyond(0.3f, 1.01f, 0.2f);

@@ -52,25 +52,25 @@ std::vector<Lamp> make_lamps() {
   const auto outwards = [](const DVec3& p) { return p; };
   const auto from_axis = [](const DVec3& p) { return DVec3(p.x, p.y, 0); };
   const DVec3 above(.3, .4, 3), below(.3, .4, -2), side(2.5, 1, .3), within(.1, .2, .1);
-  const std::string square = "\"point3 P\" [0 0 0  1 0 0  0 1 0  1 1 0]",
-                    corners = " \"integer indices\" [0 1 2 2 1 3]";
+  const std::string square = R"("point3 P" [0 0 0  1 0 0  0 1 0  1 1 0])",
+                    corners = R"( "integer indices" [0 1 2 2 1 3])";
   const auto on_square = [](double u, double v) { return DVec3(u, v, 0); };
-  return {{"\"sphere\"", on_sphere(-1, 1, 2 * pi), outwards, side, within},
-          {"\"sphere\" \"float zmin\" -.3 \"float zmax\" .8 \"float phimax\" 200", on_sphere(-.3, .8, 200 * pi / 180),
+  return {{R"("sphere")", on_sphere(-1, 1, 2 * pi), outwards, side, within},
+          {R"("sphere" "float zmin" -.3 "float zmax" .8 "float phimax" 200)", on_sphere(-.3, .8, 200 * pi / 180),
            outwards, side, within},
-          {"\"disk\" \"float height\" .25", on_disk(0, 2 * pi), upwards, above, below},
-          {"\"disk\" \"float height\" .25 \"float innerradius\" .4 \"float phimax\" 250", on_disk(.4, 250 * pi / 180),
+          {R"("disk" "float height" .25)", on_disk(0, 2 * pi), upwards, above, below},
+          {R"("disk" "float height" .25 "float innerradius" .4 "float phimax" 250)", on_disk(.4, 250 * pi / 180),
            upwards, above, below},
-          {"\"cylinder\" \"float zmin\" -.5 \"float zmax\" 1", on_cylinder(2 * pi), from_axis, side, within},
-          {"\"cylinder\" \"float zmin\" -.5 \"float zmax\" 1 \"float phimax\" 160", on_cylinder(160 * pi / 180),
-           from_axis, side, within},
-          {"\"trianglemesh\" " + square + corners, on_square, upwards, above, below},
-          {"\"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0]",
+          {R"("cylinder" "float zmin" -.5 "float zmax" 1)", on_cylinder(2 * pi), from_axis, side, within},
+          {R"("cylinder" "float zmin" -.5 "float zmax" 1 "float phimax" 160)", on_cylinder(160 * pi / 180), from_axis,
+           side, within},
+          {R"("trianglemesh" )" + square + corners, on_square, upwards, above, below},
+          {R"("trianglemesh" "point3 P" [0 0 0 1 0 0 0 1 0])",
            [](double u, double v) { return DVec3(u, (1 - u) * v, 0); }, upwards, above, below},
-          {"\"trianglemesh\" " + square + corners + " \"normal N\" [0 0 -1 0 0 -1 0 0 -1 0 0 -1]", on_square,
+          {R"("trianglemesh" )" + square + corners + R"( "normal N" [0 0 -1 0 0 -1 0 0 -1 0 0 -1])", on_square,
            [](const DVec3&) { return DVec3(0, 0, -1); }, below, above},
-          {"\"bilinearmesh\" " + square, on_square, upwards, above, below},
-          {"\"bilinearmesh\" \"point3 P\" [0 0 0  1 0 0  0 1 0  1 1 .4]",
+          {R"("bilinearmesh" )" + square, on_square, upwards, above, below},
+          {R"("bilinearmesh" "point3 P" [0 0 0  1 0 0  0 1 0  1 1 .4])",
            [](double u, double v) { return DVec3(u, v, .4 * u * v); },
            [](const DVec3& p) { return DVec3(-.4 * p.y, -.4 * p.x, 1); }, above, below}};
 }
@@ -92,18 +92,19 @@ std::string scene_of(const std::vector<Lamp>& lamps, const Place& place) {
   for (std::size_t i = 0; i < lamps.size(); ++i) shapes += "Translate 12 0 0 Shape " + lamps[i].shape + "\n";
   const std::string outer =
       (place.moves ? "ActiveTransform EndTime Translate 2 0 0 ActiveTransform All " : "") + place.outer;
-  const std::string emission = "AreaLightSource \"diffuse\" \"bool twosided\" " +
+  const std::string emission = R"(AreaLightSource "diffuse" "bool twosided" )" +
                                std::string(place.two_sided ? "true " : "false ") +
                                (place.reversed ? "ReverseOrientation " : "");
   if (!place.is_instance) return outer + place.inner + emission + "\n" + shapes;
-  return "ObjectBegin \"o\" " + emission + place.inner + "\n" + shapes + "ObjectEnd " + outer +
-         "ObjectInstance \"o\"\n";
+  return R"(ObjectBegin "o" )" + emission + place.inner + "\n" + shapes + "ObjectEnd " + outer +
+         R"(ObjectInstance "o"
+)";
 }
 
 // The product of the maps in the middle of the shutter interval.
 DMat4 map_of(const Place& place, std::size_t lamp) {
   const auto matrix = [](const std::string& directives) {
-    const SceneDescription d = read_pbrt_string("WorldBegin " + directives + "Shape \"sphere\"", ".", "test scene");
+    const SceneDescription d = read_pbrt_string("WorldBegin " + directives + R"(Shape "sphere")", ".", "test scene");
     return d.shapes.at(0).object_to_world.start.matrix;
   };
   return translate({place.moves ? 1.0 : 0.0, 0, 0}).matrix * matrix(place.outer) * matrix(place.inner) *
@@ -219,7 +220,7 @@ void check(const std::vector<Lamp>& lamps, const Place& place) {
     ASSERT_NEAR(power / (std::numbers::pi * area * (place.two_sided ? 2 : 1)), 1, 2e-3);
     LampCheck lamp(scene, reference, place);
     for (const std::uint32_t l : own) lamp.emission_and_hits(l);
-    const bool is_whole_sphere = lamps[index].shape == "\"sphere\"";
+    const bool is_whole_sphere = lamps[index].shape == R"("sphere")";
     if (is_whole_sphere && place.two_sided) continue;  // hides its own far side
     lamp.irradiance(own, reference.point(place.reversed ? lamps[index].behind : lamps[index].in_front),
                     reference.point({.2, .3, .1}));

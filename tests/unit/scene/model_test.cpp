@@ -13,7 +13,10 @@ namespace lanthorn::model_test {
 namespace {
 
 SharedScene scene_of(const std::string& text) {
-  return build_scene(read_pbrt_string("Camera \"perspective\"\nWorldBegin\n" + text, ".", "model.pbrt"));
+  return build_scene(read_pbrt_string(R"(Camera "perspective"
+WorldBegin
+)" + text,
+                                      ".", "model.pbrt"));
 }
 
 // For each triangle, a ray from outside towards its centroid hits the scene within `tolerance` of it, on the outside.
@@ -42,37 +45,57 @@ void expect_on_surface(const Scene& scene, float tolerance) {
 }
 
 TEST(SceneModel, MeshesAreExact) {
-  expect_on_surface(*scene_of("Shape \"trianglemesh\" \"point3 P\" [0 0 0  1 0 0  0 1 0] \"integer indices\" [0 1 2]\n"
-                              "ReverseOrientation\nTranslate 3 0 0\nScale 1 1 -2\n"
-                              "Shape \"trianglemesh\" \"point3 P\" [0 0 0  1 0 .5  0 1 0] \"integer indices\" [0 1 2] "
-                              "\"point2 uv\" [0 0 1 0 0 1]\n"),
+  expect_on_surface(*scene_of(R"(Shape "trianglemesh" "point3 P" [0 0 0  1 0 0  0 1 0] "integer indices" [0 1 2]
+ReverseOrientation
+Translate 3 0 0
+Scale 1 1 -2
+Shape "trianglemesh" "point3 P" [0 0 0  1 0 .5  0 1 0] "integer indices" [0 1 2] "point2 uv" [0 0 1 0 0 1]
+)"),
                     1e-6f);
 }
 
 TEST(SceneModel, QuadricsPatchesAndCurvesAreClose) {
-  expect_on_surface(
-      *scene_of("Shape \"sphere\"\nTranslate 4 0 0\nReverseOrientation\nShape \"sphere\" \"float zmin\" -.5\n"
-                "Translate 4 0 0\nShape \"cylinder\" \"float phimax\" 200\nTranslate 4 0 0\n"
-                "Shape \"disk\" \"float innerradius\" .3\nTranslate 4 0 0\n"
-                "Shape \"bilinearmesh\" \"point3 P\" [0 0 0  1 0 0  0 1 0  1 1 .4]\n"),
-      4e-3f);
+  expect_on_surface(*scene_of(R"(Shape "sphere"
+Translate 4 0 0
+ReverseOrientation
+Shape "sphere" "float zmin" -.5
+Translate 4 0 0
+Shape "cylinder" "float phimax" 200
+Translate 4 0 0
+Shape "disk" "float innerradius" .3
+Translate 4 0 0
+Shape "bilinearmesh" "point3 P" [0 0 0  1 0 0  0 1 0  1 1 .4]
+)"),
+                    4e-3f);
 }
 
 TEST(SceneModel, MirroredQuadricsFaceTheSideThatRaysCallOutside) {
-  for (const char* emission : {"", "AreaLightSource \"diffuse\"\n"})
+  for (const char* emission : {"", R"(AreaLightSource "diffuse"
+)"})
     for (const char* reverse : {"", "ReverseOrientation\n"})
       expect_on_surface(*scene_of(std::string(emission) + reverse +
-                                  "Scale -1 1 1\nShape \"sphere\" \"float zmin\" -.5\nTranslate 4 0 0\n"
-                                  "Shape \"cylinder\" \"float phimax\" 200\nTranslate 4 0 0\n"
-                                  "Shape \"disk\" \"float innerradius\" .3\n"),
+                                  R"(Scale -1 1 1
+Shape "sphere" "float zmin" -.5
+Translate 4 0 0
+Shape "cylinder" "float phimax" 200
+Translate 4 0 0
+Shape "disk" "float innerradius" .3
+)"),
                         4e-3f);
 }
 
 TEST(SceneModel, InstancesKnowTheirPlaceAndName) {
   const SharedScene scene = scene_of(
-      "MakeNamedMaterial \"red\" \"string type\" \"diffuse\" \"rgb reflectance\" [.8 .1 .1]\n"
-      "ObjectBegin \"ball\"\nNamedMaterial \"red\"\nShape \"sphere\"\nObjectEnd\n"
-      "Translate 0 0 5\nObjectInstance \"ball\"\nScale -2 2 2\nObjectInstance \"ball\"\n");
+      R"(MakeNamedMaterial "red" "string type" "diffuse" "rgb reflectance" [.8 .1 .1]
+ObjectBegin "ball"
+NamedMaterial "red"
+Shape "sphere"
+ObjectEnd
+Translate 0 0 5
+ObjectInstance "ball"
+Scale -2 2 2
+ObjectInstance "ball"
+)");
   const SceneModel model = model_of(*scene);
   ASSERT_EQ(model.meshes.size(), 1u);
   ASSERT_EQ(model.instances.size(), 2u);

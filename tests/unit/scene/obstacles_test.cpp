@@ -21,15 +21,19 @@ bool contains(const Bounds& box, const Point& p) {
 // A row of six matte spheres and one of glass, at a large number of places.
 TEST(Obstacles, CoverGroupsInManyPlaces) {
   constexpr int places = 60'000, columns = 200;
-  std::string text = "LightSource \"infinite\"\nObjectBegin \"row\"\n";
+  std::string text = R"(LightSource "infinite"
+ObjectBegin "row"
+)";
   for (int i = 0; i < 7; ++i)
     text += std::string("Material \"") + (i == 3 ? "dielectric" : "diffuse") +
-            "\" Translate .1 0 0 Shape \"sphere\" \"float radius\" [.01]\n";
+            R"(" Translate .1 0 0 Shape "sphere" "float radius" [.01]
+)";
   text += "ObjectEnd\n";
   const auto corner = [](int place) { return Point(place % columns, place / columns, 0); };
   for (int place = 0; place < places; ++place)
     text += "AttributeBegin Translate " + std::to_string(place % columns) + ' ' + std::to_string(place / columns) +
-            " 0 ObjectInstance \"row\" AttributeEnd\n";
+            R"( 0 ObjectInstance "row" AttributeEnd
+)";
   const Scene scene = test::world(text);
 
   const std::vector<Obstacle> obstacles = scene.obstacles();

@@ -21,13 +21,17 @@ using test::world;
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
 std::string instances_of_triangle(const std::string& transforms) {
-  return "ObjectBegin \"o\"\nShape \"trianglemesh\" \"point3 P\" [-1 -1 0 1 -1 0 0 1 0] \"integer indices\" [0 1 "
-         "2]\nObjectEnd\n" +
-         transforms;
+  return R"(ObjectBegin "o"
+Shape "trianglemesh" "point3 P" [-1 -1 0 1 -1 0 0 1 0] "integer indices" [0 1 2]
+ObjectEnd
+)" + transforms;
 }
 
 std::string instance(const std::string& transform) {
-  return "AttributeBegin\n" + transform + "\nObjectInstance \"o\"\nAttributeEnd\n";
+  return "AttributeBegin\n" + transform + R"(
+ObjectInstance "o"
+AttributeEnd
+)";
 }
 
 // The warnings that say that something is left out, one per line.
@@ -68,9 +72,15 @@ TEST(Robustness, SmallInstancesAreMetFromAnywhere) {
 TEST(Robustness, LargeInstancesOfSmallShapesKeepTheirNormals) {
   for (const float size : {1e-6f, 1e-9f, 1e-12f}) {
     std::ostringstream text;
-    text << "ObjectBegin \"o\"\nShape \"trianglemesh\" \"point3 P\" [" << -size << ' ' << -size << " 0 " << size << ' '
-         << -size << " 0 0 " << size << " 0] \"integer indices\" [0 1 2]\nObjectEnd\nScale " << 1 / size << ' '
-         << 1 / size << ' ' << 1 / size << "\nObjectInstance \"o\"\n";
+    text << R"(ObjectBegin "o"
+Shape "trianglemesh" "point3 P" [)"
+         << -size << ' ' << -size << " 0 " << size << ' ' << -size << " 0 0 " << size
+         << R"( 0] "integer indices" [0 1 2]
+ObjectEnd
+Scale )" << 1 / size
+         << ' ' << 1 / size << ' ' << 1 / size << R"(
+ObjectInstance "o"
+)";
     const auto hit = look(world(text.str()), {0, 0, 3}, {0, 0, -1});
     ASSERT_TRUE(hit) << size;
     EXPECT_FLOAT_EQ(std::fabs(hit->normal.z), 1) << size;
@@ -100,17 +110,21 @@ TEST(Robustness, CurvesOfNoSizeAreBuilt) {
   for (const char* kind : {"flat", "cylinder", "ribbon"})
     for (const char* end : {"0 0 0", "1e-40 0 0", "0 1e-37 0"}) {
       const std::string point(end);
-      EXPECT_FALSE(look(world("Shape \"curve\" \"string type\" \"" + std::string(kind) + "\" \"float width\" 0 " +
-                              (kind == std::string("ribbon") ? "\"normal N\" [0 0 1 0 0 1] " : "") +
-                              "\"point3 P\" [0 0 0 " + point + " " + point + " " + point + "]"),
+      EXPECT_FALSE(look(world(R"(Shape "curve" "string type" ")" + std::string(kind) + R"(" "float width" 0 )" +
+                              (kind == std::string("ribbon") ? R"("normal N" [0 0 1 0 0 1] )" : "") +
+                              R"("point3 P" [0 0 0 )" + point + " " + point + " " + point + "]"),
                         {0, 0, 5}, {0.1f, 0, -1}));
     }
 }
 
 TEST(Robustness, MotionThroughASingularMapIsFollowedWhereItCanBe) {
-  const Scene scene = world(
-      instances_of_triangle("ActiveTransform EndTime\nScale -1 -1 -1\nActiveTransform All\nObjectInstance \"o\"\n"),
-      "Camera \"perspective\" \"float shutterclose\" 1\n");
+  const Scene scene = world(instances_of_triangle(R"(ActiveTransform EndTime
+Scale -1 -1 -1
+ActiveTransform All
+ObjectInstance "o"
+)"),
+                            R"(Camera "perspective" "float shutterclose" 1
+)");
   for (int i = 0; i <= 100; ++i) {
     const auto hit = scene.intersect({{0.01f, 0, 5}, {0, 0, -1}, infinity, 0.01f * static_cast<float>(i)}, test::white);
     EXPECT_TRUE(!hit || std::isfinite(hit->normal.z)) << i;
@@ -118,7 +132,8 @@ TEST(Robustness, MotionThroughASingularMapIsFollowedWhereItCanBe) {
 }
 
 TEST(Robustness, RaysThatAreNotValidHitNothingAndNoLightArrivesAlongThem) {
-  const Scene scene = world("Shape \"sphere\"\n" + instances_of_triangle(instance("Scale 2 2 2")));
+  const Scene scene = world(R"(Shape "sphere"
+)" + instances_of_triangle(instance("Scale 2 2 2")));
   const Direction forward(0, 0, -1);
   const Point from(0, 0, 5);
   const std::vector<Ray> invalid{{{nan, 0, 5}, forward, infinity, 0},      {{0, 0, infinity}, forward, infinity, 0},
@@ -137,8 +152,9 @@ TEST(Robustness, RaysThatAreNotValidHitNothingAndNoLightArrivesAlongThem) {
 TEST(Robustness, NormalsOfAnyLengthAreNormalised) {
   for (const char* length : {"1e-30", "1e-12", "1e12", "1e30"}) {
     const std::string n = " 0 0 " + std::string(length);
-    const Scene scene = world("Shape \"trianglemesh\" \"point3 P\" [-1 -1 0 1 -1 0 0 1 0] \"normal N\" [" + n + n + n +
-                              "] \"integer indices\" [0 1 2]\n");
+    const Scene scene = world(R"(Shape "trianglemesh" "point3 P" [-1 -1 0 1 -1 0 0 1 0] "normal N" [)" + n + n + n +
+                              R"(] "integer indices" [0 1 2]
+)");
     const auto hit = look(scene, {0, 0, 5}, {0, 0, -1});
     ASSERT_TRUE(hit);
     EXPECT_FLOAT_EQ(hit->shading.n.z, 1) << length;
@@ -148,24 +164,26 @@ TEST(Robustness, NormalsOfAnyLengthAreNormalised) {
 // Tracking takes one step per mean free path of the densest part, for the whole length of a flight.
 TEST(Robustness, MediaOfTooManyMeanFreePathsAreRefused) {
   const auto load = [](const std::string& transform, const std::string& parameters) {
-    return world(transform + "\nMakeNamedMedium \"m\" " + parameters + "\n");
+    return world(transform + R"(
+MakeNamedMedium "m" )" +
+                 parameters + "\n");
   };
-  const std::string grid = "\"integer nx\" 2 \"integer ny\" 1 \"integer nz\" 1 ";
+  const std::string grid = R"("integer nx" 2 "integer ny" 1 "integer nz" 1 )";
   const auto uniform = [&](const std::string& sigma_a) {
-    return "\"string type\" \"uniformgrid\" \"rgb sigma_s\" [2 2 2] \"rgb sigma_a\" " + sigma_a + grid +
-           "\"float density\" [0 1] ";
+    return R"("string type" "uniformgrid" "rgb sigma_s" [2 2 2] "rgb sigma_a" )" + sigma_a + grid +
+           R"("float density" [0 1] )";
   };
   const std::string colours =
-      "\"string type\" \"rgbgrid\" \"rgb sigma_a\" [0 0 1 0 0 1] \"rgb sigma_s\" [1 1 1 0 0 0] " + grid;
+      R"("string type" "rgbgrid" "rgb sigma_a" [0 0 1 0 0 1] "rgb sigma_s" [1 1 1 0 0 0] )" + grid;
   EXPECT_NO_THROW(load("", uniform("[1 1 1e5]")));
   EXPECT_NO_THROW(load("Scale 1000 1000 1000", uniform("[1 1 1]")));
-  EXPECT_NO_THROW(load("", colours + "\"float scale\" 1e4"));
-  EXPECT_NO_THROW(load("", "\"string type\" \"homogeneous\" \"rgb sigma_a\" [1 1 1e30]"));  // has no steps
+  EXPECT_NO_THROW(load("", colours + R"("float scale" 1e4)"));
+  EXPECT_NO_THROW(load("", R"("string type" "homogeneous" "rgb sigma_a" [1 1 1e30])"));  // has no steps
   EXPECT_THROW(load("", uniform("[1 1 4294967296]")), Error);
-  EXPECT_THROW(load("", uniform("[1 1 1]") + "\"float scale\" 1e7"), Error);
+  EXPECT_THROW(load("", uniform("[1 1 1]") + R"("float scale" 1e7)"), Error);
   EXPECT_THROW(load("Scale 1 1e9 1", uniform("[1 1 1]")), Error);
-  EXPECT_THROW(load("", "\"string type\" \"cloud\" \"rgb sigma_a\" [0 0 1e8]"), Error);
-  EXPECT_THROW(load("", colours + "\"float scale\" 1e7"), Error);
+  EXPECT_THROW(load("", R"("string type" "cloud" "rgb sigma_a" [0 0 1e8])"), Error);
+  EXPECT_THROW(load("", colours + R"("float scale" 1e7)"), Error);
 }
 
 }  // namespace

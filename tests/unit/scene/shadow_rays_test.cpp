@@ -46,11 +46,13 @@ struct Shadows {
 Shadows shadows_of(const Lamp& lamp, float size, const Point& middle, bool is_instance) {
   const std::string place = fmt::format("Translate {} {} {} Rotate 37 1 2 3 Scale {} {} {}\n", middle.x, middle.y,
                                         middle.z, size, is_instance ? .2f * size : size, is_instance ? 3 * size : size);
-  const std::string shape = fmt::format("AreaLightSource \"diffuse\" \"bool twosided\" {}\n{}\n",
+  const std::string shape = fmt::format(R"(AreaLightSource "diffuse" "bool twosided" {}
+{}
+)",
                                         lamp.two_sided ? "true" : "false", lamp.shape);
-  const Scene scene =
-      test::world(is_instance ? "ObjectBegin \"lamp\"\n" + shape + "ObjectEnd\n" + place + "ObjectInstance \"lamp\""
-                              : place + shape);
+  const Scene scene = test::world(is_instance ? R"(ObjectBegin "lamp"
+)" + shape + "ObjectEnd\n" + place + R"(ObjectInstance "lamp")"
+                                              : place + shape);
   HashRng rng(7);
   Shadows result;
   for (const float distance : {.02f, 1.0f, 30.0f, 1e3f, 1e5f})

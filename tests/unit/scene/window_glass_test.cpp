@@ -15,14 +15,17 @@
 namespace lanthorn::window_glass_test {
 namespace {
 
-const std::string patch = "Shape \"bilinearmesh\" \"point3 P\" [-1 -1 0  1 -1 0  -1 1 0  1 1 0]\n";
+const std::string patch = R"(Shape "bilinearmesh" "point3 P" [-1 -1 0  1 -1 0  -1 1 0  1 1 0]
+)";
 const std::string box_4_mm_thick =
-    "Shape \"trianglemesh\" \"integer indices\" [0 1 2 1 3 2  4 6 5 5 6 7  0 4 1 1 4 5  2 3 6 3 7 6  0 2 4 2 6 4  1 5 "
-    "3 3 "
-    "5 7]\n \"point3 P\" [-1 -1 0  1 -1 0  -1 1 0  1 1 0  -1 -1 .004  1 -1 .004  -1 1 .004  1 1 .004]\n";
+    R"(Shape "trianglemesh" "integer indices" [0 1 2 1 3 2  4 6 5 5 6 7  0 4 1 1 4 5  2 3 6 3 7 6  0 2 4 2 6 4  1 5 3 3 5 7]
+ "point3 P" [-1 -1 0  1 -1 0  -1 1 0  1 1 0  -1 -1 .004  1 -1 .004  -1 1 .004  1 1 .004]
+)";
 
 SceneDescription description_of(const std::string& directives) {
-  const std::string head = "Film \"rgb\" \"integer xresolution\" 8 \"integer yresolution\" 8\nWorldBegin\n";
+  const std::string head = R"(Film "rgb" "integer xresolution" 8 "integer yresolution" 8
+WorldBegin
+)";
   return read_pbrt_string(head + directives, ".", "test scene");
 }
 
@@ -74,8 +77,12 @@ TEST(WindowGlass, LetsRaysPassStraightAndReflectsTheRest) {
   struct Case {
     std::string material, shape;
   };
-  for (const Case& c :
-       {Case{"Material \"thindielectric\"\n", patch}, Case{"Material \"dielectric\"\n", box_4_mm_thick}}) {
+  for (const Case& c : {Case{R"(Material "thindielectric"
+)",
+                             patch},
+                        Case{R"(Material "dielectric"
+)",
+                             box_4_mm_thick}}) {
     SceneDescription description = description_of(c.material + c.shape);
     EXPECT_EQ(replace_window_glass(description), 1u);
     const Scene scene(std::move(description));
@@ -87,14 +94,15 @@ TEST(WindowGlass, LetsRaysPassStraightAndReflectsTheRest) {
 }
 
 TEST(WindowGlass, KnowsTwoFacesOfOneSheet) {
-  const std::string glass = "Material \"dielectric\"\n";
+  const std::string glass = R"(Material "dielectric"
+)";
   SceneDescription window = description_of(glass + patch_at(0) + patch_at(0.004f));
   EXPECT_EQ(replace_window_glass(window), 2u);
   EXPECT_NEAR(passing(Scene(std::move(window)), 0.7), through({of_face(.7), of_face(.7)}), tolerance);
   // Not a window: too far apart, different sizes, both in one plane, different glass.
-  for (const std::string& others :
-       {patch_at(0) + patch_at(0.5f), patch_at(0) + patch_at(0.004f, 0.8f), patch_at(0) + patch_at(0),
-        patch_at(0) + "Material \"dielectric\" \"float eta\" 1.6\n" + patch_at(0.004f)}) {
+  for (const std::string& others : {patch_at(0) + patch_at(0.5f), patch_at(0) + patch_at(0.004f, 0.8f),
+                                    patch_at(0) + patch_at(0), patch_at(0) + R"(Material "dielectric" "float eta" 1.6
+)" + patch_at(0.004f)}) {
     SceneDescription description = description_of(glass + others);
     EXPECT_EQ(replace_window_glass(description), 0u) << others;
   }
@@ -106,9 +114,12 @@ std::string raised(const std::string& shapes, float height) {
 
 // Rays pass panes one behind another with the light that the panes reflect to and fro.
 TEST(WindowGlass, PanesOfOneWindowReflectBetweenEachOther) {
-  const std::string slab = "Material \"dielectric\"\n" + box_4_mm_thick,
-                    sheet = "Material \"thindielectric\"\n" + patch;
-  const std::string dense = "Material \"dielectric\" \"float eta\" 2.2\n" + box_4_mm_thick;
+  const std::string slab = R"(Material "dielectric"
+)" + box_4_mm_thick,
+                    sheet = R"(Material "thindielectric"
+)" + patch;
+  const std::string dense = R"(Material "dielectric" "float eta" 2.2
+)" + box_4_mm_thick;
   struct Case {
     std::string directives;
     std::size_t panes;
@@ -120,10 +131,13 @@ TEST(WindowGlass, PanesOfOneWindowReflectBetweenEachOther) {
         Case{sheet + raised(sheet, .1f), 2, {1.5f, 1.5f, 1.5f, 1.5f}},
         Case{sheet + raised(dense, .1f), 2, {1.5f, 1.5f, 2.2f, 2.2f}}, Case{three, 3, std::vector<float>(6, 1.5f)},
         Case{"Rotate 180 1 0 0 " + three, 3, std::vector<float>(6, 1.5f)},
-        Case{"ObjectBegin \"o\" " + three + "ObjectEnd Scale 1 1 -1 ObjectInstance \"o\"\n", 3,
-             std::vector<float>(6, 1.5f)},
-        Case{"Material \"dielectric\"\n" + patch_at(0) + patch_at(.004f) + patch_at(.05f) + patch_at(.054f), 4,
-             std::vector<float>(4, 1.5f)}}) {
+        Case{R"(ObjectBegin "o" )" + three + R"(ObjectEnd Scale 1 1 -1 ObjectInstance "o"
+)",
+             3, std::vector<float>(6, 1.5f)},
+        Case{R"(Material "dielectric"
+)" + patch_at(0) +
+                 patch_at(.004f) + patch_at(.05f) + patch_at(.054f),
+             4, std::vector<float>(4, 1.5f)}}) {
     const Scene scene = scene_with_panes(c.directives, c.panes);
     for (const double cos : {1.0, .5, .3}) {
       std::vector<double> faces;
@@ -136,7 +150,8 @@ TEST(WindowGlass, PanesOfOneWindowReflectBetweenEachOther) {
 }
 
 TEST(WindowGlass, RaysFromBetweenPanesMeetThePanesBeforeThem) {
-  const std::string slab = "Material \"dielectric\"\n" + box_4_mm_thick;
+  const std::string slab = R"(Material "dielectric"
+)" + box_4_mm_thick;
   const Scene scene = scene_with_panes(slab + raised(slab, .1f), 2);
   const double f = of_face(.5);
   EXPECT_NEAR(passing(scene, .5, .05f), through({f, f}), tolerance);
@@ -145,7 +160,8 @@ TEST(WindowGlass, RaysFromBetweenPanesMeetThePanesBeforeThem) {
 }
 
 TEST(WindowGlass, PanesFarApartOrAtAnAngleAreTwoWindows) {
-  const std::string slab = "Material \"dielectric\"\n" + box_4_mm_thick;
+  const std::string slab = R"(Material "dielectric"
+)" + box_4_mm_thick;
   const double one = through({of_face(.5), of_face(.5)});
   EXPECT_NEAR(passing(scene_with_panes(slab + raised(slab, .25f), 2), .5), one * one, tolerance);
   const std::string leaning = "AttributeBegin Rotate 3 0 1 0 Translate 0 0 .1\n" + slab + "AttributeEnd\n";
@@ -155,20 +171,25 @@ TEST(WindowGlass, PanesFarApartOrAtAnAngleAreTwoWindows) {
 
 TEST(WindowGlass, SaysWhichPanesStayAsTheyAre) {
   const std::string two_faces = patch_at(0) + patch_at(.004f);
-  const std::string medium = "MakeNamedMedium \"m\" \"string type\" \"homogeneous\"\n";
+  const std::string medium = R"(MakeNamedMedium "m" "string type" "homogeneous"
+)";
   struct Case {
     std::string directives, message;
   };
   const std::string rest =
       "; only panes of clear, smooth glass let all rays pass. Methods with photons find the light "
       "behind the others";
-  for (const Case& c : {Case{"Material \"dielectric\" \"float roughness\" .1\n" + box_4_mm_thick,
+  for (const Case& c : {Case{R"(Material "dielectric" "float roughness" .1
+)" + box_4_mm_thick,
                              "this pane stays as before, because its glass is rough"},
-                        Case{"Material \"thindielectric\" \"spectrum eta\" \"glass-BK7\"\n" + patch,
+                        Case{R"(Material "thindielectric" "spectrum eta" "glass-BK7"
+)" + patch,
                              "this pane stays as before, because its glass has dispersion"},
-                        Case{medium + "MediumInterface \"m\" \"\" Material \"dielectric\"\n" + two_faces,
+                        Case{medium + R"(MediumInterface "m" "" Material "dielectric"
+)" + two_faces,
                              "2 panes stay as before, because their glass has a medium inside"},
-                        Case{"AreaLightSource \"diffuse\" Material \"dielectric\"\n" + box_4_mm_thick,
+                        Case{R"(AreaLightSource "diffuse" Material "dielectric"
+)" + box_4_mm_thick,
                              "this pane stays as before, because its glass emits light"}}) {
     SceneDescription description = description_of(c.directives);
     EXPECT_EQ(replace_window_glass(description), 0u) << c.directives;
@@ -176,7 +197,8 @@ TEST(WindowGlass, SaysWhichPanesStayAsTheyAre) {
     EXPECT_EQ(description.warnings[0].message, "--window-glass: " + c.message + rest);
     EXPECT_GT(description.warnings[0].location.line, 2);
   }
-  SceneDescription tinted = description_of("Material \"dielectric\"\n" + box_4_mm_thick);
+  SceneDescription tinted = description_of(R"(Material "dielectric"
+)" + box_4_mm_thick);
   std::get<description::DielectricMaterial>(tinted.materials.at(tinted.shapes[0].material).node).tint =
       description::SpectrumParameter{description::RgbSpectrum{{.5f, .9f, .5f}}, {}};
   EXPECT_EQ(replace_window_glass(tinted), 0u);
@@ -185,13 +207,19 @@ TEST(WindowGlass, SaysWhichPanesStayAsTheyAre) {
 }
 
 TEST(WindowGlass, LeavesWhatIsNoWindow) {
-  for (const std::string& directives :
-       {std::string("Material \"dielectric\"\nShape \"sphere\"\n"), "Material \"dielectric\"\n" + patch,
-        "Material \"thindielectric\" \"spectrum eta\" \"glass-BK7\"\n" + patch, patch}) {
+  for (const std::string& directives : {std::string(R"(Material "dielectric"
+Shape "sphere"
+)"),
+                                        R"(Material "dielectric"
+)" + patch,
+                                        R"(Material "thindielectric" "spectrum eta" "glass-BK7"
+)" + patch,
+                                        patch}) {
     SceneDescription description = description_of(directives);
     EXPECT_EQ(replace_window_glass(description), 0u) << directives;
   }
-  SceneDescription rough = description_of("Material \"dielectric\" \"float roughness\" .1\n" + box_4_mm_thick);
+  SceneDescription rough = description_of(R"(Material "dielectric" "float roughness" .1
+)" + box_4_mm_thick);
   EXPECT_EQ(replace_window_glass(rough), 0u);
 }
 

@@ -19,11 +19,11 @@ using test::world;
 
 const std::array<DVec3, 4> bent{{{-1, 0, 0}, {-0.4, 0.5, 0.2}, {0.3, 0.6, -0.1}, {1, 0, 0.3}}};
 constexpr double width0 = 0.1, width1 = 0.04;
-const char* const bent_points = "\"point3 P\" [-1 0 0 -0.4 0.5 0.2 0.3 0.6 -0.1 1 0 0.3]";
+const char* const bent_points = R"("point3 P" [-1 0 0 -0.4 0.5 0.2 0.3 0.6 -0.1 1 0 0.3])";
 
 std::string bent_curve(const std::string& type, const std::string& more = "") {
-  return "Shape \"curve\" \"string type\" \"" + type + "\" " + bent_points +
-         " \"float width0\" 0.1 \"float width1\" 0.04 " + more + "\n";
+  return R"(Shape "curve" "string type" ")" + type + "\" " + bent_points +
+         R"( "float width0" 0.1 "float width1" 0.04 )" + more + "\n";
 }
 
 struct OnCurve {
@@ -110,7 +110,7 @@ TEST(Curves, FlatOnesFaceEveryRay) {
 }
 
 TEST(Curves, RibbonsTurnWithTheirNormals) {
-  const Scene scene = world(bent_curve("ribbon", "\"normal N\" [0 0 1 0 -0.70710678 0.70710678]"));
+  const Scene scene = world(bent_curve("ribbon", R"("normal N" [0 0 1 0 -0.70710678 0.70710678])"));
   HashRng rng(4);
   for (int i = 0; i < 2000; ++i) {
     const double u = 0.02 + 0.96 * rng.next();
@@ -136,13 +136,14 @@ TEST(Curves, RibbonsTurnWithTheirNormals) {
 // A straight hair is convex: a ray that leaves it outwards never hits it again, at any scale and position. A ray that
 // enters a tube hits its other side.
 TEST(Curves, NothingMeetsItself) {
-  const std::string straight = "\"point3 P\" [-1 0 0 -0.3 0.21 0 0.4 0.42 0 1.1 0.63 0] \"float width\" 0.02\n";
+  const std::string straight = R"("point3 P" [-1 0 0 -0.3 0.21 0 0.4 0.42 0 1.1 0.63 0] "float width" 0.02
+)";
   for (const char* place : {"", "Scale 0.001 0.001 0.001\n", "Translate 30 -20 50\n", "Scale 100 100 100\n",
                             "ConcatTransform [0.9 0.3 0 0  0.2 1.3 0.1 0  0 0.4 0.7 0  3 -2 1 1]\n"})
     for (const std::string type : {"flat", "cylinder", "ribbon"}) {
       SCOPED_TRACE(place + type);
-      const std::string normals = type == "ribbon" ? "\"normal N\" [0 0.3 1 0 0.3 1] " : "";
-      const Scene scene = world(place + ("Shape \"curve\" \"string type\" \"" + type + "\" ") + normals + straight);
+      const std::string normals = type == "ribbon" ? R"("normal N" [0 0.3 1 0 0.3 1] )" : "";
+      const Scene scene = world(place + (R"(Shape "curve" "string type" ")" + type + "\" ") + normals + straight);
       const Bounds& box = scene.bounds();
       HashRng rng(5);
       int hits = 0, again = 0, through = 0;
@@ -171,8 +172,9 @@ TEST(Curves, NothingMeetsItself) {
 
 TEST(Curves, StretchedTubesAreElliptic) {
   const Scene scene = world(
-      "Scale 1 3 1\nShape \"curve\" \"string type\" \"cylinder\" \"point3 P\" [0 0 -1 0 0 -0.3 0 0 0.3 0 0 1] \"float "
-      "width\" 0.2\n");
+      R"(Scale 1 3 1
+Shape "curve" "string type" "cylinder" "point3 P" [0 0 -1 0 0 -0.3 0 0 0.3 0 0 1] "float width" 0.2
+)");
   HashRng rng(6);
   for (int i = 0; i < 500; ++i) {
     const float phi = 2 * pi * rng.next();
@@ -186,13 +188,13 @@ TEST(Curves, StretchedTubesAreElliptic) {
 
 TEST(Curves, AlphaHoldsOnEveryKind) {
   const std::string texture =
-      "Texture \"t\" \"float\" \"checkerboard\" \"float uscale\" 2 \"float vscale\" 0 \"float tex1\" 1 \"float tex2\" "
-      "0\n";
+      R"(Texture "t" "float" "checkerboard" "float uscale" 2 "float vscale" 0 "float tex1" 1 "float tex2" 0
+)";
   for (const std::string type : {"flat", "cylinder", "ribbon"}) {
     SCOPED_TRACE(type);
-    const std::string normals = type == "ribbon" ? "\"normal N\" [0 -1 0 0 -1 0] " : "";
-    const Scene half = world(bent_curve(type, normals + "\"float alpha\" 0.5"));
-    const Scene checked = world(texture + bent_curve(type, normals + "\"texture alpha\" \"t\""));
+    const std::string normals = type == "ribbon" ? R"("normal N" [0 -1 0 0 -1 0] )" : "";
+    const Scene half = world(bent_curve(type, normals + R"("float alpha" 0.5)"));
+    const Scene checked = world(texture + bent_curve(type, normals + R"("texture alpha" "t")"));
     HashRng rng(7);
     int seen = 0;
     constexpr int rays = 4000;
@@ -215,14 +217,16 @@ TEST(Curves, AlphaHoldsOnEveryKind) {
 }
 
 description::Curves read_curve(const std::string& parameters) {
-  const SceneDescription scene = read_pbrt_string("WorldBegin\nShape \"curve\" " + parameters, ".", "t.pbrt");
+  const SceneDescription scene = read_pbrt_string(R"(WorldBegin
+Shape "curve" )" + parameters,
+                                                  ".", "t.pbrt");
   EXPECT_TRUE(scene.warnings.empty());
   return std::get<description::Curves>(scene.shapes.at(0).geometry);
 }
 
 // Curves of every basis and degree equal the Bézier curve computed from that basis' own formula.
 TEST(PbrtCurves, BasesAreConverted) {
-  const std::string points = "\"point3 P\" [0 0 0  1 2 0  2 -1 1  4 0 2  5 5 3]";
+  const std::string points = R"("point3 P" [0 0 0  1 2 0  2 -1 1  4 0 2  5 5 3])";
   const std::array<DVec3, 5> p{{{0, 0, 0}, {1, 2, 0}, {2, -1, 1}, {4, 0, 2}, {5, 5, 3}}};
   const auto check = [&](const std::string& parameters, std::size_t segments, auto formula) {
     SCOPED_TRACE(parameters);
@@ -238,14 +242,14 @@ TEST(PbrtCurves, BasesAreConverted) {
         EXPECT_LT(glm::length(at - formula(i, u)), 1e-5) << i << ' ' << u;
       }
   };
-  check("\"integer degree\" 2", 2, [&](std::size_t i, double u) {
+  check(R"("integer degree" 2)", 2, [&](std::size_t i, double u) {
     const double v = 1 - u;
     return v * v * p[2 * i] + 2 * v * u * p[2 * i + 1] + u * u * p[2 * i + 2];
   });
-  check("\"integer degree\" 2 \"string basis\" \"bspline\"", 3, [&](std::size_t i, double u) {
+  check(R"("integer degree" 2 "string basis" "bspline")", 3, [&](std::size_t i, double u) {
     return 0.5 * (1 - u) * (1 - u) * p[i] + (0.5 + u - u * u) * p[i + 1] + 0.5 * u * u * p[i + 2];
   });
-  check("\"string basis\" \"bspline\"", 2, [&](std::size_t i, double u) {
+  check(R"("string basis" "bspline")", 2, [&](std::size_t i, double u) {
     const double v = 1 - u;
     return (v * v * v * p[i] + (3 * u * u * u - 6 * u * u + 4) * p[i + 1] +
             (-3 * u * u * u + 3 * u * u + 3 * u + 1) * p[i + 2] + u * u * u * p[i + 3]) /
@@ -254,17 +258,18 @@ TEST(PbrtCurves, BasesAreConverted) {
 }
 
 TEST(PbrtCurves, WidthsRunOverTheWholeCurve) {
-  const std::string points = "\"point3 P\" [0 0 0 1 0 0 2 0 0 3 0 0 4 0 0 5 0 0 6 0 0]";
+  const std::string points = R"("point3 P" [0 0 0 1 0 0 2 0 0 3 0 0 4 0 0 5 0 0 6 0 0])";
   const description::Curves curves =
-      read_curve(points + " \"float width0\" 2 \"float width1\" 8 \"integer splitdepth\" 5");
+      read_curve(points + R"( "float width0" 2 "float width1" 8 "integer splitdepth" 5)");
   for (std::size_t i = 0; i < 7; ++i) EXPECT_FLOAT_EQ(curves.points[i].w, 1 + static_cast<float>(i) / 2);
   EXPECT_FLOAT_EQ(read_curve(points).points[3].w, 0.5f);
-  EXPECT_FLOAT_EQ(read_curve(points + "\"float width\" 3 \"float width1\" 0").points[0].w, 1.5f);
-  EXPECT_FLOAT_EQ(read_curve(points + "\"float width\" 3 \"float width1\" 0").points[6].w, 0);
+  EXPECT_FLOAT_EQ(read_curve(points + R"("float width" 3 "float width1" 0)").points[0].w, 1.5f);
+  EXPECT_FLOAT_EQ(read_curve(points + R"("float width" 3 "float width1" 0)").points[6].w, 0);
 }
 
 TEST(PbrtCurves, HairsThatBelongTogetherBecomeOneShape) {
-  const std::string hair = "Shape \"curve\" \"point3 P\" [0 0 0 1 0 0 2 0 0 3 0 0]\n";
+  const std::string hair = R"(Shape "curve" "point3 P" [0 0 0 1 0 0 2 0 0 3 0 0]
+)";
   const auto counts = [&](const std::string& world) {
     const SceneDescription scene = read_pbrt_string("WorldBegin\n" + world, ".", "t.pbrt");
     std::vector<std::size_t> result;
@@ -273,17 +278,21 @@ TEST(PbrtCurves, HairsThatBelongTogetherBecomeOneShape) {
     return result;
   };
   using Counts = std::vector<std::size_t>;
-  const std::string fur = "MakeNamedMaterial \"m\" \"string type\" \"diffuse\"\n";
+  const std::string fur = R"(MakeNamedMaterial "m" "string type" "diffuse"
+)";
   std::string placed;
   for (int i = 0; i < 100; ++i)
-    placed += "AttributeBegin NamedMaterial \"m\" Translate 0 1 0 " + hair + "AttributeEnd\n";
+    placed += R"(AttributeBegin NamedMaterial "m" Translate 0 1 0 )" + hair + "AttributeEnd\n";
   EXPECT_EQ(counts(fur + placed), Counts{100});
-  EXPECT_EQ(counts(hair + "Material \"diffuse\"\n" + hair + hair), (Counts{1, 2}));
+  EXPECT_EQ(counts(hair + R"(Material "diffuse"
+)" + hair + hair),
+            (Counts{1, 2}));
   EXPECT_EQ(counts(hair + "ReverseOrientation " + hair), (Counts{1, 1}));
   EXPECT_EQ(counts(hair + "Scale 2 2 2 " + hair), Counts{2});
   EXPECT_EQ(counts(hair + "Scale 2 1 1 " + hair + hair), (Counts{1, 2}));
-  EXPECT_EQ(counts(hair + "Attribute \"shape\" \"float alpha\" 0.5 " + hair), (Counts{1, 1}));
-  EXPECT_EQ(counts("Shape \"curve\" \"string type\" \"cylinder\" \"point3 P\" [0 0 0 1 0 0 2 0 0 3 0 0]\n" + hair),
+  EXPECT_EQ(counts(hair + R"(Attribute "shape" "float alpha" 0.5 )" + hair), (Counts{1, 1}));
+  EXPECT_EQ(counts(R"(Shape "curve" "string type" "cylinder" "point3 P" [0 0 0 1 0 0 2 0 0 3 0 0]
+)" + hair),
             (Counts{1, 1}));
   const SceneDescription scaled = read_pbrt_string("WorldBegin\nTranslate 1 0 0 Scale -2 2 2 " + hair, ".", "t.pbrt");
   const auto& curves = std::get<description::Curves>(scaled.shapes.at(0).geometry);
@@ -303,25 +312,29 @@ TEST(PbrtCurves, ScenesOfShapesAreRead) {
 
 TEST(PbrtCurves, Errors) {
   const auto error = [](const std::string& parameters) {
-    return test::error_text([&] { read_pbrt_string("WorldBegin\nShape \"curve\" " + parameters, ".", "t.pbrt"); });
+    return test::error_text([&] {
+      read_pbrt_string(R"(WorldBegin
+Shape "curve" )" + parameters,
+                       ".", "t.pbrt");
+    });
   };
-  const std::string points = "\"point3 P\" [0 0 0 1 0 0 2 0 0 3 0 0] ";
+  const std::string points = R"("point3 P" [0 0 0 1 0 0 2 0 0 3 0 0] )";
   const std::string start = "t.pbrt:2:15: parameter ", later = "t.pbrt:2:52: parameter ";
-  EXPECT_EQ(error(""), "t.pbrt:2:1: parameter \"P\" of Shape \"curve\" is missing");
-  EXPECT_EQ(error("\"point3 P\" [0 0 0 1 1 1]"),
-            start + "\"P\" of Shape \"curve\" has 2 points; a bezier curve of degree 3 needs 4 plus a multiple of 3");
-  EXPECT_EQ(error("\"point3 P\" [0 0 0 1 1 1] \"string basis\" \"bspline\""),
-            start + "\"P\" of Shape \"curve\" has 2 points; a bspline curve of degree 3 needs 4 or more");
-  EXPECT_EQ(error(points + "\"integer degree\" 4"), later + "\"degree\" of Shape \"curve\" must be 2 or 3");
-  EXPECT_EQ(error(points + "\"string basis\" \"b\""),
-            later + "\"basis\" of Shape \"curve\" must be bezier or bspline, not \"b\"");
-  EXPECT_EQ(error(points + "\"string type\" \"b\""),
-            later + "\"type\" of Shape \"curve\" must be flat, cylinder or ribbon, not \"b\"");
-  EXPECT_EQ(error(points + "\"float width\" -1"), later + "\"width\" of Shape \"curve\" must not be negative");
-  EXPECT_EQ(error(points + "\"string type\" \"ribbon\" \"normal N\" [0 0 1]"),
-            "t.pbrt:2:75: parameter \"N\" of Shape \"curve\" needs 2 normals, one for each end of a segment; has 1");
-  EXPECT_EQ(error(points + "\"string type\" \"ribbon\" \"normal N\" [0 0 1 0 0 0]"),
-            "t.pbrt:2:75: parameter \"N\" of Shape \"curve\" has a normal of length 0");
+  EXPECT_EQ(error(""), R"(t.pbrt:2:1: parameter "P" of Shape "curve" is missing)");
+  EXPECT_EQ(error(R"("point3 P" [0 0 0 1 1 1])"),
+            start + R"("P" of Shape "curve" has 2 points; a bezier curve of degree 3 needs 4 plus a multiple of 3)");
+  EXPECT_EQ(error(R"("point3 P" [0 0 0 1 1 1] "string basis" "bspline")"),
+            start + R"("P" of Shape "curve" has 2 points; a bspline curve of degree 3 needs 4 or more)");
+  EXPECT_EQ(error(points + R"("integer degree" 4)"), later + R"("degree" of Shape "curve" must be 2 or 3)");
+  EXPECT_EQ(error(points + R"("string basis" "b")"),
+            later + R"("basis" of Shape "curve" must be bezier or bspline, not "b")");
+  EXPECT_EQ(error(points + R"("string type" "b")"),
+            later + R"("type" of Shape "curve" must be flat, cylinder or ribbon, not "b")");
+  EXPECT_EQ(error(points + R"("float width" -1)"), later + R"("width" of Shape "curve" must not be negative)");
+  EXPECT_EQ(error(points + R"("string type" "ribbon" "normal N" [0 0 1])"),
+            R"(t.pbrt:2:75: parameter "N" of Shape "curve" needs 2 normals, one for each end of a segment; has 1)");
+  EXPECT_EQ(error(points + R"("string type" "ribbon" "normal N" [0 0 1 0 0 0])"),
+            R"(t.pbrt:2:75: parameter "N" of Shape "curve" has a normal of length 0)");
 }
 
 }  // namespace

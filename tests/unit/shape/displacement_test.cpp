@@ -90,9 +90,9 @@ TEST(Displacement, OfPlyMeshesInScenes) {
       "property float u\nproperty float v\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
       "0 0 0 0 0\n1 0 0 1 0\n1 1 0 1 1\n0 1 0 0 1\n4 0 1 2 3\n");
   const Scene scene = test::world(
-      "Texture \"ramp\" \"float\" \"bilerp\" \"float v00\" 0 \"float v10\" 1 \"float v01\" 0 \"float v11\" 1\n"
-      "Shape \"plymesh\" \"string filename\" \"square.ply\" \"texture displacement\" \"ramp\" \"float edgelength\" "
-      "0.1\n",
+      R"(Texture "ramp" "float" "bilerp" "float v00" 0 "float v10" 1 "float v01" 0 "float v11" 1
+Shape "plymesh" "string filename" "square.ply" "texture displacement" "ramp" "float edgelength" 0.1
+)",
       "", folder.path().string());
   const auto at = test::look(scene, {0.3f, 0.6f, 5}, {0, 0, -1});
   ASSERT_TRUE(at);
@@ -125,10 +125,12 @@ TEST(Displacement, RefusesTooManyTrianglesInAll) {
   dir.write("a.ply",
             "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
             "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
-  std::string text = "Texture \"t\" \"float\" \"fbm\"\n";
+  std::string text = R"(Texture "t" "float" "fbm"
+)";
   for (int i = 0; i < 6; ++i)  // 13 million triangles each
     text +=
-        "Shape \"plymesh\" \"string filename\" \"a.ply\" \"texture displacement\" \"t\" \"float edgelength\" 0.0003\n";
+        R"(Shape "plymesh" "string filename" "a.ply" "texture displacement" "t" "float edgelength" 0.0003
+)";
   EXPECT_EQ(test::error_text([&] { test::world(text, "", dir.path().string()); }),
             "test scene:10:1: the scene's displacements make more than 67 million triangles together");
 }

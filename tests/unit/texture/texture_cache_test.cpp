@@ -249,17 +249,23 @@ TEST(TextureMemory, KeepsSmallImagesAndAllIfTheyFit) {
 
 // A floor that extends far away, with a fine checkerboard.
 std::string floor_of(const std::string& image) {
-  return "LightSource \"infinite\" \"float scale\" 1\nTexture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"" +
+  return R"(LightSource "infinite" "float scale" 1
+Texture "t" "spectrum" "imagemap" "string filename" ")" +
          image +
-         "\"\nMaterial \"diffuse\" \"texture reflectance\" \"t\"\nShape \"trianglemesh\" \"point3 P\" [-50 -1 0  50 -1 "
-         "0 "
-         " 50 -1 100  -50 -1 100] \"point2 uv\" [0 0 8 0 8 8 0 8] \"integer indices\" [0 1 2 0 2 3]\n";
+         R"("
+Material "diffuse" "texture reflectance" "t"
+Shape "trianglemesh" "point3 P" [-50 -1 0  50 -1 0  50 -1 100  -50 -1 100] "point2 uv" [0 0 8 0 8 8 0 8] "integer indices" [0 1 2 0 2 3]
+)";
 }
-const std::string mirror = "Material \"conductor\"\nTranslate 0 0 6 Shape \"sphere\" \"float radius\" 1\n";
+const std::string mirror = R"(Material "conductor"
+Translate 0 0 6 Shape "sphere" "float radius" 1
+)";
 
 SceneDescription described(const std::string& image, std::uint64_t memory, const std::string& more = {}) {
   const std::string head =
-      "Camera \"perspective\" \"float fov\" 60\nFilm \"rgb\" \"integer xresolution\" 40 \"integer yresolution\" 30\n";
+      R"(Camera "perspective" "float fov" 60
+Film "rgb" "integer xresolution" 40 "integer yresolution" 30
+)";
   SceneDescription scene = read_pbrt_string(head + "WorldBegin\n" + floor_of(image) + more, ".", "floor");
   scene.access.texture_memory = memory;
   return scene;
@@ -345,10 +351,13 @@ TEST_F(TextureCaches, FootprintsGoOnBehindTheBoundsOfMedia) {
     session.render({.passes = {0, 1}});
     return select_layer(session.picture(), "albedo")->pixels;
   };
-  const std::string air = "MakeNamedMedium \"air\" \"string type\" \"homogeneous\" \"float scale\" 1e-6\n";
+  const std::string air = R"(MakeNamedMedium "air" "string type" "homogeneous" "float scale" 1e-6
+)";
   const std::vector<float> direct = albedo("");
-  const std::vector<float> behind =
-      albedo(air + "MediumInterface \"air\" \"\"\nMaterial \"interface\"\nShape \"sphere\"\n");
+  const std::vector<float> behind = albedo(air + R"(MediumInterface "air" ""
+Material "interface"
+Shape "sphere"
+)");
   ASSERT_EQ(behind.size(), direct.size());
   for (std::size_t i = 0; i < direct.size(); ++i) EXPECT_NEAR(behind[i], direct[i], .01f) << i;
 }

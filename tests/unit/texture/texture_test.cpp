@@ -49,7 +49,7 @@ struct Textures {
 };
 
 std::string texture(const std::string& kind, const std::string& parameters, const std::string& type = "float") {
-  return "Texture \"" + type + kind + "\" \"" + type + "\" \"" + kind + "\" " + parameters + "\n";
+  return "Texture \"" + type + kind + R"(" ")" + type + R"(" ")" + kind + "\" " + parameters + "\n";
 }
 
 Point random_point(HashRng& rng, float size) {
@@ -59,8 +59,10 @@ Point random_point(HashRng& rng, float size) {
 
 // s and t of a mapping, by bilinear textures that return them.
 Vec2 mapped(const std::string& mapping, const TexturePoint& at, const std::string& before = "") {
-  Textures textures(before + "Texture \"s\" \"float\" \"bilerp\" \"float v01\" 0 \"float v10\" 1 \"string mapping\" " +
-                    mapping + "\nTexture \"t\" \"float\" \"bilerp\" \"string mapping\" " + mapping);
+  Textures textures(before + R"(Texture "s" "float" "bilerp" "float v01" 0 "float v10" 1 "string mapping" )" + mapping +
+                    R"(
+Texture "t" "float" "bilerp" "string mapping" )" +
+                    mapping);
   return {textures.value(at, 0), textures.value(at, 1)};
 }
 
@@ -72,41 +74,41 @@ void expect_near(const Vec2& got, const Vec2& expected) {
 TexturePoint at_point(const Point& p) { return {p, {0, 0, 1}, {0.1f, 0.2f}}; }
 
 TEST(TextureMappings, Uv) {
-  expect_near(mapped("\"uv\"", at_point({7, 8, 9})), {0.1f, 0.2f});
-  expect_near(mapped("\"uv\" \"float uscale\" 3 \"float vscale\" -1 \"float udelta\" .5 \"float vdelta\" 2",
-                     at_point({7, 8, 9})),
-              {0.8f, 1.8f});
+  expect_near(mapped(R"("uv")", at_point({7, 8, 9})), {0.1f, 0.2f});
+  expect_near(
+      mapped(R"("uv" "float uscale" 3 "float vscale" -1 "float udelta" .5 "float vdelta" 2)", at_point({7, 8, 9})),
+      {0.8f, 1.8f});
 }
 
 TEST(TextureMappings, Spherical) {
-  expect_near(mapped("\"spherical\"", at_point({0, 0, 4})), {0, 0});
-  expect_near(mapped("\"spherical\"", at_point({0, 0, -4})), {1, 0});
-  expect_near(mapped("\"spherical\"", at_point({3, 0, 0})), {0.5f, 0});
-  expect_near(mapped("\"spherical\"", at_point({0, 3, 0})), {0.5f, 0.25f});
-  expect_near(mapped("\"spherical\"", at_point({-3, 0, 3})), {0.25f, 0.5f});
-  expect_near(mapped("\"spherical\"", at_point({0, -3, -3})), {0.75f, 0.75f});
+  expect_near(mapped(R"("spherical")", at_point({0, 0, 4})), {0, 0});
+  expect_near(mapped(R"("spherical")", at_point({0, 0, -4})), {1, 0});
+  expect_near(mapped(R"("spherical")", at_point({3, 0, 0})), {0.5f, 0});
+  expect_near(mapped(R"("spherical")", at_point({0, 3, 0})), {0.5f, 0.25f});
+  expect_near(mapped(R"("spherical")", at_point({-3, 0, 3})), {0.25f, 0.5f});
+  expect_near(mapped(R"("spherical")", at_point({0, -3, -3})), {0.75f, 0.75f});
   // The CTM at the texture's definition defines texture space.
-  expect_near(mapped("\"spherical\"", at_point({5, 6, 4}), "Translate 5 6 1 Rotate 90 0 1 0\n"), {0.5f, 0.5f});
+  expect_near(mapped(R"("spherical")", at_point({5, 6, 4}), "Translate 5 6 1 Rotate 90 0 1 0\n"), {0.5f, 0.5f});
 }
 
 TEST(TextureMappings, Cylindrical) {
-  expect_near(mapped("\"cylindrical\"", at_point({2, 0, -1.5f})), {0.5f, -1.5f});
-  expect_near(mapped("\"cylindrical\"", at_point({0, 2, 7})), {0.75f, 7});
-  expect_near(mapped("\"cylindrical\"", at_point({0, -2, 0})), {0.25f, 0});
-  expect_near(mapped("\"cylindrical\"", at_point({-1, 1, 0})), {0.875f, 0});
-  expect_near(mapped("\"cylindrical\"", at_point({4, 0, 3}), "Translate 2 0 1 Scale 1 1 4\n"), {0.5f, 0.5f});
+  expect_near(mapped(R"("cylindrical")", at_point({2, 0, -1.5f})), {0.5f, -1.5f});
+  expect_near(mapped(R"("cylindrical")", at_point({0, 2, 7})), {0.75f, 7});
+  expect_near(mapped(R"("cylindrical")", at_point({0, -2, 0})), {0.25f, 0});
+  expect_near(mapped(R"("cylindrical")", at_point({-1, 1, 0})), {0.875f, 0});
+  expect_near(mapped(R"("cylindrical")", at_point({4, 0, 3}), "Translate 2 0 1 Scale 1 1 4\n"), {0.5f, 0.5f});
 }
 
 TEST(TextureMappings, Planar) {
-  expect_near(mapped("\"planar\"", at_point({0.3f, 0.4f, 9})), {0.3f, 0.4f});
-  expect_near(mapped("\"planar\" \"vector3 v1\" [0 0 2] \"vector3 v2\" [1 1 0] \"float udelta\" 1 \"float vdelta\" -2",
+  expect_near(mapped(R"("planar")", at_point({0.3f, 0.4f, 9})), {0.3f, 0.4f});
+  expect_near(mapped(R"("planar" "vector3 v1" [0 0 2] "vector3 v2" [1 1 0] "float udelta" 1 "float vdelta" -2)",
                      at_point({0.3f, 0.4f, 0.5f})),
               {2, -1.3f});
-  expect_near(mapped("\"planar\"", at_point({0, 5, 0}), "Rotate 90 0 0 1 Scale 2 2 2\n"), {2.5f, 0});
+  expect_near(mapped(R"("planar")", at_point({0, 5, 0}), "Rotate 90 0 0 1 Scale 2 2 2\n"), {2.5f, 0});
 }
 
 TEST(ProceduralTextures, BilerpInterpolatesAndExtrapolates) {
-  Textures t(texture("bilerp", "\"float v00\" 1 \"float v10\" 2 \"float v01\" 5 \"float v11\" 10"));
+  Textures t(texture("bilerp", R"("float v00" 1 "float v10" 2 "float v01" 5 "float v11" 10)"));
   EXPECT_FLOAT_EQ(t.value(Vec2(0, 0)), 1);
   EXPECT_FLOAT_EQ(t.value(Vec2(1, 0)), 2);
   EXPECT_FLOAT_EQ(t.value(Vec2(0, 1)), 5);
@@ -114,7 +116,7 @@ TEST(ProceduralTextures, BilerpInterpolatesAndExtrapolates) {
   EXPECT_FLOAT_EQ(t.value(Vec2(0.25f, 0.5f)), 0.5f * (1.25f + 6.25f));
   EXPECT_FLOAT_EQ(t.value(Vec2(2, 0)), 3);
   Textures s(
-      texture("bilerp", "\"rgb v00\" [1 0 0] \"rgb v10\" [0 1 0] \"rgb v01\" [0 0 1] \"rgb v11\" [0 0 0]", "spectrum"));
+      texture("bilerp", R"("rgb v00" [1 0 0] "rgb v10" [0 1 0] "rgb v01" [0 0 1] "rgb v11" [0 0 0])", "spectrum"));
   const Rgb c = s.colour({Point(0), {0, 0, 1}, {0.25f, 0.5f}});
   EXPECT_NEAR(c.r, 0.375f, 1e-6f);
   EXPECT_NEAR(c.g, 0.125f, 1e-6f);
@@ -122,8 +124,7 @@ TEST(ProceduralTextures, BilerpInterpolatesAndExtrapolates) {
 }
 
 TEST(ProceduralTextures, DirectionMixFollowsTheGeometricNormal) {
-  Textures t("Rotate 90 1 0 0\n" +
-             texture("directionmix", "\"float tex1\" 2 \"float tex2\" 6 \"vector3 dir\" [0 3 0]"));
+  Textures t("Rotate 90 1 0 0\n" + texture("directionmix", R"("float tex1" 2 "float tex2" 6 "vector3 dir" [0 3 0])"));
   const auto value = [&](const Normal& n) { return t.value(TexturePoint{Point(0), n, Vec2(0)}); };
   EXPECT_NEAR(value({0, 0, 1}), 2, 1e-5f);  // y in texture space
   EXPECT_NEAR(value({0, 0, -1}), 2, 1e-5f);
@@ -133,7 +134,7 @@ TEST(ProceduralTextures, DirectionMixFollowsTheGeometricNormal) {
 
 // In pbrt, the dots take the value "outside".
 TEST(ProceduralTextures, DotsLieInTheCellsThatNoiseChooses) {
-  Textures t(texture("dots", "\"float outside\" 1 \"float inside\" 0"));
+  Textures t(texture("dots", R"("float outside" 1 "float inside" 0)"));
   constexpr int cells = 40, steps = 30;
   int with_dot = 0;
   for (int i = 0; i < cells * cells; ++i) {
@@ -160,7 +161,7 @@ TEST(ProceduralTextures, DotsLieInTheCellsThatNoiseChooses) {
 
 TEST(ProceduralTextures, NoiseLivesInTextureSpace) {
   const std::string space = "Translate 1 2 3 Scale 2 2 2\n";
-  Textures wrinkled(space + texture("wrinkled", "\"integer octaves\" 5 \"float roughness\" .4"));
+  Textures wrinkled(space + texture("wrinkled", R"("integer octaves" 5 "float roughness" .4)"));
   Textures brownian(space + texture("fbm", ""));
   Textures windy(space + texture("windy", ""));
   HashRng rng(5);
@@ -174,7 +175,7 @@ TEST(ProceduralTextures, NoiseLivesInTextureSpace) {
 }
 
 TEST(ProceduralTextures, MarbleIsASplineThroughVeins) {
-  Textures plain(texture("marble", "\"float variation\" 0", "spectrum"));
+  Textures plain(texture("marble", R"("float variation" 0)", "spectrum"));
   const auto at_phase = [&](float t) { return plain.colour(at_point({3, std::asin(2 * t - 1), 5})); };
   const auto expect_rgb = [](const Rgb& got, double r, double g, double b) {
     EXPECT_NEAR(got.r, r, 2e-5);
@@ -187,7 +188,7 @@ TEST(ProceduralTextures, MarbleIsASplineThroughVeins) {
   const float middle = 11.0f / 12;
   expect_rgb(at_phase(middle), 1.5 * (0.58 + 3 * 0.58 + 3 * 0.2 + 0.58) / 8, 1.5 * (5 * 0.58 + 3 * 0.2) / 8,
              1.5 * (5 * 0.6 + 3 * 0.33) / 8);
-  Textures veined(texture("marble", "\"float variation\" .7 \"float scale\" 2 \"integer octaves\" 3", "spectrum"));
+  Textures veined(texture("marble", R"("float variation" .7 "float scale" 2 "integer octaves" 3)", "spectrum"));
   HashRng rng(6);
   for (int i = 0; i < 50; ++i) {
     const Point p = random_point(rng, 4);
@@ -200,10 +201,12 @@ TEST(ProceduralTextures, MarbleIsASplineThroughVeins) {
 
 TEST(ProceduralTextures, Nest) {
   Textures t(
-      "Texture \"a\" \"float\" \"fbm\"\nTexture \"b\" \"float\" \"bilerp\"\n"
-      "Texture \"c\" \"float\" \"dots\" \"texture outside\" \"a\" \"texture inside\" \"b\"\n"
-      "Texture \"d\" \"float\" \"checkerboard\" \"string mapping\" \"planar\" \"texture tex1\" \"c\" \"float tex2\" 9\n"
-      "Texture \"e\" \"float\" \"mix\" \"texture tex1\" \"d\" \"texture tex2\" \"b\" \"texture amount\" \"b\"\n");
+      R"(Texture "a" "float" "fbm"
+Texture "b" "float" "bilerp"
+Texture "c" "float" "dots" "texture outside" "a" "texture inside" "b"
+Texture "d" "float" "checkerboard" "string mapping" "planar" "texture tex1" "c" "float tex2" 9
+Texture "e" "float" "mix" "texture tex1" "d" "texture tex2" "b" "texture amount" "b"
+)");
   HashRng rng(7);
   for (int i = 0; i < 50; ++i) {
     TexturePoint at = at_point(random_point(rng, 3));
@@ -269,9 +272,9 @@ TEST_F(ImageTextures, AxesWrapByThemselves) {
 TEST_F(ImageTextures, ColoursAreConvertedAndNumbersAreNot) {
   const Image image = test::colour_of_one_pixel(0.5f, 0.2f, 0.1f);
   folder.write("c.exr", test::exr_of(image, test::acescg));
-  const std::string file = "\"string filename\" \"c.exr\"", inverted = file + " \"bool invert\" true";
+  const std::string file = R"("string filename" "c.exr")", inverted = file + R"( "bool invert" true)";
   Textures t(texture("imagemap", file, "spectrum") + texture("imagemap", file) +
-                 "Texture \"inverted\" \"spectrum\" \"imagemap\" " + inverted + "\n",
+                 R"(Texture "inverted" "spectrum" "imagemap" )" + inverted + "\n",
              folder.path());
   const TexturePoint at = at_point({0, 0, 0});
   const Rgb c = t.colour(at), inverse = t.colour(at, 1);
@@ -329,9 +332,9 @@ TEST_F(ImageTextures, OctahedralSphereFoldsAtItsEdges) {
   std::vector<float> texels(16);
   for (std::size_t i = 0; i < 16; ++i) texels[i] = static_cast<float>(i);
   write("o.exr", 4, 4, 1, texels);
-  Textures t(texture("imagemap",
-                     "\"string filename\" \"o.exr\" \"string wrap\" \"octahedralsphere\" \"string filter\" \"point\""),
-             folder.path());
+  Textures t(
+      texture("imagemap", R"("string filename" "o.exr" "string wrap" "octahedralsphere" "string filter" "point")"),
+      folder.path());
   const auto at_texel = [&](int column, int row) {
     return static_cast<int>(
         t.value(Vec2((static_cast<float>(column) + 0.5f) / 4, 1 - (static_cast<float>(row) + 0.5f) / 4)));
@@ -351,12 +354,13 @@ TEST_F(ImageTextures, OctahedralSphereFoldsAtItsEdges) {
 // Textures t0 to t<last>, each of which refers to the previous one once (chain) or twice (doubling). Line i + 2 defines
 // texture i.
 std::string chain(const std::string& kind, const std::string& inputs, int last, const std::string& type) {
-  std::string text = "Texture \"t0\" \"" + type + "\" \"bilerp\"\n";
+  std::string text = R"(Texture "t0" ")" + type + R"(" "bilerp"
+)";
   for (int i = 1; i <= last; ++i) {
-    text += "Texture \"t" + std::to_string(i) + "\" \"" + type + "\" \"" + kind + "\"";
+    text += "Texture \"t" + std::to_string(i) + R"(" ")" + type + R"(" ")" + kind + "\"";
     for (std::size_t at = 0; at < inputs.size();) {
       const std::size_t end = std::min(inputs.find(' ', at), inputs.size());
-      text += " \"texture " + inputs.substr(at, end - at) + "\" \"t" + std::to_string(i - 1) + "\"";
+      text += " \"texture " + inputs.substr(at, end - at) + R"(" "t)" + std::to_string(i - 1) + "\"";
       at = end + 1;
     }
     text += "\n";
@@ -419,7 +423,7 @@ TEST(TextureGraph, RefusesDoublingChains) {
   // Each octave of noise counts.
   std::string noise = chain("mix", "tex1 tex2", 8, "float");
   EXPECT_EQ(error_of_last(noise), "no error");
-  noise.replace(noise.find("\"bilerp\""), 8, "\"fbm\" \"integer octaves\" 24");
+  noise.replace(noise.find(R"("bilerp")"), 8, R"("fbm" "integer octaves" 24)");
   EXPECT_EQ(error_of_last(noise), "t.pbrt:8" + message);
 }
 
@@ -437,14 +441,15 @@ TEST(TextureGraph, RefusesTexturesThatNameThemselves) {
 
 TEST_F(ImageTextures, OfUnusedMaterialsAreNotRead) {
   const std::string missing =
-      "Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"missing.png\"\n"
-      "MakeNamedMaterial \"a\" \"string type\" \"diffuse\" \"texture reflectance\" \"t\"\n"
-      "MakeNamedMaterial \"b\" \"string type\" \"diffuse\"\n"
-      "MakeNamedMaterial \"ab\" \"string type\" \"mix\" \"string materials\" [\"a\" \"b\"]\n";
-  EXPECT_NO_THROW(test::world(missing + "NamedMaterial \"b\" Shape \"sphere\""));
-  EXPECT_THROW(test::world(missing + "NamedMaterial \"a\" Shape \"sphere\""), Error);
-  EXPECT_THROW(test::world(missing + "NamedMaterial \"ab\" Shape \"sphere\""), Error);
-  EXPECT_THROW(test::world(missing + "ObjectBegin \"o\" NamedMaterial \"a\" Shape \"sphere\" ObjectEnd"), Error);
+      R"(Texture "t" "spectrum" "imagemap" "string filename" "missing.png"
+MakeNamedMaterial "a" "string type" "diffuse" "texture reflectance" "t"
+MakeNamedMaterial "b" "string type" "diffuse"
+MakeNamedMaterial "ab" "string type" "mix" "string materials" ["a" "b"]
+)";
+  EXPECT_NO_THROW(test::world(missing + R"(NamedMaterial "b" Shape "sphere")"));
+  EXPECT_THROW(test::world(missing + R"(NamedMaterial "a" Shape "sphere")"), Error);
+  EXPECT_THROW(test::world(missing + R"(NamedMaterial "ab" Shape "sphere")"), Error);
+  EXPECT_THROW(test::world(missing + R"(ObjectBegin "o" NamedMaterial "a" Shape "sphere" ObjectEnd)"), Error);
 }
 
 TEST_F(ImageTextures, AreReadOnceEachAndTheFirstProblemIsTold) {
@@ -452,7 +457,7 @@ TEST_F(ImageTextures, AreReadOnceEachAndTheFirstProblemIsTold) {
   write("two.exr", 1, 1, 1, {0.75f});
   std::string text;
   for (int i = 0; i < 20; ++i)
-    text += "Texture \"t" + std::to_string(i) + "\" \"float\" \"imagemap\" \"string filename\" \"" +
+    text += "Texture \"t" + std::to_string(i) + R"(" "float" "imagemap" "string filename" ")" +
             (i % 2 == 0 ? "one.exr\"\n" : "two.exr\"\n");
   Textures t(text, folder.path());
   EXPECT_EQ(t.graph.image_count(), 2u);
@@ -460,7 +465,7 @@ TEST_F(ImageTextures, AreReadOnceEachAndTheFirstProblemIsTold) {
   EXPECT_FLOAT_EQ(t.value(at_point(Point(0)), 6), 0.25f);
   EXPECT_FLOAT_EQ(t.value(at_point(Point(0)), 7), 0.75f);
   for (int i = 0; i < 8; ++i)
-    text += "Texture \"m" + std::to_string(i) + "\" \"float\" \"imagemap\" \"string filename\" \"missing" +
+    text += "Texture \"m" + std::to_string(i) + R"(" "float" "imagemap" "string filename" "missing)" +
             std::to_string(i) + ".exr\"\n";
   for (int run = 0; run < 5; ++run) {
     const std::string error = test::error_text([&] { Textures broken(text, folder.path()); });

@@ -41,7 +41,9 @@ Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-1 0 -1  1 0 -1
 
 // A picture does not start with the coloured noise of dispersive glass.
 TEST(FrameSettings, FirstFramesAreWithoutDispersion) {
-  const Scene scene = test::scene_from_text("WorldBegin\nShape \"sphere\"\n");
+  const Scene scene = test::scene_from_text(R"(WorldBegin
+Shape "sphere"
+)");
   const View view = make_view(scene.description().view);
   const RealtimeSettings settings = realtime_settings(scene, view, {});
   EXPECT_FALSE(frame_settings(settings, view, 0).disperses);

@@ -155,10 +155,11 @@ TEST(EditedScene, LightsGoOffAndOnAgain) {
 
 TEST(EditedScene, StrengthMultipliesLightsOnceHoweverTheirMagnitudeIsGiven) {
   const SharedScene original = scene_of(
-      "WorldBegin LightSource \"point\" \"float power\" 10 \"float scale\" 3\n"
-      "LightSource \"distant\" \"float illuminance\" 5\n"
-      "LightSource \"infinite\" \"float illuminance\" 5\n"
-      "AttributeBegin AreaLightSource \"diffuse\" \"float power\" 7 Shape \"sphere\" AttributeEnd\n");
+      R"(WorldBegin LightSource "point" "float power" 10 "float scale" 3
+LightSource "distant" "float illuminance" 5
+LightSource "infinite" "float illuminance" 5
+AttributeBegin AreaLightSource "diffuse" "float power" 7 Shape "sphere" AttributeEnd
+)");
   EditedScene scene(original);
   ASSERT_EQ(scene.lights().size(), 4u);
   for (std::size_t i = 0; i < scene.lights().size(); ++i) {

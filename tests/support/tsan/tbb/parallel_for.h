@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Replaces TBB's headers in builds for ThreadSanitizer, and implements the functions that parallel.cpp and parallel_sort.h need with plain
-// threads. Debian's TBB is not compiled for ThreadSanitizer, which therefore cannot see the order in which TBB runs
-// tasks and would report false races. Nested loops run on one thread.
+// Replaces TBB's headers in builds for ThreadSanitizer, and implements the functions that parallel.cpp and
+// parallel_sort.h need with plain threads. Debian's TBB is not compiled for ThreadSanitizer, which therefore cannot see
+// the order in which TBB runs tasks and would report false races. Nested loops run on one thread.
 #pragma once
 
 #include <algorithm>
