@@ -17,7 +17,8 @@
 
 namespace lanthorn {
 
-/// Members that only other versions of the program know, as JSON text by name. They are compared and passed on.
+/// Members of the record or the identity that only other versions of the program know, as JSON text by name. They are
+/// compared and passed on.
 using OtherMembers = std::map<std::string, std::string>;
 
 /// Everything that decides the picture. States can be resumed or merged only if their identities are equal.

@@ -95,7 +95,7 @@ View make_view(const ViewDescription& description, const ViewOptions& options) {
   view.window = view.crop.grown(std::max(0, options.margin), resolution[0], resolution[1]);
   if (film.white_balance) view.sensor.balance = white_balance(*film.white_balance, film.color_space);
   view.sensor.largest_component = film.largest_component;
-  if (options.clamp && !(*options.clamp > 0))
+  if (options.clamp && !(*options.clamp > 0 && std::isfinite(*options.clamp)))
     throw Error(fmt::format("--clamp {}: expected a number above 0", *options.clamp));
   view.sensor.path_limit = options.clamp;
   const auto pixels =

@@ -59,20 +59,25 @@ End eye_end(const Bidirectional& pass, const SurfaceVertex& v, const Direction& 
           value.pdf,
           is_dispersive(v.at.bsdf)};
 }
-End eye_end(const Bidirectional&, const MediumVertex& v, const Direction& direction, const FlightDensity& flight) {
-  const float p = phase(v.phase, v.wi, direction);
-  return {in_medium(flight, v.wi, direction, p), Spectrum(p), p, false};
+// In a medium, both densities of the phase function are the same.
+End end_in_medium(const HenyeyGreenstein& medium, const Direction& wi, const Direction& direction,
+                  const FlightDensity& flight) {
+  const float p = phase(medium, wi, direction);
+  return {in_medium(flight, wi, direction, p), Spectrum(p), p, false};
 }
+End eye_end(const Bidirectional&, const MediumVertex& v, const Direction& direction, const FlightDensity& flight) {
+  return end_in_medium(v.phase, v.wi, direction, flight);
+}
+// Photons straight from a light are not merged: next-event estimation finds their light.
 End light_end(const Bidirectional& pass, const LightVertex& v, const Direction& direction) {
-  if (v.phase) {
-    const float p = phase(*v.phase, v.wi, direction);
-    return {in_medium(v.flight, v.wi, direction, p), Spectrum(p), p, false};
-  }
+  if (v.phase) return end_in_medium(*v.phase, v.wi, direction, v.flight);
   const Vec3 wo = v.at.shading.to_local(direction);
   const BsdfValue value = evaluate(v.at.bsdf, v.wi_local, wo, Transport::importance);
   if (value.f.is_black()) return {};
-  return {{area_cosine(v.at, direction), value.pdf_reverse, v.depth > 1 ? pass.merging_at(v.at) : 0.0f, v.flight},
-          value.f * (geometric_cosine(v.at, direction) * shading_flux_ratio(v.at, v.wi, v.wi_local)),
+  const float merging = v.depth > 1 ? pass.merging_at(v.at) : 0.0f;
+  const float flux_cosine = geometric_cosine(v.at, direction) * shading_flux_ratio(v.at, v.wi, v.wi_local);
+  return {{area_cosine(v.at, direction), value.pdf_reverse, merging, v.flight},
+          value.f * flux_cosine,
           value.pdf,
           is_dispersive(v.at.bsdf) && !v.has_own_dispersion};
 }

@@ -240,9 +240,9 @@ class RecordReader {
   template <std::floating_point T>
   void read(const json& from, const std::string& path, T& to) const {
     constexpr double most = std::numeric_limits<T>::max();
-    const bool is_none = from.is_null();  // written for infinities and for what is not a number
+    const bool is_none = from.is_null();  // written for infinities, and equal to itself when read
     require(is_none || (from.is_number() && from >= -most && from <= most), "a number", path);
-    to = is_none ? std::numeric_limits<T>::quiet_NaN() : from.get<T>();
+    to = is_none ? std::numeric_limits<T>::infinity() : from.get<T>();
   }
   template <Enumeration T>
   void read(const json& from, const std::string& path, T& to) const {

@@ -10,11 +10,14 @@
 #include <memory>
 #include <optional>
 #include <random>
+#include <ranges>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "lanthorn/error.h"
+#include "lanthorn/plain_data.h"
 #include "scene/media.h"
 #include "scene/scene_data.h"
 #include "scene/scene_memory.h"
@@ -45,11 +48,53 @@ bool have_same_surfaces(const SceneDescription& a, const SceneDescription& b) {
          is_same(a.area_lights, b.area_lights);
 }
 
-// True if the descriptions differ at most in what the identity of a scene's states contains besides its hash.
+bool have_same_shapes(const SceneDescription& a, const SceneDescription& b) {
+  return is_same(a.shapes, b.shapes) && is_same(a.objects, b.objects) && is_same(a.instances, b.instances);
+}
+
+// True if nothing but `replace_environment` has changed the scene's own lights.
+bool has_own_lamps(const SceneDescription& scene) {
+  const auto is_lamp = [](const description::Light& light) {
+    return !std::holds_alternative<description::InfiniteLight>(light.node);
+  };
+  return std::ranges::equal(scene.lights.entries() | std::views::filter(is_lamp),
+                            own_lights(scene).entries() | std::views::filter(is_lamp));
+}
+
+// A number that tells views apart.
+std::uint64_t hash_of(const ViewDescription& view) {
+  plain::Reader reader;
+  ViewDescription copy;
+  plain::read(reader, plain::write(view), copy);
+  return reader.hash;
+}
+
+// True if the descriptions differ at most in what the identity of a scene's states contains besides its hash: the
+// environment.
 bool are_same_scene(const SceneDescription& a, const SceneDescription& b) {
-  const bool have_same_lights =
-      is_same(a.lights, b.lights) || (!(a.environment == b.environment) && is_same(own_lights(a), own_lights(b)));
-  return have_same_surfaces(a, b) && is_same(a.media, b.media) && is_same(a.instances, b.instances) && have_same_lights;
+  const bool differ_in_environment = !(a.environment == b.environment) && is_same(own_lights(a), own_lights(b)) &&
+                                     has_own_lamps(a) && has_own_lamps(b);
+  return have_same_surfaces(a, b) && have_same_shapes(a, b) && is_same(a.media, b.media) &&
+         (is_same(a.lights, b.lights) || differ_in_environment) && a.color_space == b.color_space &&
+         hash_of(a.view) == hash_of(b.view);
+}
+
+// True if one description is a copy of the other in which something may have changed. One that was read anew shares
+// nothing.
+bool is_copy(const SceneDescription& a, const SceneDescription& b) {
+  const auto is_shared = [](const auto& x, const auto& y) { return !x.empty() && is_same(x, y); };
+  return is_shared(a.shapes, b.shapes) || is_shared(a.objects, b.objects) || is_shared(a.materials, b.materials) ||
+         is_shared(a.lights, b.lights) || is_shared(a.instances, b.instances);
+}
+
+// Images of the previous scene are found by their place in these tables.
+bool have_same_files_inside(const SceneDescription& a, const SceneDescription& b) {
+  const auto is_equal = [](const description::EmbeddedImage& x, const description::EmbeddedImage& y) {
+    return x.bytes == y.bytes;
+  };
+  return is_same(a.measured_brdfs, b.measured_brdfs) &&
+         (is_same(a.embedded_images, b.embedded_images) ||
+          std::ranges::equal(a.embedded_images.entries(), b.embedded_images.entries(), is_equal));
 }
 
 BoundingSphere bounding_sphere(const Bounds& box) {
@@ -92,8 +137,7 @@ class SceneBuilder {
   // States of an edited scene must not be taken for those of the scene that it comes from.
   void settle_hash() {
     data_->given_hash = now_.hash;
-    const bool is_of_previous = previous_ != nullptr && is_same(now_.shapes, before_->shapes) &&
-                                is_same(now_.objects, before_->objects) &&
+    const bool is_of_previous = previous_ != nullptr && is_copy(now_, *before_) &&
                                 (now_.hash == before_->hash || now_.hash == previous_->given_hash);
     if (!is_of_previous) return;
     data_->given_hash = previous_->given_hash;
@@ -141,18 +185,24 @@ class SceneBuilder {
     return {};
   }
   bool has_moved(const PlacedInstance& p) const { return !moved_.empty() && p.instance && moved_[*p.instance]; }
-  // Records of surfaces hold some traits of their materials.
+  // Records of surfaces hold some traits of their materials; an interface between equal media has no record.
   std::optional<Error> reason_in_traits() const {
     if (!new_materials_) return {};
-    for (const GeometryRecord& record : previous_->geometry->records()) {
-      const MaterialTraits& now = new_materials_->table.traits(record.material);
-      const MaterialTraits& then = previous_->materials->table.traits(record.material);
-      if (now.is_interface != then.is_interface || now.interior != then.interior || now.is_hair != then.is_hair)
-        return Error(now_.materials[record.material].location,
-                     "this edit would change where surfaces and media are (an interface, a medium inside, or hair): "
-                     "build the scene again");
-    }
+    for (const description::Shape& shape : now_.shapes)
+      if (auto reason = reason_in_material(shape.material)) return reason;
+    for (const description::Object& object : now_.objects)
+      for (const description::Shape& shape : object.shapes)
+        if (auto reason = reason_in_material(shape.material)) return reason;
     return {};
+  }
+  std::optional<Error> reason_in_material(description::Index material) const {
+    const MaterialTraits& now = new_materials_->table.traits(material);
+    const MaterialTraits& then = previous_->materials->table.traits(material);
+    if (now.is_interface == then.is_interface && now.interior == then.interior && now.is_hair == then.is_hair)
+      return {};
+    return Error(now_.materials[material].location,
+                 "this edit would change where surfaces and media are (an interface, a medium inside, or hair): build "
+                 "the scene again");
   }
   // `reason`: why they are needed.
   void require_meshes(const Error& reason) {
@@ -165,7 +215,8 @@ class SceneBuilder {
       data_->materials = previous_->materials;
       return;
     }
-    new_materials_ = std::make_shared<MaterialPart>(now_, previous_ != nullptr ? previous_->materials.get() : nullptr);
+    const bool shares_images = previous_ != nullptr && have_same_files_inside(now_, *before_);
+    new_materials_ = std::make_shared<MaterialPart>(now_, shares_images ? previous_->materials.get() : nullptr);
     data_->materials = new_materials_;
   }
 
@@ -224,6 +275,7 @@ class SceneBuilder {
   bool may_share_lights() const {
     return previous_ != nullptr && data_->shapes == previous_->shapes && data_->placed == previous_->placed &&
            data_->media == previous_->media && have_same_textures(now_, *before_) &&
+           (data_->materials == previous_->materials || data_->media->all.empty()) &&  // which media surround lights
            is_same(now_.area_lights, before_->area_lights) && is_same(now_.lights, before_->lights) &&
            now_.color_space == before_->color_space && now_.view.camera.medium == before_->view.camera.medium;
   }

@@ -27,6 +27,8 @@ void find_media_under_surfaces(SceneData& data) {
   float albedo = 0;
   for (const description::Material& material : std::as_const(data.description).materials) {
     if (!material.interior) continue;
+    if (*material.interior >= data.media->all.size())
+      throw Error(material.location, "the medium inside the material does not exist");
     data.is_under_surface.resize(data.media->all.size());
     data.is_under_surface[*material.interior] = true;
     albedo = std::max(albedo, largest_albedo(data.media->all[*material.interior]));

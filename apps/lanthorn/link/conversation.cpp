@@ -158,7 +158,8 @@ LinkAnswer Conversation::start(const Dict& request) {
                std::pair("denoise", &settings.denoises));
   const RenderOptions options = options_in(request);
   render_.reset();
-  render_ = std::make_unique<InteractiveRender>(scene_.build(), scene_.view(), options, settings);
+  SharedScene scene = scene_.build();  // throws if there is none
+  render_ = std::make_unique<InteractiveRender>(std::move(scene), scene_.view(), options, settings);
   return {{{"warnings", texts_of(render_->warnings())}}};
 }
 

@@ -101,7 +101,7 @@ RenderEdit LinkedScene::update(const Value* set, const Value* remove) {
   if (!is_partial) description_ = PartialDescription(data_of(parts));
   parts_ = std::move(parts);
   // Image files may have changed since the last scene read them.
-  if (changed.contains("float_textures") || changed.contains("spectrum_textures"))
+  if (!is_partial || changed.contains("float_textures") || changed.contains("spectrum_textures"))
     scene_ = std::make_shared<SharedScene>();
   RenderEdit edit{.view = view()};
   if (!is_partial || !std::all_of(changed.begin(), changed.end(), &is_of_view))

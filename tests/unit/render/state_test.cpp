@@ -350,6 +350,15 @@ TEST(State, RecordsOfEarlierVersionsAreRead) {
   EXPECT_EQ(read.findings->variance, 3.5);
 }
 
+// JSON has no infinity: files have null instead.
+TEST(State, InfiniteNumbersOfARecordEqualThemselves) {
+  RenderRecord record = read_record(header()["settings"], "a.state");
+  record.identity.filter.radius.x = std::numeric_limits<float>::infinity();
+  const RenderRecord read = read_record(settings_text(record), "a.state");
+  EXPECT_EQ(identity_difference(record.identity, read.identity), std::nullopt);
+  EXPECT_EQ(settings_text(read), settings_text(record));
+}
+
 TEST(State, MessagesNameTheMemberOfARecordThatIsDamaged) {
   const std::string evil = "\x1b]0;x\x07\nlanthorn: forged";
   const std::vector<std::pair<json, std::string>> forged{

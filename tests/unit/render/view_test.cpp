@@ -50,6 +50,15 @@ TEST(View, RecordedOptionsArePartOfTheIdentity) {
             "--clamp (not set and 2.0)");
 }
 
+TEST(View, RefusesAClampThatIsNoNumber) {
+  const Scene scene = test::scene_from_text(test::camera + test::box);
+  for (const float clamp : {0.0f, -1.0f, std::numeric_limits<float>::infinity()}) {
+    RenderOptions options;
+    options.clamp = clamp;
+    EXPECT_THROW(test::plan_render(scene, options), Error) << clamp;
+  }
+}
+
 // Passes of two views must not be added up. The file's own view is identified by the file's hash.
 TEST(View, IsPartOfWhatAStateBelongsTo) {
   const Scene scene = test::scene_from_text(test::camera + test::box);

@@ -210,6 +210,42 @@ TEST(SceneEdit, MeshesOfACopyServeForNewGeometry) {
   EXPECT_EQ(build_scene(all, scene)->data()->geometry, scene->data()->geometry);
 }
 
+// An interface between equal media has no surface.
+TEST(SceneEdit, AnInterfaceThatBecomesASurfaceIsSeen) {
+  const SceneDescription all =
+      read_pbrt_string("WorldBegin\nMaterial \"interface\"\nShape \"sphere\"\n", ".", "s.pbrt");
+  const SharedScene scene = build_scene(all);
+  const Ray ray{{0, 0, -5}, {0, 0, 1}, infinity, 0};
+  EXPECT_TRUE(scene->visible(ray));
+  SceneDescription painted = all;
+  painted.materials.back().node = description::DiffuseMaterial{};
+  EXPECT_FALSE(build_scene(std::move(painted), scene)->visible(ray));
+}
+
+// Whether a light inside a shape is in its medium depends on whether the surface lets light pass.
+TEST(SceneEdit, MaterialsDecideInWhichMediumALightIs) {
+  const SharedScene scene = build_scene(read_pbrt_string(R"(WorldBegin
+MakeNamedMedium "fog" "string type" "homogeneous"
+LightSource "point"
+MediumInterface "fog" ""
+Material "diffuse"
+Shape "sphere"
+)",
+                                                         ".", "s.pbrt"));
+  const auto glass = [](SceneDescription& description) {
+    description.materials.back().node = description::DielectricMaterial{};
+  };
+  const SharedScene edited = test::edited(*scene, glass);
+  EXPECT_NE(edited->light_media(0).outside, scene->light_media(0).outside);
+  EXPECT_EQ(edited->light_media(0).outside, MediumId(1));
+}
+
+TEST(SceneEdit, MediaInsideMaterialsMustExist) {
+  SceneDescription description = describe();
+  description.materials[0].interior = 5;
+  EXPECT_THROW(build_scene(std::move(description)), Error);
+}
+
 // A ball of fog with one light inside and one beside it. Edits move the other light into the fog, or the fog from one
 // light to the other.
 TEST(SceneEdit, LightsStayInTheMediumAroundThem) {
@@ -347,6 +383,29 @@ TEST(SceneEdit, StatesOfEditedScenesAreNotThoseOfTheFile) {
   EXPECT_NE(description_of(*build_scene(std::move(moved), a)).hash, own);
   EXPECT_EQ(description_of(*test::edited(*scene, &leave)).hash, own);
   EXPECT_EQ(description_of(*test::edited(*a, &leave)).hash, description_of(*a).hash);
+}
+
+// Each of these changes the picture, and nothing in the identity of its states but the hash says so.
+TEST(SceneEdit, AChangeThatKeepsTheHashOfItsCopyGetsANumberOfItsOwn) {
+  const SceneDescription all = describe();
+  const SharedScene scene = build_scene(all);
+  const auto look_elsewhere = [](SceneDescription& d) {
+    d.view.camera.camera_to_world = AnimatedTransform(translate({1, 0, 0}));
+  };
+  const auto dim_in_studio = [](SceneDescription& d) {
+    replace_environment(d, {.source = "studio"});
+    scale_light(d.lights[0], 0.5f);
+  };
+  const auto widen_colours = [](SceneDescription& d) { d.color_space = ColorSpace::rec2020; };
+  const auto move_shape = [](SceneDescription& d) {
+    d.shapes[0].object_to_world = AnimatedTransform(translate({1, 0, 0}));
+  };
+  for (const Edit edit : {Edit(look_elsewhere), Edit(dim_in_studio), Edit(widen_colours), Edit(move_shape)}) {
+    SceneDescription changed = all;
+    edit(changed);
+    EXPECT_NE(description_of(*build_scene(std::move(changed), scene)).hash, all.hash);
+  }
+  EXPECT_EQ(description_of(*build_scene(all, scene)).hash, all.hash);
 }
 
 // The environment is a part of the states' identity besides the hash.
