@@ -261,15 +261,17 @@ TechniqueSum densities_of_seen(const Bidirectional& pass, const Vertex& v, const
 }
 
 // Both kinds of vertices.
-#define LANTHORN_TECHNIQUES_AT(Vertex)                                                                     \
-  template LightVertex keep_vertex(const Vertex&, const Subpath&);                                         \
-  template std::optional<Contribution> next_event(const PathContext&, const Bidirectional&, const Vertex&, \
-                                                  const Subpath&);                                         \
-  template std::optional<Contribution> connect(const PathContext&, const Bidirectional&, const Vertex&,    \
-                                               const Subpath&, const LightVertex&);                        \
-  template TechniqueSum densities_of_seen(const Bidirectional&, const Vertex&, const Subpath&, const LensLight&)
-LANTHORN_TECHNIQUES_AT(SurfaceVertex);
-LANTHORN_TECHNIQUES_AT(MediumVertex);
-#undef LANTHORN_TECHNIQUES_AT
+template LightVertex keep_vertex(const SurfaceVertex&, const Subpath&);
+template std::optional<Contribution> next_event(const PathContext&, const Bidirectional&, const SurfaceVertex&,
+                                                const Subpath&);
+template std::optional<Contribution> connect(const PathContext&, const Bidirectional&, const SurfaceVertex&,
+                                             const Subpath&, const LightVertex&);
+template TechniqueSum densities_of_seen(const Bidirectional&, const SurfaceVertex&, const Subpath&, const LensLight&);
+template LightVertex keep_vertex(const MediumVertex&, const Subpath&);
+template std::optional<Contribution> next_event(const PathContext&, const Bidirectional&, const MediumVertex&,
+                                                const Subpath&);
+template std::optional<Contribution> connect(const PathContext&, const Bidirectional&, const MediumVertex&,
+                                             const Subpath&, const LightVertex&);
+template TechniqueSum densities_of_seen(const Bidirectional&, const MediumVertex&, const Subpath&, const LensLight&);
 
 }  // namespace lanthorn
