@@ -10,7 +10,6 @@
 #include <memory>
 #include <optional>
 #include <random>
-#include <ranges>
 #include <string>
 #include <utility>
 #include <variant>
@@ -54,11 +53,14 @@ bool have_same_shapes(const SceneDescription& a, const SceneDescription& b) {
 
 // True if nothing but `replace_environment` has changed the scene's own lights.
 bool has_own_lamps(const SceneDescription& scene) {
-  const auto is_lamp = [](const description::Light& light) {
-    return !std::holds_alternative<description::InfiniteLight>(light.node);
+  const auto lamps_of = [](const std::vector<description::Light>& lights) {
+    std::vector<description::Light> lamps;
+    std::copy_if(lights.begin(), lights.end(), std::back_inserter(lamps), [](const description::Light& light) {
+      return !std::holds_alternative<description::InfiniteLight>(light.node);
+    });
+    return lamps;
   };
-  return std::ranges::equal(scene.lights.entries() | std::views::filter(is_lamp),
-                            own_lights(scene).entries() | std::views::filter(is_lamp));
+  return lamps_of(scene.lights) == lamps_of(own_lights(scene));
 }
 
 // A number that tells views apart.
