@@ -49,7 +49,7 @@ struct RenderOptions : ViewOptions {
   std::map<std::string, std::string> set{};  ///< the method's parameters
 };
 
-/// An option of all commands that render: what is known of it, except its effect. Command line, help, messages, plain
+/// An option of all commands that render, without its effect. Command line, help, messages, plain
 /// data, Python and `RenderIdentity` follow from it.
 template <class Value>
 struct RenderOption {

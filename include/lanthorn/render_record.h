@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// What is recorded of a render: in its state, in the metadata of its pictures and in reports.
+// The record of a render, which its state, the metadata of its pictures and reports contain.
 #pragma once
 
 #include <array>

@@ -78,7 +78,7 @@ constexpr Member inlined() {
   return field<member>(nullptr);
 }
 
-/// Type and count of the numbers in a value that is nothing but numbers.
+/// The numbers of a value that consists of numbers alone, such as a point: their type and how many there are.
 template <class T>
 struct Numbers;
 template <class T>

@@ -22,7 +22,7 @@ enum class Kind : std::uint8_t {
   row,        ///< a fixed number of numbers: a colour, a point
   rows,       ///< an array of rows or of numbers
   optional,   ///< has no or one item
-  list,       ///< items that are no rows
+  list,       ///< of any number of items of one type
   variant,    ///< its item is the alternative that it holds
   structure,  ///< has members
   special,    ///< has a reader and a writer of its own

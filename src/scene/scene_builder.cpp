@@ -51,7 +51,7 @@ bool have_same_shapes(const SceneDescription& a, const SceneDescription& b) {
   return is_same(a.shapes, b.shapes) && is_same(a.objects, b.objects) && is_same(a.instances, b.instances);
 }
 
-// True if nothing but `replace_environment` has changed the scene's own lights.
+// True if the scene has its own lights, except for the environments that `replace_environment` has replaced.
 bool has_own_lamps(const SceneDescription& scene) {
   const auto lamps_of = [](const std::vector<description::Light>& lights) {
     std::vector<description::Light> lamps;

@@ -41,7 +41,7 @@ ClosureVariant<All...> variant_of(List<All...>);
 
 template <Closure C>
 using Forms = std::conditional_t<C::traits.is_opaque(), List<C, Bent<C>>, List<C>>;
-/// The closures, and the bent forms of those that are opaque.
+/// All closures. Opaque ones come in two forms: as they are, and bent (bent.h).
 template <Closure... Closures>
 using WithBentForms = decltype(variant_of((Forms<Closures>() + ...)));
 }  // namespace bsdf_detail

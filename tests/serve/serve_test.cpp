@@ -387,7 +387,7 @@ TEST_F(Serve, MethodAndSizeCanBeChanged) {
       frame([](const nlohmann::json& f) { return f["finished"] && f["integrator"] == "path"; });
   EXPECT_EQ(shown["full_size"], (nlohmann::json{24, 20}));
   const std::string command = shown["command"];
-  EXPECT_TRUE(contains(command, " -i path ") && contains(command, " -r 24x20 ")) << command;
+  EXPECT_TRUE(contains(command, " -i path -n 300 -r 24x20 ")) << command;
   EXPECT_FALSE(contains(command, "radius")) << "it is a parameter of the other method: " << command;
   ASSERT_EQ(edit({{"method", "probppm"}, {"size", first["full_size"]}}), 200);
   const nlohmann::json again =

@@ -226,7 +226,7 @@ int views_wanted(const Scene& scene, const Group& group, const LightViewSettings
   return is_all_around(scene.lights()[group.first]) ? settings.sky_views : 1;
 }
 
-/// The views that a group of lights has in this frame.
+/// How many views a group of lights gets in this frame.
 struct Quota {
   Group group;
   int views = 0;
