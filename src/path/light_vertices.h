@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "base/parallel.h"
+#include "base/prefetch.h"
 #include "path/light_pass.h"
 #include "path/subpath.h"
 
@@ -97,6 +98,10 @@ class LightVertices {
     const std::size_t i = number % light_path_chunk;
     const std::uint32_t begin = i == 0 ? 0 : c.ends[i - 1];
     return std::span(c.vertices).subspan(begin, c.ends[i] - begin);
+  }
+  /// Fetches ahead where the vertices of `path(number)` lie.
+  void prefetch_place(std::size_t number) const {
+    if (!chunks_.empty()) prefetch(chunks_[number / light_path_chunk].ends[number % light_path_chunk]);
   }
   /// The vertices for which `is_wanted` returns true, path by path. Found in parallel.
   template <class Predicate>

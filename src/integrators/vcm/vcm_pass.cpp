@@ -96,13 +96,19 @@ std::size_t VcmPass::partner(std::size_t first, int i, int count) const {
   return (first + all * static_cast<std::size_t>(i) / static_cast<std::size_t>(count)) % all;
 }
 
-std::span<const LightVertex> VcmPass::light_path(std::size_t path) const {
+bool VcmPass::is_of_block(std::size_t path) const {
   const std::size_t first = light_paths.first();
-  if (path < first || path - first >= std::max<std::size_t>(light_paths.count(), 1)) return {};
-  return vertices.path(path - first);
+  return path >= first && path - first < std::max<std::size_t>(light_paths.count(), 1);
+}
+
+std::span<const LightVertex> VcmPass::light_path(std::size_t path) const {
+  return is_of_block(path) ? vertices.path(path - light_paths.first()) : std::span<const LightVertex>();
 }
 
 PathDraw VcmPass::draw_of_eye_path(Sampler& sampler, const PixelPlace& place) const {
+  // Any light path may be the partner: its place would come from main memory just when its vertices are wanted.
+  if (const std::size_t path = partner(sampler); connects() && is_of_block(path))
+    vertices.prefetch_place(path - light_paths.first());
   PathDraw own = draw.of_eye_path(sampler, place.x, place.y);
   if (draw.is_of_one_time()) return own;
   const std::size_t path = partner(sampler);

@@ -87,6 +87,7 @@ struct VcmPass {
   std::size_t partner(Sampler& of_eye_path) const;
   /// Number `i` of `count` light paths, the first of which is `first`, equally spaced among all.
   std::size_t partner(std::size_t first, int i, int count) const;
+  bool is_of_block(std::size_t path) const;  ///< whether the light path is one of the present block
   /// The vertices of a light path. None if it belongs to another block.
   std::span<const LightVertex> light_path(std::size_t path) const;
   /// Time and wavelengths of the eye path of a pixel. The time is that of the light path that it is connected to; the
