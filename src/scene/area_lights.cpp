@@ -15,7 +15,7 @@
 
 #include "base/parallel.h"
 #include "lanthorn/error.h"
-#include "light/emitter_geometry.h"
+#include "light/emitter_sampling.h"
 #include "math/affine.h"
 #include "math/sampler.h"
 #include "shape/triangle.h"
