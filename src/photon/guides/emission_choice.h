@@ -8,7 +8,7 @@
 
 #include "base/parameters.h"
 #include "path/render_job.h"
-#include "photon/guides/light_guide.h"
+#include "photon/guides/guide_photons.h"
 #include "photon/medium_records.h"
 
 namespace lanthorn {
