@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include "scene/area_lights.h"
+#include "scene/lights.h"
 
 #include <fmt/format.h>
 

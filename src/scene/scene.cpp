@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/scene.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -9,8 +11,8 @@
 #include <iterator>
 #include <variant>
 
+#include "lanthorn/error.h"
 #include "math/hash.h"
-#include "scene/obstacles.h"
 #include "scene/scene_data.h"
 #include "scene/subsurface.h"
 #include "scene/volume_lights.h"
@@ -161,5 +163,18 @@ TileCacheCounts Scene::texture_reads() const { return data_->materials->textures
 const SceneStatistics& Scene::statistics() const { return data_->statistics; }
 const std::vector<description::Warning>& Scene::warnings() const { return data_->description.warnings; }
 const SceneDescription& Scene::description() const { return data_->description; }
+
+Ray ray_in_scene(const Scene& scene, const SceneRay& ray, std::size_t index) {
+  const float length = glm::length(ray.direction);
+  const Point origin = Point(DVec3(ray.origin) - scene.description().origin);
+  const bool is_usable = std::isfinite(length) && length > 0 && std::isfinite(glm::dot(origin, Vec3(1)));
+  if (!is_usable)
+    throw Error(fmt::format(
+        "ray {}: expected finite numbers and a direction that is not 0, got origin ({}, {}, {}) "
+        "and direction ({}, {}, {})",
+        index, ray.origin.x, ray.origin.y, ray.origin.z, ray.direction.x, ray.direction.y, ray.direction.z));
+  const description::Camera& camera = scene.description().view.camera;
+  return {origin, ray.direction / length, infinity, camera.shutter_open};
+}
 
 }  // namespace lanthorn

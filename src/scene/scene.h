@@ -2,12 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
 
+#include "lanthorn/rays.h"
 #include "lanthorn/scene_description.h"
 #include "light/light.h"
 #include "light/light_sampler.h"
@@ -120,5 +122,9 @@ class Scene {
  private:
   std::shared_ptr<const SceneData> data_;
 };
+
+/// The ray in the coordinates of the scene, with a unit direction, when the shutter opens. Throws Error, naming
+/// `index`, unless all its numbers are finite and its direction is not 0.
+Ray ray_in_scene(const Scene& scene, const SceneRay& ray, std::size_t index);
 
 }  // namespace lanthorn

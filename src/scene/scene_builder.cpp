@@ -17,7 +17,6 @@
 
 #include "lanthorn/error.h"
 #include "lanthorn/plain_data.h"
-#include "scene/media.h"
 #include "scene/scene_data.h"
 #include "scene/scene_memory.h"
 #include "scene/subsurface.h"

@@ -4,7 +4,7 @@
 // are stored as reverse photons; then each photon adds its light to the reverse photons within its radius.
 #pragma once
 
-#include "integrators/photonmap/photon_radii.h"
+#include "integrators/photonmap/reverse_photons.h"
 #include "integrators/photonmap/two_pass.h"
 
 namespace lanthorn {
