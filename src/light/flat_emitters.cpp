@@ -87,10 +87,10 @@ bool is_far(const ParallelogramEmitter& p, const Point& from) {
 /// The two halves on either side of a diagonal, seen from a point.
 struct SphericalHalves {
   SphericalTriangle first, second;
+  float solid_angle = first.solid_angle + second.solid_angle;
 
-  float solid_angle() const { return first.solid_angle + second.solid_angle; }
   Direction sample(const Vec2& u) const {
-    const float x = u.x * solid_angle();
+    const float x = u.x * solid_angle;
     if (x < first.solid_angle) return first.sample({x / first.solid_angle, u.y});
     return second.sample({std::min(1.0f, (x - first.solid_angle) / second.solid_angle), u.y});
   }
@@ -116,19 +116,32 @@ std::optional<Point> intersect(const ParallelogramEmitter& p, const Point& from,
   return p.p00 + u * p.a + v * p.b;
 }
 
-std::optional<EmitterDirection> sample_halves(const ParallelogramEmitter& p, const SphericalHalves& halves,
-                                              const Point& from, const Vec2& u) {
+/// Samples the solid angle in which a flat emitter is seen, or its area if it appears small or the angle is ill
+/// conditioned.
+template <class Flat>
+std::optional<EmitterDirection> sample_flat(const Flat& emitter, const Point& from, const Vec2& u) {
+  if (is_far(emitter, from)) return direction_to(emitter.sample_area(u), emitter.area, from);
+  const auto seen = seen_from(emitter, from);
+  if (!is_well_conditioned(seen.solid_angle)) return direction_to(emitter.sample_area(u), emitter.area, from);
   std::optional<EmitterDirection> result;
-  const std::optional<Point> hit = intersect(p, from, halves.sample(u));
+  const std::optional<Point> hit = intersect(emitter, from, seen.sample(u));
   if (!hit) return result;
   const Vec3 d = *hit - from;
-  EmitterDirection& seen = result.emplace();
-  seen.point = *hit;
-  seen.normal = p.normal;
-  seen.distance = norm(d);
-  seen.wi = d / seen.distance;
-  seen.pdf = 1 / halves.solid_angle();
+  EmitterDirection& sample = result.emplace();
+  sample.point = *hit;
+  sample.normal = emitter.normal;
+  sample.distance = norm(d);
+  sample.wi = d / sample.distance;
+  sample.pdf = 1 / seen.solid_angle;
   return result;
+}
+
+/// Density of `sample_flat`.
+template <class Flat>
+float pdf_of_flat(const Flat& emitter, const Point& from, const Point& hit, const Normal& normal_at_hit) {
+  if (is_far(emitter, from)) return pdf_by_area(emitter.area, from, hit, normal_at_hit);
+  const float solid_angle = seen_from(emitter, from).solid_angle;
+  return is_well_conditioned(solid_angle) ? 1 / solid_angle : pdf_by_area(emitter.area, from, hit, normal_at_hit);
 }
 
 }  // namespace
@@ -150,21 +163,11 @@ std::optional<Vec2> TriangleEmitter::invert_sample_area(const Point& point) cons
 }
 
 std::optional<EmitterDirection> TriangleEmitter::sample_towards(const Point& from, const Vec2& u) const {
-  if (is_far(*this, from)) return direction_to(sample_area(u), area, from);
-  const SphericalTriangle triangle = seen_from(*this, from);
-  if (!is_well_conditioned(triangle.solid_angle)) return direction_to(sample_area(u), area, from);
-  const std::optional<Point> hit = intersect(*this, from, triangle.sample(u));
-  if (!hit) return {};
-  const Vec3 d = *hit - from;
-  const float distance = norm(d);
-  return EmitterDirection{*hit, normal, d / distance, distance, 1 / triangle.solid_angle};
+  return sample_flat(*this, from, u);
 }
 
 float TriangleEmitter::pdf_towards(const Point& from, const Point& hit, const Normal& normal_at_hit) const {
-  if (is_far(*this, from)) return pdf_by_area(area, from, hit, normal_at_hit);
-  const SphericalTriangle triangle = seen_from(*this, from);
-  return is_well_conditioned(triangle.solid_angle) ? 1 / triangle.solid_angle
-                                                   : pdf_by_area(area, from, hit, normal_at_hit);
+  return pdf_of_flat(*this, from, hit, normal_at_hit);
 }
 
 Bounds TriangleEmitter::bounds() const {
@@ -189,16 +192,11 @@ std::optional<Vec2> ParallelogramEmitter::invert_sample_area(const Point& point)
 }
 
 std::optional<EmitterDirection> ParallelogramEmitter::sample_towards(const Point& from, const Vec2& u) const {
-  if (is_far(*this, from)) return direction_to(sample_area(u), area, from);
-  const SphericalHalves halves = seen_from(*this, from);
-  if (!is_well_conditioned(halves.solid_angle())) return direction_to(sample_area(u), area, from);
-  return sample_halves(*this, halves, from, u);
+  return sample_flat(*this, from, u);
 }
 
 float ParallelogramEmitter::pdf_towards(const Point& from, const Point& hit, const Normal& normal_at_hit) const {
-  if (is_far(*this, from)) return pdf_by_area(area, from, hit, normal_at_hit);
-  const float solid_angle = seen_from(*this, from).solid_angle();
-  return is_well_conditioned(solid_angle) ? 1 / solid_angle : pdf_by_area(area, from, hit, normal_at_hit);
+  return pdf_of_flat(*this, from, hit, normal_at_hit);
 }
 
 Bounds ParallelogramEmitter::bounds() const {
