@@ -127,4 +127,14 @@ class Scene {
 /// `index`, unless all its numbers are finite and its direction is not 0.
 Ray ray_in_scene(const Scene& scene, const SceneRay& ray, std::size_t index);
 
+/// True if the medium is the interior of a material, such as skin or wax: subsurface scattering.
+bool is_under_surface(const Scene& scene, MediumId medium);
+
+/// Largest number of vertices under surfaces that a walk may have; 0 if no medium is under a surface.
+int most_under_surface(const Scene& scene);
+
+/// Number of scatterings after which a thousandth of the light is left in a medium of this albedo. At least 64; at most
+/// 4096, for media that absorb nothing.
+int scatterings_until_dark(float albedo);
+
 }  // namespace lanthorn

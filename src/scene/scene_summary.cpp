@@ -8,7 +8,6 @@
 
 #include "camera/view.h"
 #include "lanthorn/scene.h"
-#include "scene/media_check.h"
 #include "scene/medium_around.h"
 #include "scene/scene.h"
 #include "scene/scene_data.h"
