@@ -22,7 +22,7 @@
 #include "path/path_class.h"
 #include "path/path_context.h"
 #include "path/render_job.h"
-#include "photon/medium_records.h"
+#include "photon/photon.h"
 
 namespace lanthorn {
 

@@ -13,7 +13,6 @@
 #include "path/path_draw.h"
 #include "photon/flux_classes.h"
 #include "photon/guides/guide_photons.h"
-#include "photon/medium_records.h"
 #include "photon/photon.h"
 
 namespace lanthorn {

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <string>
 #include <utility>
-#include <variant>
 
 #include "math/hash.h"
 #include "scene/medium_around.h"

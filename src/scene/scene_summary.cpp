@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include <map>
-#include <string>
 #include <utility>
 #include <variant>
 #include <vector>

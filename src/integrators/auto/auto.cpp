@@ -9,8 +9,6 @@
 // 3. choice.cpp     the candidates with the least product of variance and work, block by block; what it tells the user
 #include "integrators/auto/auto.h"
 
-#include <memory>
-
 #include "base/parameters.h"
 #include "integrators/auto/pilot.h"
 

@@ -8,7 +8,6 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <optional>
 
 #include "index/bucket_kdtree.h"
 #include "lanthorn/error.h"

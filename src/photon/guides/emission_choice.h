@@ -9,7 +9,7 @@
 #include "base/parameters.h"
 #include "path/render_job.h"
 #include "photon/guides/guide_photons.h"
-#include "photon/medium_records.h"
+#include "photon/photon.h"
 
 namespace lanthorn {
 
