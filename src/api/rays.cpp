@@ -10,7 +10,6 @@
 #include "path/radiance_along.h"
 #include "scene/medium_around.h"
 #include "scene/scene.h"
-#include "scene/scene_ray.h"
 #include "surface/bsdf.h"
 
 namespace lanthorn {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "spectrum/white_balance.h"
+#include "spectrum/rgb_matrix.h"
 
 namespace lanthorn {
 

@@ -15,7 +15,7 @@
 #include "image/image_encoder.h"
 #include "lanthorn/error.h"
 #include "lanthorn/packed_float.h"
-#include "spectrum/chromaticities.h"
+#include "spectrum/rgb_matrix.h"
 
 namespace lanthorn {
 

@@ -16,7 +16,7 @@
 #include "base/memory.h"
 #include "image/radiance_picture.h"
 #include "lanthorn/text.h"
-#include "spectrum/chromaticities.h"
+#include "spectrum/rgb_matrix.h"
 
 namespace lanthorn {
 

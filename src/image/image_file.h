@@ -14,7 +14,7 @@
 
 #include "image/image_codec.h"
 #include "lanthorn/error.h"
-#include "spectrum/white_balance.h"
+#include "spectrum/rgb_matrix.h"
 
 namespace lanthorn {
 

@@ -12,7 +12,6 @@
 #include <span>
 #include <vector>
 
-#include "index/ball.h"
 #include "index/leaf_tree.h"
 #include "index/line_distance.h"
 #include "index/point_index.h"

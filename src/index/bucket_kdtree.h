@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "base/parallel.h"
-#include "index/ball.h"
 #include "index/kd_split.h"
 #include "index/nearest_heap.h"
 #include "index/point_index.h"

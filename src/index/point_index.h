@@ -15,6 +15,12 @@
 
 namespace lanthorn {
 
+/// A point and a radius (m).
+struct Ball {
+  Point centre;
+  float radius;
+};
+
 /// A point found: squared distance to the query (m²) and its slot.
 struct Neighbour {
   float dist2;

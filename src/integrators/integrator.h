@@ -20,9 +20,9 @@
 #include "lanthorn/methods.h"
 #include "lanthorn/statistics.h"
 #include "path/path_class.h"
-#include "path/ray_counts.h"
+#include "path/path_context.h"
 #include "path/render_job.h"
-#include "photon/medium_records.h"
+#include "photon/photon.h"
 
 namespace lanthorn {
 

@@ -5,9 +5,9 @@
 // camera sees in mirrors and through clear glass is missing, because its vertices cannot be connected to the lens.
 #include "integrators/integrator.h"
 #include "path/emission_pass.h"
+#include "path/lens_connection.h"
 #include "path/light_pass.h"
 #include "path/path_draw.h"
-#include "path/splat.h"
 
 namespace lanthorn {
 

@@ -25,7 +25,7 @@
 #include "lanthorn/error.h"
 #include "lanthorn/file.h"
 #include "lanthorn/text.h"
-#include "spectrum/white_balance.h"
+#include "spectrum/rgb_matrix.h"
 
 namespace lanthorn {
 namespace fs = std::filesystem;

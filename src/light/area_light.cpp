@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
-
 #include "light/area_light.h"
+
+#include <algorithm>
 
 #include "light/emitter_sampling.h"
 #include "math/frame.h"

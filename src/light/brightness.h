@@ -3,8 +3,8 @@
 // Position, orientation and brightness of lights, from which the light BVH is built and the film's scale is chosen.
 #pragma once
 
-#include "light/emitter_sample.h"
 #include "light/light_texels.h"
+#include "light/sample.h"
 #include "math/vec.h"
 #include "spectrum/curve.h"
 

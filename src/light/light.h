@@ -14,12 +14,11 @@
 
 #include "light/area_light.h"
 #include "light/brightness.h"
-#include "light/cone_profile.h"
-#include "light/even_profile.h"
 #include "light/far_light.h"
 #include "light/image_profile.h"
 #include "light/point_light.h"
 #include "light/portal_light.h"
+#include "light/profile.h"
 #include "light/projection_profile.h"
 #include "light/sample.h"
 #include "light/spot_profile.h"

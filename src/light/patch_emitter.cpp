@@ -1,12 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include "light/patch_emitter.h"
+#include "light/emitter.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "light/emitter_geometry.h"
 #include "light/emitter_sampling.h"
 #include "math/sampling.h"
 

@@ -9,9 +9,9 @@
 #include <variant>
 
 #include "light/brightness.h"
-#include "light/even_profile.h"
 #include "light/far_light.h"
 #include "light/image_profile.h"
+#include "light/profile.h"
 #include "light/sample.h"
 #include "math/distribution.h"
 #include "math/frame.h"

@@ -4,7 +4,6 @@
 
 #include <optional>
 
-#include "light/direction_map.h"
 #include "light/light_texels.h"
 #include "light/profile.h"
 #include "math/distribution.h"

@@ -1,11 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include "light/quadric_emitters.h"
+#include "light/emitter.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "light/emitter_geometry.h"
 #include "light/emitter_sampling.h"
 #include "math/frame.h"
 #include "math/sampling.h"

@@ -4,6 +4,7 @@
 
 #include "material/kind.h"
 #include "material/parts.h"
+#include "surface/coated.h"
 
 namespace lanthorn {
 
@@ -13,5 +14,14 @@ static ClosureAt closure_of(const description::ConductorMaterial& m, MaterialCom
   };
 }
 template ClosureAt compile(const description::ConductorMaterial& m, MaterialCompiler& c);
+
+static ClosureAt closure_of(const description::CoatedConductorMaterial& m, MaterialCompiler& c) {
+  const MetalAt metal(m, m.conductor_roughness, c);
+  const CoatAt coat(m.coat, c);
+  return [=](const TexturePoint& at, const Wavelengths& w) -> Bsdf {
+    return coat.over(under_coat(metal(at, w), index_at_hero(coat.eta, w)), at, w);
+  };
+}
+template ClosureAt compile(const description::CoatedConductorMaterial& m, MaterialCompiler& c);
 
 }  // namespace lanthorn

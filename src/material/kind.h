@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Included only by the files of the material kinds. Each of them defines
+// Included only by the files of the material kinds. For each kind they define
 //
 //   static ClosureAt closure_of(const description::XMaterial& m, MaterialCompiler& c) { ... }
 //   template ClosureAt compile(const description::XMaterial& m, MaterialCompiler& c);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// A material in a scene: its parameters give a closure at each point of a surface. Each kind of material has a file in
-// this folder, as each closure has one in surface/: x.cpp compiles the parameters of description::XMaterial.
+// A material in a scene: its parameters give a closure at each point of a surface. Each family of materials has a file
+// in this folder; for each kind, it compiles the parameters of description::XMaterial.
 #pragma once
 
 #include <functional>
@@ -20,8 +20,8 @@ class MaterialCompiler;
 using ClosureAt = std::function<Bsdf(const TexturePoint& at, const Wavelengths& w)>;
 
 /// Compiles the parameters of a material, records its traits in the compiler, and returns its closure, which keeps
-/// pointers to the scene's textures. Throws Error for invalid parameters. The file of each kind instantiates this
-/// function (see kind.h); a kind without a file is a linker error.
+/// pointers to the scene's textures. Throws Error for invalid parameters. The file of a family instantiates this
+/// function for each of its kinds (see kind.h); a kind without it is a linker error.
 template <class Parameters>
 ClosureAt compile(const Parameters& parameters, MaterialCompiler& compiler);
 

@@ -16,7 +16,7 @@
 #include "math/vec.h"
 #include "shape/geometry_record.h"
 #include "spectrum/wavelengths.h"
-#include "surface/point_bsdf.h"
+#include "surface/bsdf.h"
 #include "texture/spectrum_store.h"
 #include "texture/textures.h"
 

@@ -8,6 +8,7 @@
 #include "material/kind.h"
 #include "material/parts.h"
 #include "surface/cloth.h"
+#include "surface/coated.h"
 
 namespace lanthorn {
 
@@ -31,5 +32,12 @@ static ClosureAt closure_of(const description::PlasticMaterial& m, MaterialCompi
   };
 }
 template ClosureAt compile(const description::PlasticMaterial& m, MaterialCompiler& c);
+
+static ClosureAt closure_of(const description::CoatedPlasticMaterial& m, MaterialCompiler& c) {
+  const PlasticAt base(m.base, c);
+  const CoatAt coat(m.coat, c);
+  return [=](const TexturePoint& at, const Wavelengths& w) -> Bsdf { return coat.over(base(at, w), at, w); };
+}
+template ClosureAt compile(const description::CoatedPlasticMaterial& m, MaterialCompiler& c);
 
 }  // namespace lanthorn

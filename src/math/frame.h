@@ -40,11 +40,9 @@ struct Frame {
 };
 
 // Spherical functions of a local unit vector (z is the normal).
-inline float cos_theta(const Vec3& local) { return local.z; }
 inline float abs_cos_theta(const Vec3& local) { return std::fabs(local.z); }
 inline float cos2_theta(const Vec3& local) { return local.z * local.z; }
 inline float sin2_theta(const Vec3& local) { return std::max(0.0f, 1.0f - cos2_theta(local)); }
-inline float tan2_theta(const Vec3& local) { return sin2_theta(local) / cos2_theta(local); }
 inline bool same_hemisphere(const Vec3& a, const Vec3& b) { return a.z * b.z > 0.0f; }
 
 }  // namespace lanthorn

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "medium/homogeneous.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace lanthorn {

@@ -8,8 +8,6 @@
 #include <iterator>
 #include <limits>
 
-#include "medium/transmittance_curve.h"
-
 namespace lanthorn {
 
 namespace {

@@ -11,7 +11,7 @@
 
 #include "path/path_context.h"
 #include "path/vertex.h"
-#include "scene/subsurface.h"
+#include "scene/scene.h"
 
 namespace lanthorn {
 

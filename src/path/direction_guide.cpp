@@ -6,8 +6,8 @@
 #include <array>
 
 #include "math/sampling.h"
-#include "path/guidance.h"
 #include "path/mis.h"
+#include "path/vertex.h"
 
 namespace lanthorn {
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "light/emission_guide.h"
+#include "light/light_sampler.h"
 #include "scene/scene.h"
 
 namespace lanthorn {
@@ -25,7 +26,11 @@ namespace lanthorn {
 class EmissionDensities {
  public:
   /// `guide` of the light paths, null if they have none; must outlive this.
-  explicit EmissionDensities(const Scene& scene, const EmissionGuide* guide = nullptr);
+  explicit EmissionDensities(const Scene& scene, const EmissionGuide* guide = nullptr)
+      : scene_(scene),
+        guide_(guide),
+        has_curves_(scene.statistics().curves > 0),
+        of_lights_(emission_probabilities(scene.lights(), guide)) {}
 
   /// Probability with which a light path begins on each light, as in PhotonAllocation.
   const std::vector<float>& of_lights() const { return of_lights_; }

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "film/film_pass.h"
-#include "path/ray_counts.h"
+#include "path/path_context.h"
 #include "path/render_job.h"
 
 namespace lanthorn {

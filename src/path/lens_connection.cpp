@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "path/lens_connection.h"
 
-#include <cmath>
-
 #include "path/transmittance.h"
 #include "path/walk.h"
 

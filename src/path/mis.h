@@ -3,7 +3,7 @@
 // The algebra of multiple importance sampling weights (Veach 1997, chapter 9): plain numbers in, a weight out. All of
 // it is here; other files supply the densities.
 //
-// - Two techniques, a light sample and the walk's hit: `power_heuristic` (math/power_heuristic.h).
+// - Two techniques, a light sample and the walk's hit: `power_heuristic` (math/sampling.h).
 // - Several sets of samples that are summed, whichever set a sample is from: `over_balanced`.
 // - A sample drawn from one of two densities: `mixture_pdf`.
 // - The techniques of bidirectional methods: `sum_of_hit` and the functions after it, from sums that `SubpathDensities`

@@ -23,7 +23,11 @@ inline constexpr std::size_t media_layer = path_class_count;
 
 /// The layers of methods that distinguish path classes: one for each class, and one for media if the scene has
 /// scattering or emissive media.
-FilmContents path_layers(const Scene& scene);
+inline FilmContents path_layers(const Scene& scene) {
+  FilmContents contents{.light = {"emission", "direct", "indirect", "caustic"}};
+  if (scene.has_scattering_media() || scene.has_emissive_media()) contents.repeated = {"media"};
+  return contents;
+}
 
 /// Class of light that the walk finds by hitting an emitter, or of volumetric emission along a ray that it follows in
 /// this state.

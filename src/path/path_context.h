@@ -3,13 +3,29 @@
 #pragma once
 
 #include <cstdint>
+#include <mutex>
 
+#include "lanthorn/statistics.h"
 #include "math/sampler.h"
-#include "path/ray_counts.h"
 #include "scene/scene.h"
 #include "spectrum/wavelengths.h"
 
 namespace lanthorn {
+
+/// A sum to which several threads add.
+class SharedRayCounts {
+ public:
+  void add(const RayCounts& counts) {
+    const std::lock_guard lock(mutex_);
+    sum_ += counts;
+  }
+  /// To be called when all threads have added their counts.
+  const RayCounts& sum() const { return sum_; }
+
+ private:
+  std::mutex mutex_;
+  RayCounts sum_;
+};
 
 struct WalkLimits {
   int max_depth = 64;      ///< scattering events of a walk, at most

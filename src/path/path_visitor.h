@@ -7,7 +7,6 @@
 
 #include "path/direct_light.h"
 #include "path/light_layers.h"
-#include "path/ray_light.h"
 #include "path/transmittance.h"
 #include "path/walk.h"
 

@@ -9,11 +9,10 @@
 
 #include "index/beam_bvh.h"
 #include "path/light_pass.h"
+#include "path/path_context.h"
 #include "path/path_draw.h"
-#include "path/ray_counts.h"
 #include "photon/flux_classes.h"
-#include "photon/guides/light_guide.h"
-#include "photon/medium_records.h"
+#include "photon/guides/guide_photons.h"
 #include "photon/photon.h"
 
 namespace lanthorn {

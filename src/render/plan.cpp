@@ -16,7 +16,7 @@
 #include "render/method_of_file.h"
 #include "render/scaled_view.h"
 #include "scene/medium_around.h"
-#include "scene/subsurface.h"
+#include "scene/scene.h"
 
 namespace lanthorn {
 

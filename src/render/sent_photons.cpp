@@ -19,7 +19,7 @@
 #include "path/walk.h"
 #include "render/plan.h"
 #include "scene/medium_around.h"
-#include "scene/scene_ray.h"
+#include "scene/scene.h"
 #include "spectrum/curve.h"
 
 namespace lanthorn {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include "scene/area_lights.h"
+#include "scene/lights.h"
 
 #include <fmt/format.h>
 
@@ -15,7 +15,7 @@
 
 #include "base/parallel.h"
 #include "lanthorn/error.h"
-#include "light/emitter_geometry.h"
+#include "light/emitter_sampling.h"
 #include "math/affine.h"
 #include "math/sampler.h"
 #include "shape/triangle.h"

@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <optional>
-#include <type_traits>
 #include <utility>
 #include <variant>
 

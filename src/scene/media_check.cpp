@@ -1,12 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include "scene/media_check.h"
 
 #include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
-#include <variant>
 
 #include "math/hash.h"
 #include "scene/medium_around.h"

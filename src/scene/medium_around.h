@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 // The medium around a point, as the scene's shapes say. Lights and cameras use it, whatever their own MediumInterface
-// says, so that light paths, eye paths and connections pass through the same media.
+// says, so that light paths, eye paths and connections pass through the same media. media_check.cpp warns where shapes
+// contradict each other.
 #pragma once
 
 #include <optional>
@@ -43,5 +44,13 @@ void settle_light_media(const Scene& scene, LightPart& lights);
 /// The view in this scene. Its medium is the one around the camera if that is known, otherwise the declared one. Throws
 /// Error like `make_view`.
 View view_in(const Scene& scene, const ViewDescription& description, const ViewOptions& options = {});
+
+/// Warns of contradictory media: rays that travel in one medium and arrive where the scene declares another. The result
+/// for such rays depends on their path, so integrators disagree. Follows straight rays through glass and interfaces,
+/// from the camera, and from the surfaces that it sees on to the lights. Among lights, only surfaces may lack the
+/// medium around them (for other lights see `settle_light_media`). Media that opaque surfaces declare do not count,
+/// because rays stay in their own medium there; nor do a few rays that slip between touching shapes. One warning for
+/// each kind, at its location in the scene file.
+std::vector<description::Warning> media_warnings(const Scene& scene, const View& view);
 
 }  // namespace lanthorn

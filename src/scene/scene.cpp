@@ -2,17 +2,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/scene.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <iterator>
+#include <utility>
 #include <variant>
 
+#include "lanthorn/error.h"
 #include "math/hash.h"
-#include "scene/obstacles.h"
 #include "scene/scene_data.h"
-#include "scene/subsurface.h"
 #include "scene/volume_lights.h"
 
 namespace lanthorn {
@@ -161,5 +162,44 @@ TileCacheCounts Scene::texture_reads() const { return data_->materials->textures
 const SceneStatistics& Scene::statistics() const { return data_->statistics; }
 const std::vector<description::Warning>& Scene::warnings() const { return data_->description.warnings; }
 const SceneDescription& Scene::description() const { return data_->description; }
+
+Ray ray_in_scene(const Scene& scene, const SceneRay& ray, std::size_t index) {
+  const float length = glm::length(ray.direction);
+  const Point origin = Point(DVec3(ray.origin) - scene.description().origin);
+  const bool is_usable = std::isfinite(length) && length > 0 && std::isfinite(glm::dot(origin, Vec3(1)));
+  if (!is_usable)
+    throw Error(fmt::format(
+        "ray {}: expected finite numbers and a direction that is not 0, got origin ({}, {}, {}) "
+        "and direction ({}, {}, {})",
+        index, ray.origin.x, ray.origin.y, ray.origin.z, ray.direction.x, ray.direction.y, ray.direction.z));
+  const description::Camera& camera = scene.description().view.camera;
+  return {origin, ray.direction / length, infinity, camera.shutter_open};
+}
+
+bool is_under_surface(const Scene& scene, MediumId medium) {
+  const std::vector<bool>& under = scene.data()->is_under_surface;
+  return !under.empty() && medium != MediumId::vacuum && under[static_cast<std::size_t>(medium) - 1];
+}
+
+int most_under_surface(const Scene& scene) { return scene.data()->most_under_surface; }
+
+int scatterings_until_dark(float albedo) {
+  constexpr double least = 64, most = 4096, rest = 1e-3;
+  const auto a = static_cast<double>(albedo);
+  return static_cast<int>(std::clamp(a < 1 ? std::ceil(std::log(rest) / std::log(a)) : most, least, most));
+}
+
+void find_media_under_surfaces(SceneData& data) {
+  float albedo = 0;
+  for (const description::Material& material : std::as_const(data.description).materials) {
+    if (!material.interior) continue;
+    if (*material.interior >= data.media->all.size())
+      throw Error(material.location, "the medium inside the material does not exist");
+    data.is_under_surface.resize(data.media->all.size());
+    data.is_under_surface[*material.interior] = true;
+    albedo = std::max(albedo, largest_albedo(data.media->all[*material.interior]));
+  }
+  data.most_under_surface = data.is_under_surface.empty() ? 0 : scatterings_until_dark(albedo);
+}
 
 }  // namespace lanthorn

@@ -2,12 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
 
+#include "lanthorn/rays.h"
 #include "lanthorn/scene_description.h"
 #include "light/light.h"
 #include "light/light_sampler.h"
@@ -120,5 +122,19 @@ class Scene {
  private:
   std::shared_ptr<const SceneData> data_;
 };
+
+/// The ray in the coordinates of the scene, with a unit direction, when the shutter opens. Throws Error, naming
+/// `index`, unless all its numbers are finite and its direction is not 0.
+Ray ray_in_scene(const Scene& scene, const SceneRay& ray, std::size_t index);
+
+/// True if the medium is the interior of a material, such as skin or wax: subsurface scattering.
+bool is_under_surface(const Scene& scene, MediumId medium);
+
+/// Largest number of vertices under surfaces that a walk may have; 0 if no medium is under a surface.
+int most_under_surface(const Scene& scene);
+
+/// Number of scatterings after which a thousandth of the light is left in a medium of this albedo. At least 64; at most
+/// 4096, for media that absorb nothing.
+int scatterings_until_dark(float albedo);
 
 }  // namespace lanthorn

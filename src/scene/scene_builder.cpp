@@ -17,10 +17,9 @@
 
 #include "lanthorn/error.h"
 #include "lanthorn/plain_data.h"
-#include "scene/media.h"
+#include "scene/scene.h"
 #include "scene/scene_data.h"
 #include "scene/scene_memory.h"
-#include "scene/subsurface.h"
 
 namespace lanthorn {
 

@@ -17,7 +17,6 @@
 #include "light/ray_lights.h"
 #include "material/material_table.h"
 #include "medium/medium.h"
-#include "scene/area_lights.h"
 #include "scene/geometry.h"
 #include "scene/lights.h"
 #include "scene/scene.h"
@@ -95,7 +94,7 @@ struct SceneData {
   std::shared_ptr<const LightPart> lights;
   BoundingSphere sphere;
   bool has_measured_spectra = false, has_dispersion = false, has_emissive = false;
-  std::vector<bool> is_under_surface;  ///< by medium; empty if none is (scene/subsurface.h)
+  std::vector<bool> is_under_surface;  ///< by medium; empty if none is (`is_under_surface`)
   int most_under_surface = 0;
   SceneStatistics statistics;
 };
@@ -120,5 +119,12 @@ void warn_once(std::vector<description::Warning>& warnings, const SourceLocation
 void check_power(const Light& light, const SourceLocation& location);
 /// The same for a radiance, in any channel or at any wavelength.
 void check_radiance(float radiance, const SourceLocation& location);
+/// All media of the scene, in the description's order (media.cpp). Throws Error if there are more media than ids.
+std::vector<Medium> make_media(const SceneDescription& description, SpectrumStore& spectra);
+/// Sets the parts of `data` that say which media are under surfaces. Needs its media.
+void find_media_under_surfaces(SceneData& data);
+/// See `Scene::obstacles` (obstacles.cpp). Interfaces of media are not obstacles, nor are matte shapes that emit: they
+/// do not block their own light.
+std::vector<Obstacle> find_obstacles(const Geometry& geometry, const MaterialTable& materials);
 
 }  // namespace lanthorn

@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 // The scene's shapes as triangles.
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>

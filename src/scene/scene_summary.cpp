@@ -1,14 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include <map>
-#include <string>
 #include <utility>
 #include <variant>
 #include <vector>
 
 #include "camera/view.h"
 #include "lanthorn/scene.h"
-#include "scene/media_check.h"
 #include "scene/medium_around.h"
 #include "scene/scene.h"
 #include "scene/scene_data.h"

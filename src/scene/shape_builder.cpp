@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 // Stores the shapes of a description in the ray tracer.
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>

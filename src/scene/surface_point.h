@@ -13,7 +13,7 @@
 #include "math/ray.h"
 #include "math/vec.h"
 #include "medium/medium.h"
-#include "surface/point_bsdf.h"
+#include "surface/bsdf.h"
 
 namespace lanthorn {
 

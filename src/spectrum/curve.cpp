@@ -8,7 +8,6 @@
 
 #include "spectrum/cie.h"
 #include "spectrum/sigmoid_fit.h"
-#include "spectrum/sigmoid_table.h"
 
 namespace lanthorn {
 namespace {

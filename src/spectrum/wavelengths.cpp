@@ -8,7 +8,6 @@
 #include "spectrum/wavelengths.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "spectrum/cie.h"
 

@@ -27,8 +27,6 @@
 #include "surface/closure.h"
 #include "surface/conductor.h"
 #include "surface/diffuse.h"
-#include "surface/sample.h"
-#include "surface/split_terms.h"
 
 namespace lanthorn {
 

@@ -12,9 +12,8 @@
 #include <optional>
 
 #include "math/table_cell.h"
+#include "surface/closure.h"
 #include "surface/dielectric.h"
-#include "surface/sample.h"
-#include "surface/split_terms.h"
 
 namespace lanthorn {
 

@@ -7,9 +7,8 @@
 
 #include <optional>
 
+#include "surface/closure.h"
 #include "surface/plastic.h"
-#include "surface/sample.h"
-#include "surface/split_terms.h"
 
 namespace lanthorn {
 

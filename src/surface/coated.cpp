@@ -13,7 +13,6 @@
 
 #include "math/hash.h"
 #include "math/henyey_greenstein.h"
-#include "math/power_heuristic.h"
 #include "math/sampling.h"
 #include "surface/fresnel.h"
 

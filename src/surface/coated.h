@@ -7,12 +7,11 @@
 #include <optional>
 #include <type_traits>
 
+#include "surface/closure.h"
 #include "surface/conductor.h"
 #include "surface/dielectric.h"
 #include "surface/diffuse.h"
 #include "surface/plastic.h"
-#include "surface/sample.h"
-#include "surface/split_terms.h"
 
 namespace lanthorn {
 

@@ -4,9 +4,8 @@
 
 #include <optional>
 
+#include "surface/closure.h"
 #include "surface/microfacet.h"
-#include "surface/sample.h"
-#include "surface/split_terms.h"
 
 namespace lanthorn {
 

@@ -6,8 +6,7 @@
 
 #include "math/frame.h"
 #include "math/sampling.h"
-#include "surface/sample.h"
-#include "surface/split_terms.h"
+#include "surface/closure.h"
 
 namespace lanthorn {
 

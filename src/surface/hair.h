@@ -5,8 +5,7 @@
 #include <optional>
 
 #include "math/frame.h"
-#include "surface/sample.h"
-#include "surface/split_terms.h"
+#include "surface/closure.h"
 
 namespace lanthorn {
 

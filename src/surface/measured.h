@@ -9,8 +9,7 @@
 #include "lanthorn/measured_data.h"
 #include "math/bilinear_distribution.h"
 #include "spectrum/wavelengths.h"
-#include "surface/sample.h"
-#include "surface/split_terms.h"
+#include "surface/closure.h"
 
 namespace lanthorn {
 

@@ -10,7 +10,7 @@
 #include <algorithm>
 
 #include "math/frame.h"
-#include "surface/sample.h"
+#include "surface/closure.h"
 
 namespace lanthorn {
 

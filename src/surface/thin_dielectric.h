@@ -4,10 +4,9 @@
 
 #include <optional>
 
+#include "surface/closure.h"
 #include "surface/fresnel.h"
 #include "surface/microfacet.h"
-#include "surface/sample.h"
-#include "surface/split_terms.h"
 #include "surface/thin_film.h"
 
 namespace lanthorn {

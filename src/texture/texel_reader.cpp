@@ -7,7 +7,6 @@
 #include <cstring>
 #include <string_view>
 
-#include "base/memory.h"
 #include "film/display.h"
 #include "lanthorn/text.h"
 #include "spectrum/curve.h"

@@ -19,7 +19,6 @@
 #include "support/statistics.h"
 #include "surface/fresnel.h"
 #include "surface/microfacet.h"
-#include "surface/point_bsdf.h"
 
 namespace lanthorn::bsdf_test {
 namespace {

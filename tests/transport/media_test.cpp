@@ -12,7 +12,7 @@
 #include "lanthorn/scene.h"
 #include "lanthorn/threads.h"
 #include "render/state.h"
-#include "scene/media_check.h"
+#include "scene/medium_around.h"
 #include "support/edited.h"
 #include "support/runs.h"
 #include "support/shapes.h"

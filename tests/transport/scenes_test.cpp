@@ -13,7 +13,7 @@
 #include "base/parallel.h"
 #include "integrators/integrator.h"
 #include "lanthorn/scene.h"
-#include "scene/media_check.h"
+#include "scene/medium_around.h"
 #include "support/render_scene.h"
 
 namespace lanthorn::scenes_test {

@@ -6,13 +6,10 @@
 //
 // 1. pilot.h        a few passes over a grid of pixels; EyePathLog has each contribution with its densities
 // 2. moments.h      the second moments that each candidate would have had
-// 3. choice.h       the candidates with the least product of variance and work, block by block; what it tells the user
+// 3. choice.cpp     the candidates with the least product of variance and work, block by block; what it tells the user
 #include "integrators/auto/auto.h"
 
-#include <memory>
-
 #include "base/parameters.h"
-#include "integrators/auto/choice.h"
 #include "integrators/auto/pilot.h"
 
 namespace lanthorn {

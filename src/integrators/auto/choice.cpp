@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include "integrators/auto/choice.h"
+#include "integrators/auto/auto.h"
 
 #include <fmt/format.h>
 

@@ -18,9 +18,9 @@
 #include "integrators/integrator.h"
 #include "integrators/mlt/mlt_paths.h"
 #include "path/emission_pass.h"
+#include "path/lens_connection.h"
 #include "path/mis.h"
-#include "path/splat.h"
-#include "scene/subsurface.h"
+#include "scene/scene.h"
 
 namespace lanthorn {
 

@@ -8,8 +8,8 @@
 #include "path/connections.h"
 #include "path/depth.h"
 #include "path/eye_pass.h"
+#include "path/lens_connection.h"
 #include "path/radiance_along.h"
-#include "path/splat.h"
 
 namespace lanthorn {
 

@@ -4,9 +4,11 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
+#include <vector>
 
-#include "integrators/mlt/path_samples.h"
 #include "math/distribution.h"
+#include "math/primary_samples.h"
 #include "path/emission_densities.h"
 #include "path/path_class.h"
 #include "path/path_draw.h"
@@ -15,6 +17,32 @@
 #include "scene/scene.h"
 
 namespace lanthorn {
+
+/// The random numbers of a path's two subpaths.
+struct PathSamples {
+  PrimarySamples eye, light;
+
+  explicit PathSamples(float sigma) : eye(sigma), light(sigma) {}
+  void start(std::uint64_t key);
+  void set_key(std::uint64_t key);
+  void propose(Mutation mutation);
+  void accept();
+  void reject();
+};
+
+/// Distribution of the number of scatterings, at least 1, of independently drawn paths of fixed length. In most scenes,
+/// most light scatters a few times only. The probabilities affect noise alone.
+class PathLengths {
+ public:
+  PathLengths() = default;
+  explicit PathLengths(int most);
+  float probability(int scatterings) const { return probability_[static_cast<std::size_t>(scatterings) - 1]; }
+  /// `u` in [0,1).
+  int at(float u) const;
+
+ private:
+  std::vector<float> probability_, sums_;  // by scatterings less 1
+};
 
 /// Contribution of a path to the film, divided by the density of its random numbers. Emission seen directly or by way
 /// of delta scatterings alone is left out, because plain eye paths find it.

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include "integrators/mlt/path_samples.h"
+#include "integrators/mlt/mlt_paths.h"
 
 #include <algorithm>
 #include <cmath>

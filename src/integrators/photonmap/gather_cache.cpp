@@ -9,7 +9,6 @@
 #include <utility>
 #include <vector>
 
-#include "integrators/photonmap/gather_record.h"
 #include "lanthorn/error.h"
 #include "path/eye_pass.h"
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include "integrators/photonmap/gather_record.h"
+#include "integrators/photonmap/gather_cache.h"
 
 #include <algorithm>
 #include <cmath>

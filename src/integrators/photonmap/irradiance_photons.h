@@ -13,7 +13,7 @@
 
 #include "base/parallel.h"
 #include "index/bucket_kdtree.h"
-#include "photon/gather/disc_evenness.h"
+#include "photon/gather/disc_tests.h"
 #include "photon/gather/radiance_estimate.h"
 #include "photon/incidence.h"
 #include "photon/photon.h"

@@ -13,7 +13,6 @@
 #include "base/pool.h"
 #include "integrators/photonmap/gather_cache.h"
 #include "integrators/photonmap/photonmap_settings.h"
-#include "integrators/photonmap/reverse_gather.h"
 #include "integrators/photonmap/two_pass.h"
 #include "integrators/progressive.h"
 #include "path/eye_pass.h"

@@ -8,7 +8,6 @@
 #include <optional>
 
 #include "integrators/integrator.h"
-#include "integrators/photonmap/reverse_gather.h"
 #include "integrators/photonmap/two_pass.h"
 #include "photon/guides/emission_choice.h"
 

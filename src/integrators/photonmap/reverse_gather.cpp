@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include "integrators/photonmap/reverse_gather.h"
+#include "integrators/photonmap/two_pass.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,9 +4,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
-#include <variant>
 
 #include "base/parallel.h"
 #include "math/lanes.h"

@@ -3,8 +3,6 @@
 #include "integrators/photonmap/shadow_photons.h"
 
 #include <array>
-#include <cmath>
-#include <span>
 
 #include "photon/gather/kernels.h"
 #include "photon/photon.h"

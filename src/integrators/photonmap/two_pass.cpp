@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "integrators/photonmap/two_pass.h"
 
-#include <cmath>
-
 #include "photon/gather/photon_gather.h"
 
 namespace lanthorn {

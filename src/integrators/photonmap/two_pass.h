@@ -157,4 +157,11 @@ class TwoPassVisitor : PathVisitor {
   int known_ = 0;  // non-delta scatterings at which the walk must not add light
 };
 
+/// The second pass of reverse photon mapping (Havran, Herzog & Seidel 2005): eye paths are traced first and their ends
+/// are stored as reverse photons; then each photon adds its light to the reverse photons within its radius
+/// (reverse_gather.cpp). Adds the pass to the film, in blocks of pixels whose reverse photons fit into about the
+/// `memory` bytes of the settings.
+PassReport gather_in_reverse(const RenderJob& job, const TwoPassSettings& settings, const TwoPassMaps& maps,
+                             RadiusRule radii, std::uint32_t pass, const FilmPass& film, const PhaseObserver& begin);
+
 }  // namespace lanthorn

@@ -12,7 +12,7 @@
 #include "path/depth.h"
 #include "path/light_layers.h"
 #include "photon/flux_classes.h"
-#include "photon/gather/flat_disc.h"
+#include "photon/gather/disc_tests.h"
 
 namespace lanthorn {
 

@@ -9,7 +9,7 @@
 #include "integrators/vcm/vcm_pass.h"
 #include "path/connections.h"
 #include "path/depth.h"
-#include "path/splat.h"
+#include "path/lens_connection.h"
 #include "photon/flux_classes.h"
 #include "photon/photon_pass.h"
 

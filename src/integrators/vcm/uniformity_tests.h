@@ -11,7 +11,7 @@
 
 #include "film/pixel_window.h"
 #include "math/vec.h"
-#include "photon/gather/sectors.h"
+#include "photon/gather/disc_tests.h"
 
 namespace lanthorn {
 

@@ -17,7 +17,8 @@
 //    path/connections.h     hits of lights (TR eq. 43), next-event estimation (TR eqs. 44, 45), and connections to the
 //                           vertices of a light path, f_eye G V f_light (TR eqs. 40, 41)
 //    merge_map.h            merges with all photons nearby, f / (N pi r^2) (TR eqs. 38, 39); in media volume_merge.h
-// 4. path/light_layers.h    sums by class of path; film/film.h adds them, and path/splat.h what light paths found
+// 4. path/light_layers.h    sums by class of path; film/film.h adds them, and path/lens_connection.h what light
+//                           paths found
 //
 // Each technique has the weight of the balance heuristic, w = 1 / (w_light + 1 + w_eye) (TR eq. 37). path/mis.h derives
 // both terms from sums that both kinds of walk carry from vertex to vertex, d_VCM, d_VC and d_VM (TR eqs. 31-36):
@@ -36,8 +37,8 @@
 #include "integrators/vcm/light_visitor.h"
 #include "integrators/vcm/vcm_pass.h"
 #include "path/eye_pass.h"
+#include "path/lens_connection.h"
 #include "path/radiance_along.h"
-#include "path/splat.h"
 
 namespace lanthorn {
 

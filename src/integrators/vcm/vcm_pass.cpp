@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <span>
 
-#include "photon/medium_records.h"
+#include "photon/photon.h"
 
 namespace lanthorn {
 

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <string>
-#include <vector>
 
 #include "base/parameters.h"
 #include "integrators/vcm/uniformity_tests.h"

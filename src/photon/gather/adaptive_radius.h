@@ -16,9 +16,9 @@
 
 #include "math/frame.h"
 #include "math/vec.h"
+#include "photon/gather/disc_tests.h"
 #include "photon/gather/kernels.h"
 #include "photon/gather/photon_gather.h"
-#include "photon/gather/sectors.h"
 
 namespace lanthorn {
 
@@ -121,8 +121,8 @@ class LeastErrorRadius {
   float squares_ = 0, laplacian_ = 0, laplacian_variance_ = 0;  // sums over gathers, the first per area
 };
 
-/// A radius that shrinks where the photons within it are not uniformly distributed (Lin et al. 2020, see sectors.h). If
-/// the counts of photons reject a uniform density, the radius shrinks and the counts start again at zero.
+/// A radius that shrinks where the photons within it are not uniformly distributed (Lin et al. 2020, see disc_tests.h).
+/// If the counts of photons reject a uniform density, the radius shrinks and the counts start again at zero.
 class ChiSquaredRadius {
  public:
   explicit ChiSquaredRadius(float first) : first_(first), radius_(first) {}

@@ -8,11 +8,10 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <optional>
 
 #include "index/bucket_kdtree.h"
 #include "lanthorn/error.h"
-#include "photon/gather/flat_disc.h"
+#include "photon/gather/disc_tests.h"
 #include "photon/gather/photon_gather.h"
 #include "photon/photon_map.h"
 #include "photon/photon_pass.h"

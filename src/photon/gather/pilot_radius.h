@@ -8,7 +8,7 @@
 #include "base/parameters.h"
 #include "path/render_job.h"
 #include "photon/flux_classes.h"
-#include "photon/guides/light_guide.h"
+#include "photon/guides/guide_photons.h"
 
 namespace lanthorn {
 

@@ -8,8 +8,8 @@
 
 #include "base/parameters.h"
 #include "path/render_job.h"
-#include "photon/guides/light_guide.h"
-#include "photon/medium_records.h"
+#include "photon/guides/guide_photons.h"
+#include "photon/photon.h"
 
 namespace lanthorn {
 

@@ -12,7 +12,6 @@
 
 #include "light/light_sampler.h"
 #include "photon/guides/credit_round.h"
-#include "photon/guides/credit_subdivision.h"
 #include "photon/guides/hit_points.h"
 #include "photon/guides/projection_map.h"
 

@@ -14,7 +14,7 @@
 #include "index/ball_bvh.h"
 #include "index/beam_bvh.h"
 #include "math/hash.h"
-#include "medium/transmittance_curve.h"
+#include "medium/medium.h"
 #include "path/path_context.h"
 #include "path/vertex.h"
 

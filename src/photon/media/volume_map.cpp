@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "photon/media/volume_map.h"
 
-#include <algorithm>
 #include <cmath>
 #include <type_traits>
 

@@ -7,7 +7,7 @@
 #include "base/parameters.h"
 #include "path/render_job.h"
 #include "photon/gather/kernels.h"
-#include "photon/guides/light_guide.h"
+#include "photon/guides/guide_photons.h"
 #include "photon/media/volume_gather.h"
 
 namespace lanthorn {

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "path/ray_light.h"
+#include "path/direct_light.h"
 #include "path/walk.h"
 #include "photon/media/volume_gather.h"
 

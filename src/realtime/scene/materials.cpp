@@ -10,10 +10,10 @@
 #include <variant>
 
 #include "scene/scene_data.h"
+#include "surface/closure.h"
 #include "surface/fresnel.h"
 #include "surface/microfacet.h"
 #include "surface/plastic.h"
-#include "surface/sample.h"
 
 namespace lanthorn {
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// A closure as split-sum shading represents it (surface/split_terms.h).
+// A closure as split-sum shading represents it (surface/closure.h).
 #include "bsdf.glsl"
 struct SplitTerms {
   vec3 diffuse;         // reflectance for light from the viewer's side

@@ -13,7 +13,6 @@
 
 #include "index/sphere_octree.h"
 #include "integrators/photonmap/irradiance_photons.h"
-#include "integrators/photonmap/irradiance_record.h"
 #include "math/hash.h"
 #include "math/sampling.h"
 #include "photon/photon_map.h"

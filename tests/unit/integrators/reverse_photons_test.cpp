@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "index/bucket_kdtree.h"
-#include "integrators/photonmap/photon_radii.h"
+#include "integrators/photonmap/reverse_photons.h"
 #include "math/hash.h"
 
 namespace lanthorn::reverse_photons_test {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include "math/power_heuristic.h"
+#include "math/sampling.h"
 
 #include <gtest/gtest.h>
 

@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "medium/medium.h"
-#include "medium/transmittance_curve.h"
 
 namespace lanthorn::medium_test {
 namespace {

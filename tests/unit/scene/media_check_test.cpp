@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include "scene/media_check.h"
+#include "scene/medium_around.h"
 
 #include <gtest/gtest.h>
 

@@ -12,12 +12,11 @@
 #include <vector>
 
 #include "math/hash.h"
-#include "spectrum/chromaticities.h"
 #include "spectrum/cie.h"
 #include "spectrum/curve.h"
+#include "spectrum/rgb_matrix.h"
 #include "spectrum/sigmoid_fit.h"
 #include "spectrum/wavelengths.h"
-#include "spectrum/white_balance.h"
 
 namespace lanthorn::spectrum_test {
 namespace {

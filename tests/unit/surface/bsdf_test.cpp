@@ -14,7 +14,6 @@
 #include "support/jacobian.h"
 #include "surface/fresnel.h"
 #include "surface/microfacet.h"
-#include "surface/point_bsdf.h"
 
 namespace lanthorn::bsdf_test {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include "photon/gather/flat_disc.h"
+#include "photon/gather/disc_tests.h"
 
 #include <cmath>
 #include <optional>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include "light/emitter_geometry.h"
+#include "light/emitter_sampling.h"
 
 namespace lanthorn {
 

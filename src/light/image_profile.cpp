@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include "light/spherical_image.h"
+#include "light/image_profile.h"
 
 #include <algorithm>
 #include <cassert>
