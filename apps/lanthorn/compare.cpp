@@ -16,7 +16,6 @@
 
 #include "commands.h"
 #include "console.h"
-#include "json_text.h"
 #include "lanthorn/error.h"
 #include "lanthorn/file.h"
 #include "lanthorn/flip.h"
@@ -25,6 +24,7 @@
 #include "output_check.h"
 #include "read_layer.h"
 #include "render_arguments.h"
+#include "report_json.h"
 #include "rescue.h"
 
 namespace lanthorn::program {

@@ -13,7 +13,6 @@
 
 #include "commands.h"
 #include "console.h"
-#include "json_text.h"
 #include "lanthorn/convergence.h"
 #include "lanthorn/error.h"
 #include "lanthorn/file.h"
@@ -25,6 +24,7 @@
 #include "output_check.h"
 #include "progress.h"
 #include "render_arguments.h"
+#include "report_json.h"
 #include "rescue.h"
 #include "signals.h"
 
@@ -57,19 +57,16 @@ void print_table(const Convergence& c, const ConvergenceSettings& settings) {
 }
 
 nlohmann::json report(const Convergence& c, const ConvergeCommand& a) {
-  const auto optional = [](const std::optional<double>& x) { return x ? nlohmann::json(*x) : nlohmann::json(); };
   nlohmann::json points = nlohmann::json::array();
   for (const ConvergencePoint& p : c.points)
-    points.push_back({{"passes", p.passes},
-                      {"deviation", p.deviation},
-                      {"bias", optional(p.bias)},
-                      {"rms_error", optional(p.error)}});
+    points.push_back(
+        {{"passes", p.passes}, {"deviation", p.deviation}, {"bias", or_null(p.bias)}, {"rms_error", or_null(p.error)}});
   return {{"scene", a.scene},
           {"runs", c.runs},
           {"fit_from", a.settings.fit_from},
           {"points", points},
-          {"variance_slope", optional(c.variance_slope)},
-          {"bias_slope", optional(c.bias_slope)}};
+          {"variance_slope", or_null(c.variance_slope)},
+          {"bias_slope", or_null(c.bias_slope)}};
 }
 
 // Log-log plot of the curves as SVG.

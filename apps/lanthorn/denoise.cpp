@@ -11,13 +11,13 @@
 
 #include "commands.h"
 #include "console.h"
-#include "estimate_json.h"
 #include "lanthorn/error.h"
 #include "lanthorn/image_file.h"
 #include "lanthorn/state.h"
 #include "output.h"
 #include "output_check.h"
 #include "render_arguments.h"
+#include "report_json.h"
 
 namespace lanthorn::program {
 

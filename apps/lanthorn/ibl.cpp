@@ -21,7 +21,6 @@
 
 #include "commands.h"
 #include "console.h"
-#include "json_text.h"
 #include "lanthorn/error.h"
 #include "lanthorn/file.h"
 #include "lanthorn/image_file.h"
@@ -31,6 +30,7 @@
 #include "output_check.h"
 #include "progress.h"
 #include "render_arguments.h"
+#include "report_json.h"
 #include "signals.h"
 
 namespace lanthorn::program {

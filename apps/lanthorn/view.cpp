@@ -13,7 +13,6 @@
 
 #include "commands.h"
 #include "console.h"
-#include "json_text.h"
 #include "lanthorn/error.h"
 #include "lanthorn/file.h"
 #include "lanthorn/image_file.h"
@@ -26,6 +25,7 @@
 #include "output.h"
 #include "output_check.h"
 #include "render_command.h"
+#include "report_json.h"
 
 namespace lanthorn::program {
 
