@@ -6,13 +6,10 @@
 #include <array>
 #include <cstdint>
 
-#include "gl/framebuffer.h"
 #include "gl/program.h"
 #include "gl/texture.h"
 #include "lanthorn/image.h"
 #include "realtime/frame/renderer.h"
-#include "realtime/scene/constants.h"
-#include "realtime/scene/screen.h"
 
 namespace lanthorn {
 

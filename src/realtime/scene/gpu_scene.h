@@ -8,13 +8,13 @@
 #include <vector>
 
 #include "gl/buffer.h"
+#include "gl/object.h"
 #include "gl/program.h"
 #include "gl/texture.h"
-#include "gl/vertex_array.h"
 #include "lanthorn/scene.h"
 #include "math/vec.h"
 #include "realtime/scene/layouts.h"
-#include "realtime/scene/surface_textures.h"
+#include "realtime/scene/materials.h"
 #include "scene/geometry.h"
 #include "scene/scene.h"
 

@@ -15,7 +15,7 @@
 #include "realtime/frame/renderer.h"
 #include "realtime/scene/environment_fingerprint.h"
 #include "realtime/scene/shader_files.h"
-#include "realtime/techniques/splitsum/environment_baker.h"
+#include "realtime/techniques/splitsum/environment_maps.h"
 #include "support/opengl.h"
 #include "support/render_scene.h"
 

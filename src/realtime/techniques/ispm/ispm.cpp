@@ -20,9 +20,7 @@
 #include "photon/gather/radius_schedule.h"
 #include "realtime/scene/view_focus.h"
 #include "realtime/techniques/frame_context.h"
-#include "realtime/techniques/ispm/bounce_map.h"
 #include "realtime/techniques/ispm/photon_light.h"
-#include "realtime/techniques/ispm/photon_tiles.h"
 #include "realtime/techniques/ispm/photon_walk.h"
 
 namespace lanthorn {

@@ -12,7 +12,7 @@
 #include "integrators/environment_image.h"
 #include "realtime/scene/environment_fingerprint.h"
 #include "realtime/techniques/frame_context.h"
-#include "realtime/techniques/splitsum/environment_baker.h"
+#include "realtime/techniques/splitsum/environment_maps.h"
 
 namespace lanthorn {
 
