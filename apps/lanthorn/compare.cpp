@@ -10,7 +10,6 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -228,7 +227,7 @@ void run(const CompareOptions& o) {
                                  print_table(o, result);
                                }}};
   if (!o.json.empty() && o.json != "-")
-    outputs.push_back({o.json, OutputKind::report, [&] { write_file(o.json, std::as_bytes(std::span(text))); }});
+    outputs.push_back({o.json, OutputKind::report, [&] { write_file(o.json, text); }});
   if (!o.diff.empty())
     outputs.push_back({o.diff, OutputKind::picture, [&] {
                          write_png(o.diff, flip_colors(difference_map(o, result), result.width, result.height));

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <span>
 #include <vector>
 
 #include "commands.h"
@@ -188,13 +187,10 @@ void run(const ConvergeCommand& a) {
   }
   if (c.runs < a.settings.runs) say("lanthorn: {} of {} renders complete\n", c.runs, a.settings.runs);
   set_stage(Stage::saving);
-  const auto write = [](const std::string& file, const std::string& text) {
-    write_file(file, std::as_bytes(std::span(text)));
-  };
   std::vector<Output> outputs{{"standard output", OutputKind::report, [&] { print_table(c, a.settings); }}};
   if (!a.json.empty())
-    outputs.push_back({a.json, OutputKind::report, [&] { write(a.json, report_text(report(c, a))); }});
-  if (!a.plot.empty()) outputs.push_back({a.plot, OutputKind::report, [&] { write(a.plot, Plot(c).svg(c)); }});
+    outputs.push_back({a.json, OutputKind::report, [&] { write_file(a.json, report_text(report(c, a))); }});
+  if (!a.plot.empty()) outputs.push_back({a.plot, OutputKind::report, [&] { write_file(a.plot, Plot(c).svg(c)); }});
   write_all(outputs);
 }
 

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <memory>
-#include <span>
 #include <string>
 
 #include "commands.h"
@@ -31,7 +30,7 @@ void run(const ConvertCommand& a) {
   check_outputs(files_of(upgraded.files, a.scene), {{a.output, "OUTPUT", {".pbrt"}}});
   for (const description::Warning& warning : upgraded.warnings)
     warn("{}", Error(warning.location, warning.message).what());
-  write_file(a.output, std::as_bytes(std::span(upgraded.text)));
+  write_file(a.output, upgraded.text);
   announce("{}: {} as a pbrt-v4 file\n", a.output, a.scene);
 }
 

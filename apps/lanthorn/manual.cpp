@@ -3,7 +3,6 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <memory>
-#include <span>
 
 #include "commands.h"
 #include "help.h"
@@ -19,7 +18,7 @@ namespace fs = std::filesystem;
 void write_text(const fs::path& path, const std::string& text) {
   std::error_code ignored;  // write_file reports the problem
   fs::create_directories(path.parent_path(), ignored);
-  write_file(path, std::as_bytes(std::span(text)));
+  write_file(path, text);
 }
 
 void write_manual(const CLI::App& program, const fs::path& folder) {

@@ -33,8 +33,7 @@ void run(const PhotonsCommand& a) {
   const ThreadLimit limit(a.threads);
   const SharedScene scene = build_scene(std::move(description));
   const Photons photons = trace_photons(*scene, description_of(*scene).view, options, a.pass, a.direct);
-  const std::string ply = encode_ply(photons);
-  write_file(a.output, std::as_bytes(std::span(ply)));
+  write_file(a.output, encode_ply(photons));
   announce("{}: {} photons of {} light paths\n", a.output, photons.size(), photons.light_paths);
 }
 

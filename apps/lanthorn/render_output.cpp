@@ -6,7 +6,6 @@
 #include <sys/resource.h>
 
 #include <nlohmann/json.hpp>
-#include <span>
 
 #include "console.h"
 #include "interim_files.h"
@@ -103,8 +102,7 @@ void write_report(const std::string& path, const Scene& scene, StatePicture& pic
   if (picture.denoised_error()) report["denoised_error"] = estimate_json(*picture.denoised_error());
   report["passes_total"] = summary.pass_count;
   report["scene"] = scene_json(summarize(scene));
-  const std::string text = report_text(report);
-  write_file(path, std::as_bytes(std::span(text)));
+  write_file(path, report_text(report));
 }
 
 std::string describe_denoised(const std::optional<ErrorEstimate>& error) {

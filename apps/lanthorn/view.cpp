@@ -7,7 +7,6 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <set>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -55,11 +54,6 @@ nlohmann::json report_json(const ViewerReport& r) {
           {"stages", std::move(stages)},
           {"photons_per_bounce", r.photons_per_bounce},
           {"limitations", r.limitations}};
-}
-
-void write_json(const std::string& file, const ViewerReport& report) {
-  const std::string text = report_text(report_json(report));
-  write_file(file, std::as_bytes(std::span(text)));
 }
 
 std::string known_methods() {
@@ -123,7 +117,7 @@ void show(const ViewCommand& a, const SharedScene& original, const ViewerOptions
   const ViewDescription view = view_of(*scene, a.changes, options.render);
   if (!a.headless) {
     const ViewerReport report = run_viewer(original, view, options);
-    if (!a.json.empty()) write_json(a.json, report);
+    if (!a.json.empty()) write_file(a.json, report_text(report_json(report)));
     return;
   }
   const ViewerFrames frames = render_frames(scene, view, options);
@@ -132,7 +126,7 @@ void show(const ViewCommand& a, const SharedScene& original, const ViewerOptions
   const nlohmann::json metadata{
       {"version", version}, {"method", frames.report.method}, {"frames", frames.report.frames}};
   write_picture(a.output, picture_for(a.output, frames.image), a.picture, view.film.measures_exposure, metadata.dump());
-  if (!a.json.empty()) write_json(a.json, frames.report);
+  if (!a.json.empty()) write_file(a.json, report_text(report_json(frames.report)));
   announce("{}: {} frames by {}{}\n", a.output, frames.report.frames, frames.report.method,
            frames.report.software ? " (OpenGL in software)" : "");
 }

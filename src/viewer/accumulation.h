@@ -13,6 +13,8 @@
 
 namespace lanthorn {
 
+inline constexpr std::array light_layer_names{"emission", "direct", "indirect", "caustic"};
+
 /// Settings of a picture for a screen.
 struct ToneSettings {
   enum class Curve : std::uint8_t {

@@ -10,7 +10,6 @@
 #include "lanthorn/viewer.h"
 #include "scene/medium_around.h"
 #include "viewer/accumulation.h"
-#include "viewer/clock.h"
 #include "viewer/realtime_view.h"
 
 namespace lanthorn {
