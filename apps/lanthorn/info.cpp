@@ -13,7 +13,6 @@
 #include "commands.h"
 #include "console.h"
 #include "lanthorn/error.h"
-#include "lanthorn/expected_meshes.h"
 #include "lanthorn/machine.h"
 #include "lanthorn/methods.h"
 #include "lanthorn/scene.h"

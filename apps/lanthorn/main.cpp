@@ -18,7 +18,7 @@
 #include "console.h"
 #include "help.h"
 #include "lanthorn/error.h"
-#include "lanthorn/realtime.h"
+#include "lanthorn/methods.h"
 #include "lanthorn/text.h"
 #include "lanthorn/threads.h"
 #include "lanthorn/version.h"

@@ -7,7 +7,6 @@
 #include <iterator>
 
 #include "help.h"
-#include "lanthorn/shell.h"
 #include "lanthorn/text.h"
 
 namespace lanthorn::program {

@@ -14,7 +14,6 @@
 #include "console.h"
 #include "lanthorn/file.h"
 #include "lanthorn/image_file.h"
-#include "lanthorn/number_text.h"
 #include "lanthorn/state.h"
 #include "lanthorn/text.h"
 #include "output.h"

@@ -13,7 +13,6 @@
 #include "lanthorn/file.h"
 #include "lanthorn/image_file.h"
 #include "lanthorn/methods.h"
-#include "lanthorn/number_text.h"
 #include "lanthorn/text.h"
 #include "lanthorn/threads.h"
 #include "output_check.h"

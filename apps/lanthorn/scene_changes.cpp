@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "lanthorn/error.h"
-#include "lanthorn/light_names.h"
+#include "lanthorn/scene.h"
 #include "lanthorn/text.h"
 #include "quantities.h"
 

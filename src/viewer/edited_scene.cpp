@@ -12,7 +12,7 @@
 
 #include "io/pbrt/tokenizer.h"
 #include "lanthorn/error.h"
-#include "lanthorn/light_names.h"
+#include "lanthorn/scene.h"
 
 namespace lanthorn {
 

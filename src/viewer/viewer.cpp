@@ -21,7 +21,6 @@
 #include "lanthorn/file.h"
 #include "lanthorn/interactive_render.h"
 #include "lanthorn/methods.h"
-#include "lanthorn/shell.h"
 #include "lanthorn/text.h"
 #include "lanthorn/viewer.h"
 #include "render/scaled_view.h"
@@ -70,7 +69,8 @@ class OpenWindow {
 };
 
 Ray middle_ray(const View& view) {
-  return ray_through(view, 0.5f * Vec2(static_cast<float>(view.window.width()), static_cast<float>(view.window.height())));
+  return ray_through(view,
+                     0.5f * Vec2(static_cast<float>(view.window.width()), static_cast<float>(view.window.height())));
 }
 
 // Distance of the point around which the camera turns: the surface in the middle of the picture.

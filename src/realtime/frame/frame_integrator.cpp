@@ -17,7 +17,7 @@
 #include "film/film_pass.h"
 #include "gl/context.h"
 #include "integrators/integrator.h"
-#include "lanthorn/realtime.h"
+#include "lanthorn/methods.h"
 #include "math/sampler.h"
 #include "path/path_draw.h"
 #include "photon/photon.h"
