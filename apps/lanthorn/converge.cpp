@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
 #include <memory>
@@ -203,15 +202,13 @@ OptionTable converge_options(ConvergeCommand& a) {
                    .value = into(a.settings.runs, count_type({2, 1'000'000})),
                    .brief = "Number of renders; their seeds count up from --seed",
                    .otherwise = std::to_string(a.settings.runs)},
-                  {.names = "--reference",
-                   .value = into(a.reference, text_type("FILE")),
-                   .brief = "Converged picture of the same size, for bias and error"},
+                  file_option("--reference", a.reference, "Converged picture of the same size, for bias and error"),
                   {.names = "--fit-from",
                    .value = into(a.settings.fit_from, count_type({1, most_passes})),
                    .brief = "First number of passes that counts for the fitted exponents",
                    .otherwise = std::to_string(a.settings.fit_from)},
-                  {.names = "--plot", .value = into(a.plot, text_type("FILE")), .brief = "Write the curves as .svg"},
-                  {.names = "--json", .value = into(a.json, text_type("FILE")), .brief = "Write the numbers as JSON"},
+                  file_option("--plot", a.plot, "Write the curves as .svg"),
+                  file_option("--json", a.json, "Write the numbers as JSON"),
                   {.names = "-q,--quiet", .value = flag(a.quiet), .brief = "Print no progress"}};
   return joined(render_options(a), std::move(own));
 }

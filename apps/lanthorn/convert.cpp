@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
 
 #include <memory>
 #include <string>
@@ -39,10 +38,7 @@ OptionTable convert_options(ConvertCommand& a) {
            .value = into(a.scene, existing_file_type()),
            .brief = "Scene file of pbrt-v3 (.pbrt)",
            .required = true},
-          {.names = "output",
-           .value = into(a.output, text_type("FILE")),
-           .brief = "File to write (.pbrt)",
-           .required = true},
+          required_file("output", a.output, "File to write (.pbrt)"),
           {.names = "--sandbox",
            .value = flag(a.reading.sandbox),
            .brief = "Read only files in the tree of the scene's folder"}};

@@ -65,6 +65,16 @@ std::string Option::description(bool in_short) const {
   return text;
 }
 
+Option file_option(const std::string& names, std::string& file, const std::string& brief) {
+  return {.names = names, .value = into(file, text_type("FILE")), .brief = brief};
+}
+
+Option required_file(const std::string& names, std::string& file, const std::string& brief) {
+  Option option = file_option(names, file, brief);
+  option.required = true;
+  return option;
+}
+
 OptionTable joined(OptionTable table, OptionTable more) {
   table.insert(table.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
   return table;

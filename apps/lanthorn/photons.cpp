@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
 
 #include <memory>
 #include <utility>
@@ -39,10 +38,7 @@ void run(const PhotonsCommand& a) {
 
 OptionTable photons_options(PhotonsCommand& a) {
   OptionTable own{
-      {.names = "-o,--output",
-       .value = into(a.output, text_type("FILE")),
-       .brief = "Output file: binary PLY",
-       .required = true},
+      required_file("-o,--output", a.output, "Output file: binary PLY"),
       {.names = "--pass",
        .value = into(a.pass, count_type({0, most_passes - 1})),
        .brief = "Pass whose photons are written",

@@ -98,9 +98,7 @@ OptionTable render_command_options(RenderCommand& a) {
       {.names = "--resume",
        .value = into(a.resume, existing_file_type()),
        .brief = "Continue a saved state of the same scene and settings"},
-      {.names = "--json",
-       .value = into(a.json, text_type("FILE")),
-       .brief = "Write statistics (times, rays, photons, memory) as JSON"}};
+      file_option("--json", a.json, "Write statistics (times, rays, photons, memory) as JSON")};
   const OptionTable of_scene = joined(render_options(a), scene_change_options(a.changes));
   return joined(joined(joined(of_scene, std::move(files)), output_options(a.output)), report_options(a));
 }

@@ -14,7 +14,7 @@
 #include "lanthorn/error.h"
 #include "lanthorn/scene.h"
 #include "lanthorn/text.h"
-#include "quantities.h"
+#include "value_types.h"
 
 namespace lanthorn::program {
 

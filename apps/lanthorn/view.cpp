@@ -164,23 +164,20 @@ void run_view(const ViewCommand& a) {
 
 OptionTable view_options(ViewCommand& a) {
   constexpr std::uint64_t most_frames = 1'000'000;
-  OptionTable own{{.names = "-i,--integrator",
-                   .value = into(a.method, text_type("INTEGRATOR")),
-                   .brief = "Method that is shown first",
-                   .details = method_help(),
-                   .otherwise = a.method},
-                  {.names = "--headless",
-                   .value = flag(a.headless),
-                   .brief = "Draw without a window or display; needs --passes and -o"},
-                  {.names = "-p,--passes",
-                   .value = into(a.frames, count_type({1, most_frames})),
-                   .brief = "With --headless: passes (frames) to average. Else: close after this many"},
-                  {.names = "-o,--output",
-                   .value = into(a.output, text_type("FILE")),
-                   .brief = "With --headless: the picture (.png, .jpg, .tif, or .exr with all layers)"},
-                  {.names = "--json",
-                   .value = into(a.json, text_type("FILE")),
-                   .brief = "Write frame times by stage and photons per bounce as JSON"}};
+  OptionTable own{
+      {.names = "-i,--integrator",
+       .value = into(a.method, text_type("INTEGRATOR")),
+       .brief = "Method that is shown first",
+       .details = method_help(),
+       .otherwise = a.method},
+      {.names = "--headless",
+       .value = flag(a.headless),
+       .brief = "Draw without a window or display; needs --passes and -o"},
+      {.names = "-p,--passes",
+       .value = into(a.frames, count_type({1, most_frames})),
+       .brief = "With --headless: passes (frames) to average. Else: close after this many"},
+      file_option("-o,--output", a.output, "With --headless: the picture (.png, .jpg, .tif, or .exr with all layers)"),
+      file_option("--json", a.json, "Write frame times by stage and photons per bounce as JSON")};
   OptionTable render = without(render_options(a), "--integrator");
   OptionTable table = joined(joined(std::move(render), scene_change_options(a.changes)), std::move(own));
   table.push_back(denoise_option(a.picture.denoise, "Remove the noise of pictures of offline methods, layer by layer"));

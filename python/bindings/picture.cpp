@@ -4,10 +4,6 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
-#include <algorithm>
-#include <array>
-
-#include "arrays.h"
 #include "bindings.h"
 #include "lanthorn/denoise.h"
 #include "lanthorn/error.h"

@@ -5,7 +5,6 @@
 
 #include <pybind11/stl.h>
 
-#include "arrays.h"
 #include "bindings.h"
 #include "plain_data.h"
 

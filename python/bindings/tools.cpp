@@ -10,7 +10,6 @@
 #include <limits>
 #include <memory>
 
-#include "arrays.h"
 #include "bindings.h"
 #include "lanthorn/convergence.h"
 #include "lanthorn/denoise.h"

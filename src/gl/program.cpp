@@ -7,8 +7,6 @@
 #include <algorithm>
 #include <glm/gtc/type_ptr.hpp>
 #include <initializer_list>
-#include <set>
-#include <sstream>
 #include <vector>
 
 #include "lanthorn/error.h"

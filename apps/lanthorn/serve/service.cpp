@@ -13,7 +13,6 @@
 #include <string_view>
 #include <utility>
 
-#include "../quantities.h"
 #include "../render_arguments.h"
 #include "../report_json.h"
 #include "../value_types.h"

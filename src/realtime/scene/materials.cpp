@@ -3,8 +3,6 @@
 #include "realtime/scene/materials.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <cstddef>
 #include <optional>
 #include <utility>

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "realtime/scene/projection.h"
 
-#include <cmath>
 #include <glm/matrix.hpp>
 
 #include "lanthorn/error.h"

@@ -3,7 +3,6 @@
 #include "realtime/techniques/splitsum/environment_maps.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "gl/buffer.h"
 #include "ibl/bake_plan.h"
