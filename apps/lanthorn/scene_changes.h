@@ -1,8 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 // Changes of a scene from the command line or from the page of `serve`: camera position, lens and brightness of each
-// light.
-// Both produce the same picture from the same changes.
+// light. Both produce the same picture from the same changes.
 #pragma once
 
 #include <cstddef>
