@@ -49,7 +49,7 @@ bool is_option(const std::string& word) {
   return word.size() > 1 && word[0] == '-' && std::isdigit(static_cast<unsigned char>(word[1])) == 0 && word[1] != '.';
 }
 
-Words option_names(const CLI::App& command) {
+Words long_names(const CLI::App& command) {
   Words names;
   for (const CLI::Option* option : command.get_options())
     for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
@@ -73,7 +73,7 @@ std::string unknown_option(const CLI::App& command, const std::string& word) {
   const std::string name = word.substr(0, word.find('='));
   if (const auto removed = removed_options.find(name); removed != removed_options.end())
     return fmt::format("option {} was removed; {}", name, removed->second);
-  return fmt::format("unknown option {}{}", name, did_you_mean(name, option_names(command)));
+  return fmt::format("unknown option {}{}", name, did_you_mean(name, long_names(command)));
 }
 
 std::string unknown_command(const CLI::App& program, const std::string& word) {
