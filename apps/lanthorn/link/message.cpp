@@ -62,7 +62,7 @@ std::vector<std::byte> read_bytes(int file, std::uint64_t count) {
   return bytes;
 }
 
-void check(const Header& header) {
+void check_header(const Header& header) {
   if (header.magic != magic)
     throw Error("expected a message of lanthorn's protocol, which begins with the bytes LNTH (see docs/protocol.md)");
   if (header.json_bytes > most_json_bytes || header.data_bytes > most_data_bytes)
@@ -213,7 +213,7 @@ std::optional<LinkRequest> read_request(int file) {
   const std::size_t got = read_some(file, reinterpret_cast<std::byte*>(&header), sizeof(header));
   if (got == 0) return std::nullopt;
   if (got < sizeof(header)) throw Error("the client's last message is truncated");
-  check(header);
+  check_header(header);
   const std::vector<std::byte> json = read_bytes(file, header.json_bytes);
   const auto data = std::make_shared<const std::vector<std::byte>>(read_bytes(file, header.data_bytes));
   try {
