@@ -27,6 +27,7 @@ inline std::string report_text(const nlohmann::json& json) { return json_text(js
 /// The record of a render for a report, a client or a picture's metadata.
 inline nlohmann::json settings_json(const RenderRecord& record) { return nlohmann::json::parse(settings_text(record)); }
 
+/// The value; null if there is none.
 template <class Value>
 nlohmann::json or_null(const std::optional<Value>& value) {
   return value ? nlohmann::json(*value) : nlohmann::json();
