@@ -44,6 +44,10 @@ float opacity_at(const ShapeStore& shape, const Vec2& uv);
 /// The shapes of a scene in the order of the meshes of its model.
 std::vector<const ShapeStore*> shapes_of(const Scene& scene);
 
+/// Radiance from directions all around, and from one direction of each light, by which environments are told apart:
+/// edits change their strength or colour.
+std::vector<Vec3> environment_fingerprint(const Scene& scene);
+
 /// One command of glMultiDrawElementsIndirect.
 struct DrawCommand {
   std::uint32_t count = 0, instances = 1, first_index = 0, base_vertex = 0, draw = 0;

@@ -10,7 +10,7 @@
 #include "gl/context.h"
 #include "gl/program.h"
 #include "integrators/environment_image.h"
-#include "realtime/scene/environment_fingerprint.h"
+#include "realtime/scene/gpu_scene.h"
 #include "realtime/techniques/frame_context.h"
 #include "realtime/techniques/splitsum/environment_maps.h"
 

@@ -9,7 +9,7 @@
 #include "lanthorn/vec.h"
 #include "realtime/scene/gpu_scene.h"
 #include "realtime/scene/layouts.h"
-#include "realtime/scene/view_focus.h"
+#include "realtime/scene/projection.h"
 #include "scene/scene.h"
 
 namespace lanthorn {
