@@ -8,7 +8,6 @@
 #include "help.h"
 #include "lanthorn/methods.h"
 #include "lanthorn/version.h"
-#include "manual.h"
 
 namespace lanthorn::program {
 

@@ -10,13 +10,11 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
 #include "commands.h"
 #include "console.h"
-#include "json_text.h"
 #include "lanthorn/error.h"
 #include "lanthorn/file.h"
 #include "lanthorn/flip.h"
@@ -25,6 +23,7 @@
 #include "output_check.h"
 #include "read_layer.h"
 #include "render_arguments.h"
+#include "report_json.h"
 #include "rescue.h"
 
 namespace lanthorn::program {
@@ -228,7 +227,7 @@ void run(const CompareOptions& o) {
                                  print_table(o, result);
                                }}};
   if (!o.json.empty() && o.json != "-")
-    outputs.push_back({o.json, OutputKind::report, [&] { write_file(o.json, std::as_bytes(std::span(text))); }});
+    outputs.push_back({o.json, OutputKind::report, [&] { write_file(o.json, text); }});
   if (!o.diff.empty())
     outputs.push_back({o.diff, OutputKind::picture, [&] {
                          write_png(o.diff, flip_colors(difference_map(o, result), result.width, result.height));
@@ -259,30 +258,18 @@ OptionTable error_options(CompareOptions& o) {
 
 OptionTable compare_options(CompareOptions& o) {
   const OptionTable pictures{
-      {.names = "IMAGE",
-       .value = into(o.image, text_type("FILE")),
-       .brief = "Picture: .exr, .png, .hdr, .pfm ...",
-       .required = true},
-      {.names = "REFERENCE",
-       .value = into(o.reference, text_type("FILE")),
-       .brief = "Reference of the same size",
-       .required = true},
+      required_file("IMAGE", o.image, "Picture: .exr, .png, .hdr, .pfm ..."),
+      required_file("REFERENCE", o.reference, "Reference of the same size"),
       layer_option(o.layer, "Layer to compare"),
-      {.names = "--sem",
-       .value = into(o.sem, text_type("FILE")),
-       .brief = "Standard error of the reference's pixels: enables the z-test (needs --runs)"},
+      file_option("--sem", o.sem, "Standard error of the reference's pixels: enables the z-test (needs --runs)"),
       {.names = "--runs",
        .value = each_into(o.runs, text_type("FILE"), Arity::several),
        .brief = "More renders like IMAGE with other seeds, for the tests"},
       {.names = "--reference-runs",
        .value = each_into(o.reference_runs, text_type("FILE"), Arity::several),
        .brief = "More renders like REFERENCE with other seeds: enables Welch's t-test (needs --runs)"},
-      {.names = "--diff",
-       .value = into(o.diff, text_type("FILE")),
-       .brief = "Write the map of differences as a .png (FLIP: black 0, pale yellow 1)"},
-      {.names = "--json",
-       .value = into(o.json, text_type("FILE")),
-       .brief = "Write the numbers as JSON; - for standard output, instead of the table"}};
+      file_option("--diff", o.diff, "Write the map of differences as a .png (FLIP: black 0, pale yellow 1)"),
+      file_option("--json", o.json, "Write the numbers as JSON; - for standard output, instead of the table")};
   const OptionTable last{max_pixels_option(o.max_pixels),
                          {.names = "--require-agreement",
                           .value = flag(o.require_agreement),

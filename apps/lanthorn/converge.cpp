@@ -3,17 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <span>
 #include <vector>
 
 #include "commands.h"
 #include "console.h"
-#include "json_text.h"
 #include "lanthorn/convergence.h"
 #include "lanthorn/error.h"
 #include "lanthorn/file.h"
@@ -25,6 +22,7 @@
 #include "output_check.h"
 #include "progress.h"
 #include "render_arguments.h"
+#include "report_json.h"
 #include "rescue.h"
 #include "signals.h"
 
@@ -57,19 +55,16 @@ void print_table(const Convergence& c, const ConvergenceSettings& settings) {
 }
 
 nlohmann::json report(const Convergence& c, const ConvergeCommand& a) {
-  const auto optional = [](const std::optional<double>& x) { return x ? nlohmann::json(*x) : nlohmann::json(); };
   nlohmann::json points = nlohmann::json::array();
   for (const ConvergencePoint& p : c.points)
-    points.push_back({{"passes", p.passes},
-                      {"deviation", p.deviation},
-                      {"bias", optional(p.bias)},
-                      {"rms_error", optional(p.error)}});
+    points.push_back(
+        {{"passes", p.passes}, {"deviation", p.deviation}, {"bias", or_null(p.bias)}, {"rms_error", or_null(p.error)}});
   return {{"scene", a.scene},
           {"runs", c.runs},
           {"fit_from", a.settings.fit_from},
           {"points", points},
-          {"variance_slope", optional(c.variance_slope)},
-          {"bias_slope", optional(c.bias_slope)}};
+          {"variance_slope", or_null(c.variance_slope)},
+          {"bias_slope", or_null(c.bias_slope)}};
 }
 
 // Log-log plot of the curves as SVG.
@@ -191,13 +186,10 @@ void run(const ConvergeCommand& a) {
   }
   if (c.runs < a.settings.runs) say("lanthorn: {} of {} renders complete\n", c.runs, a.settings.runs);
   set_stage(Stage::saving);
-  const auto write = [](const std::string& file, const std::string& text) {
-    write_file(file, std::as_bytes(std::span(text)));
-  };
   std::vector<Output> outputs{{"standard output", OutputKind::report, [&] { print_table(c, a.settings); }}};
   if (!a.json.empty())
-    outputs.push_back({a.json, OutputKind::report, [&] { write(a.json, report_text(report(c, a))); }});
-  if (!a.plot.empty()) outputs.push_back({a.plot, OutputKind::report, [&] { write(a.plot, Plot(c).svg(c)); }});
+    outputs.push_back({a.json, OutputKind::report, [&] { write_file(a.json, report_text(report(c, a))); }});
+  if (!a.plot.empty()) outputs.push_back({a.plot, OutputKind::report, [&] { write_file(a.plot, Plot(c).svg(c)); }});
   write_all(outputs);
 }
 
@@ -210,15 +202,13 @@ OptionTable converge_options(ConvergeCommand& a) {
                    .value = into(a.settings.runs, count_type({2, 1'000'000})),
                    .brief = "Number of renders; their seeds count up from --seed",
                    .otherwise = std::to_string(a.settings.runs)},
-                  {.names = "--reference",
-                   .value = into(a.reference, text_type("FILE")),
-                   .brief = "Converged picture of the same size, for bias and error"},
+                  file_option("--reference", a.reference, "Converged picture of the same size, for bias and error"),
                   {.names = "--fit-from",
                    .value = into(a.settings.fit_from, count_type({1, most_passes})),
                    .brief = "First number of passes that counts for the fitted exponents",
                    .otherwise = std::to_string(a.settings.fit_from)},
-                  {.names = "--plot", .value = into(a.plot, text_type("FILE")), .brief = "Write the curves as .svg"},
-                  {.names = "--json", .value = into(a.json, text_type("FILE")), .brief = "Write the numbers as JSON"},
+                  file_option("--plot", a.plot, "Write the curves as .svg"),
+                  file_option("--json", a.json, "Write the numbers as JSON"),
                   {.names = "-q,--quiet", .value = flag(a.quiet), .brief = "Print no progress"}};
   return joined(render_options(a), std::move(own));
 }

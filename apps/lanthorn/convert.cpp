@@ -1,9 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
 
 #include <memory>
-#include <span>
 #include <string>
 
 #include "commands.h"
@@ -31,7 +29,7 @@ void run(const ConvertCommand& a) {
   check_outputs(files_of(upgraded.files, a.scene), {{a.output, "OUTPUT", {".pbrt"}}});
   for (const description::Warning& warning : upgraded.warnings)
     warn("{}", Error(warning.location, warning.message).what());
-  write_file(a.output, std::as_bytes(std::span(upgraded.text)));
+  write_file(a.output, upgraded.text);
   announce("{}: {} as a pbrt-v4 file\n", a.output, a.scene);
 }
 
@@ -40,10 +38,7 @@ OptionTable convert_options(ConvertCommand& a) {
            .value = into(a.scene, existing_file_type()),
            .brief = "Scene file of pbrt-v3 (.pbrt)",
            .required = true},
-          {.names = "output",
-           .value = into(a.output, text_type("FILE")),
-           .brief = "File to write (.pbrt)",
-           .required = true},
+          required_file("output", a.output, "File to write (.pbrt)"),
           {.names = "--sandbox",
            .value = flag(a.reading.sandbox),
            .brief = "Read only files in the tree of the scene's folder"}};

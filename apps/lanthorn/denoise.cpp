@@ -11,13 +11,13 @@
 
 #include "commands.h"
 #include "console.h"
-#include "estimate_json.h"
 #include "lanthorn/error.h"
 #include "lanthorn/image_file.h"
 #include "lanthorn/state.h"
 #include "output.h"
 #include "output_check.h"
 #include "render_arguments.h"
+#include "report_json.h"
 
 namespace lanthorn::program {
 
@@ -73,14 +73,8 @@ void run(const DenoiseCommand& a) {
 }
 
 OptionTable denoise_options(DenoiseCommand& a) {
-  OptionTable table{{.names = "input",
-                     .value = into(a.input, text_type("FILE")),
-                     .brief = "Picture (.exr) or state of a render",
-                     .required = true},
-                    {.names = "-o,--output",
-                     .value = into(a.output, text_type("FILE")),
-                     .brief = "Output file: .exr, .png, .jpg or .tif",
-                     .required = true},
+  OptionTable table{required_file("input", a.input, "Picture (.exr) or state of a render"),
+                    required_file("-o,--output", a.output, "Output file: .exr, .png, .jpg or .tif"),
                     {.names = "--replace",
                      .value = flag(a.replace),
                      .brief = "Write the denoised layers of an .exr in place of the noisy ones"}};

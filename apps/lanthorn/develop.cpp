@@ -43,14 +43,8 @@ void run(const DevelopCommand& a) {
 }
 
 OptionTable develop_options(DevelopCommand& a) {
-  OptionTable table{{.names = "picture",
-                     .value = into(a.picture, text_type("FILE")),
-                     .brief = "Picture with linear colours (.exr)",
-                     .required = true},
-                    {.names = "output",
-                     .value = into(a.output, text_type("FILE")),
-                     .brief = "File to write (.png, .jpg, .tif)",
-                     .required = true},
+  OptionTable table{required_file("picture", a.picture, "Picture with linear colours (.exr)"),
+                    required_file("output", a.output, "File to write (.png, .jpg, .tif)"),
                     layer_option(a.layer, "Layer to show")};
   table = joined(std::move(table), display_options(a.settings, "0"));
   table.push_back(force_option(a.settings.force, "a write-protected file"));

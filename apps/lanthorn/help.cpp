@@ -207,4 +207,20 @@ std::vector<HelpGroup> grouped_options(const CLI::App& command) {
   return groups;
 }
 
+std::vector<const CLI::App*> visible_commands(const CLI::App& program) {
+  return program.get_subcommands([](const CLI::App* command) { return !command->get_group().empty(); });
+}
+
+std::vector<std::string> option_names(const CLI::Option& option) {
+  std::vector<std::string> names;
+  for (const std::string& name : option.get_snames()) names.push_back("-" + name);
+  for (const std::string& name : option.get_lnames()) names.push_back("--" + name);
+  return names;
+}
+
+std::string value_type(const CLI::Option& option) {
+  if (option.get_type_size() == 0) return {};
+  return option.get_type_name();
+}
+
 }  // namespace lanthorn::program

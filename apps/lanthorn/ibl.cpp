@@ -12,7 +12,6 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -21,7 +20,6 @@
 
 #include "commands.h"
 #include "console.h"
-#include "json_text.h"
 #include "lanthorn/error.h"
 #include "lanthorn/file.h"
 #include "lanthorn/image_file.h"
@@ -31,6 +29,7 @@
 #include "output_check.h"
 #include "progress.h"
 #include "render_arguments.h"
+#include "report_json.h"
 #include "signals.h"
 
 namespace lanthorn::program {

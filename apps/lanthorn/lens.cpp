@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include "lens.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,7 +12,8 @@
 
 #include "lanthorn/error.h"
 #include "lanthorn/session.h"
-#include "quantities.h"
+#include "scene_changes.h"
+#include "value_types.h"
 
 namespace lanthorn::program {
 

@@ -8,7 +8,6 @@
 
 #include "help.h"
 #include "lanthorn/version.h"
-#include "manual.h"
 #include "options.h"
 
 namespace lanthorn::program {

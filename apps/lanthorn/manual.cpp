@@ -1,13 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include "manual.h"
-
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <memory>
-#include <span>
 
 #include "commands.h"
+#include "help.h"
 #include "lanthorn/file.h"
 #include "options.h"
 
@@ -20,7 +18,7 @@ namespace fs = std::filesystem;
 void write_text(const fs::path& path, const std::string& text) {
   std::error_code ignored;  // write_file reports the problem
   fs::create_directories(path.parent_path(), ignored);
-  write_file(path, std::as_bytes(std::span(text)));
+  write_file(path, text);
 }
 
 void write_manual(const CLI::App& program, const fs::path& folder) {
@@ -33,22 +31,6 @@ void write_manual(const CLI::App& program, const fs::path& folder) {
 }
 
 }  // namespace
-
-std::vector<const CLI::App*> visible_commands(const CLI::App& program) {
-  return program.get_subcommands([](const CLI::App* command) { return !command->get_group().empty(); });
-}
-
-std::vector<std::string> option_names(const CLI::Option& option) {
-  std::vector<std::string> names;
-  for (const std::string& name : option.get_snames()) names.push_back("-" + name);
-  for (const std::string& name : option.get_lnames()) names.push_back("--" + name);
-  return names;
-}
-
-std::string value_type(const CLI::Option& option) {
-  if (option.get_type_size() == 0) return {};
-  return option.get_type_name();
-}
 
 void add_manual(CLI::App& app) {
   const auto folder = std::make_shared<std::string>();

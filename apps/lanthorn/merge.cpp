@@ -112,10 +112,7 @@ OptionTable merge_options(MergeCommand& a) {
                          .details = "Otherwise nothing is written, and messages name missing, damaged and duplicate "
                                     "states, and the passes to render again.",
                          .otherwise = "any passes"},
-                        {.names = "-o,--output",
-                         .value = into(a.output, text_type("FILE")),
-                         .brief = "Output file: .state, .exr (all layers) or .png",
-                         .required = true}};
+                        required_file("-o,--output", a.output, "Output file: .state, .exr (all layers) or .png")};
   return joined(own, output_options(a.settings));
 }
 

@@ -7,7 +7,6 @@
 #include <iterator>
 
 #include "help.h"
-#include "lanthorn/shell.h"
 #include "lanthorn/text.h"
 
 namespace lanthorn::program {
@@ -64,6 +63,16 @@ std::string Option::description(bool in_short) const {
   if (!in_short && !details.empty()) text = sentence(text) + ' ' + details;
   if (!otherwise.empty()) text = sentence(text) + " Default: " + otherwise;
   return text;
+}
+
+Option file_option(const std::string& names, std::string& file, const std::string& brief) {
+  return {.names = names, .value = into(file, text_type("FILE")), .brief = brief};
+}
+
+Option required_file(const std::string& names, std::string& file, const std::string& brief) {
+  Option option = file_option(names, file, brief);
+  option.required = true;
+  return option;
 }
 
 OptionTable joined(OptionTable table, OptionTable more) {

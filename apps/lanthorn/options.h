@@ -64,6 +64,11 @@ std::string sentence(const std::string& text);
 
 using OptionTable = std::vector<Option>;
 
+/// An option or argument whose value is the name of a file.
+Option file_option(const std::string& names, std::string& file, const std::string& brief);
+/// The same for one that must be given.
+Option required_file(const std::string& names, std::string& file, const std::string& brief);
+
 OptionTable joined(OptionTable table, OptionTable more);
 /// The table without the option of this name.
 OptionTable without(OptionTable table, const std::string& name);

@@ -12,10 +12,9 @@
 #include <vector>
 
 #include "console.h"
-#include "estimate_json.h"
-#include "json_text.h"
 #include "lanthorn/file.h"
 #include "lanthorn/version.h"
+#include "report_json.h"
 
 namespace lanthorn::program {
 

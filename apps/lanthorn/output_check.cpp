@@ -16,6 +16,7 @@
 
 #include "lanthorn/error.h"
 #include "lanthorn/file.h"
+#include "shards.h"
 
 namespace lanthorn::program {
 
@@ -128,18 +129,10 @@ void check_identities(const std::vector<InputFile>& inputs, const std::vector<Ou
 }
 
 // The number of passes in `there` that are not in `written`.
-std::uint64_t count_missing(std::vector<PassRange> there, const std::vector<PassRange>& written) {
-  for (const PassRange& taken : written) {
-    std::vector<PassRange> left;
-    for (const PassRange& range : there) {
-      const std::uint64_t before = std::min(range.end, taken.begin), after = std::max(range.begin, taken.end);
-      if (range.begin < before) left.push_back({range.begin, before});
-      if (after < range.end) left.push_back({after, range.end});
-    }
-    there = std::move(left);
-  }
+std::uint64_t count_missing(const std::vector<PassRange>& there, const std::vector<PassRange>& written) {
   std::uint64_t count = 0;
-  for (const PassRange& range : there) count += range.end - range.begin;
+  for (const PassRange& range : there)
+    for (const PassRange& missing : check_passes(range, written).missing) count += missing.end - missing.begin;
   return count;
 }
 

@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
 
 #include <memory>
 #include <utility>
@@ -33,17 +32,13 @@ void run(const PhotonsCommand& a) {
   const ThreadLimit limit(a.threads);
   const SharedScene scene = build_scene(std::move(description));
   const Photons photons = trace_photons(*scene, description_of(*scene).view, options, a.pass, a.direct);
-  const std::string ply = encode_ply(photons);
-  write_file(a.output, std::as_bytes(std::span(ply)));
+  write_file(a.output, encode_ply(photons));
   announce("{}: {} photons of {} light paths\n", a.output, photons.size(), photons.light_paths);
 }
 
 OptionTable photons_options(PhotonsCommand& a) {
   OptionTable own{
-      {.names = "-o,--output",
-       .value = into(a.output, text_type("FILE")),
-       .brief = "Output file: binary PLY",
-       .required = true},
+      required_file("-o,--output", a.output, "Output file: binary PLY"),
       {.names = "--pass",
        .value = into(a.pass, count_type({0, most_passes - 1})),
        .brief = "Pass whose photons are written",

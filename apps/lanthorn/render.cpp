@@ -11,10 +11,9 @@
 #include <utility>
 #include <vector>
 
-#include "checkpoint.h"
 #include "commands.h"
 #include "console.h"
-#include "frames.h"
+#include "interim_files.h"
 #include "lanthorn/denoise.h"
 #include "lanthorn/error.h"
 #include "lanthorn/image_file.h"
@@ -22,7 +21,6 @@
 #include "lanthorn/session.h"
 #include "lanthorn/text.h"
 #include "lanthorn/threads.h"
-#include "preview.h"
 #include "progress.h"
 #include "render_command.h"
 #include "signals.h"

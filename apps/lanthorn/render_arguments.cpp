@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render_arguments.h"
 
-#include <fmt/format.h>
-
 #include <limits>
 #include <utility>
 

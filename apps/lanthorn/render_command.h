@@ -29,4 +29,13 @@ OptionTable render_command_options(RenderCommand& arguments);
 /// "lanthorn render room.pbrt -i vcm -o room.png", quoted for a shell.
 std::string render_command_line(const RenderCommand& arguments);
 
+// Several pictures with one command: an animation or a turntable.
+
+/// Throws Error if the frames conflict with the rest of the command line.
+void check_frames(const RenderCommand& arguments);
+/// The frames to render; the end is excluded.
+FrameRange frames_of(const RenderCommand& arguments);
+/// The command for one frame: its number replaces "####" in file names, and the scene is evaluated at its time.
+RenderCommand of_frame(const RenderCommand& arguments, std::uint64_t frame);
+
 }  // namespace lanthorn::program

@@ -12,14 +12,13 @@
 #include <utility>
 
 #include "console.h"
-#include "estimate_json.h"
-#include "json_text.h"
 #include "lanthorn/file.h"
 #include "lanthorn/image_file.h"
-#include "lanthorn/number_text.h"
 #include "lanthorn/state.h"
 #include "lanthorn/text.h"
 #include "output.h"
+#include "report_json.h"
+#include "shards.h"
 
 namespace lanthorn::program {
 
@@ -79,11 +78,8 @@ std::string size_text(const ImageWindow& window, int width, int height) {
 std::string join(const std::vector<std::string>& words) { return fmt::format("{}", fmt::join(words, ", ")); }
 
 std::string passes_text(const StateSummary& state) {
-  std::string ranges;
-  for (const PassRange& range : state.passes)
-    ranges += fmt::format("{}{}:{}", ranges.empty() ? "" : ", ", range.begin, range.end);
-  return fmt::format("{} ({}), rendered in {}", state.pass_count, ranges.empty() ? "none" : ranges,
-                     format_duration(state.seconds));
+  return fmt::format("{} ({}), rendered in {}", state.pass_count,
+                     state.passes.empty() ? "none" : ranges_text(state.passes), format_duration(state.seconds));
 }
 
 nlohmann::json settings_of(const StateSummary& state) {

@@ -6,22 +6,18 @@
 #include <sys/resource.h>
 
 #include <nlohmann/json.hpp>
-#include <span>
 
-#include "checkpoint.h"
 #include "console.h"
-#include "estimate_json.h"
-#include "json_text.h"
+#include "interim_files.h"
 #include "lanthorn/error.h"
 #include "lanthorn/file.h"
 #include "lanthorn/image_file.h"
 #include "lanthorn/methods.h"
-#include "lanthorn/number_text.h"
 #include "lanthorn/text.h"
 #include "lanthorn/threads.h"
 #include "output_check.h"
+#include "report_json.h"
 #include "rescue.h"
-#include "scene_report.h"
 
 namespace lanthorn::program {
 
@@ -104,9 +100,8 @@ void write_report(const std::string& path, const Scene& scene, StatePicture& pic
   report["error"] = estimate_json(picture.error());
   if (picture.denoised_error()) report["denoised_error"] = estimate_json(*picture.denoised_error());
   report["passes_total"] = summary.pass_count;
-  report["scene"] = scene_report(summarize(scene));
-  const std::string text = report_text(report);
-  write_file(path, std::as_bytes(std::span(text)));
+  report["scene"] = scene_json(summarize(scene));
+  write_file(path, report_text(report));
 }
 
 std::string describe_denoised(const std::optional<ErrorEstimate>& error) {

@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "lanthorn/error.h"
-#include "lanthorn/light_names.h"
+#include "lanthorn/scene.h"
 #include "lanthorn/text.h"
-#include "quantities.h"
+#include "value_types.h"
 
 namespace lanthorn::program {
 

@@ -13,7 +13,7 @@
 #include "lanthorn/error.h"
 #include "lanthorn/methods.h"
 #include "lanthorn/scene.h"
-#include "lanthorn/shell.h"
+#include "lanthorn/text.h"
 #include "options.h"
 #include "render_arguments.h"
 #include "scene_changes.h"

@@ -14,7 +14,7 @@
 
 #include "console.h"
 #include "lanthorn/error.h"
-#include "quantities.h"
+#include "value_types.h"
 
 namespace lanthorn::program {
 

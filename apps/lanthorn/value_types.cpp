@@ -3,14 +3,79 @@
 #include "value_types.h"
 
 #include <charconv>
+#include <cmath>
 #include <cstddef>
 #include <filesystem>
+#include <span>
 #include <system_error>
 
 #include "lanthorn/file.h"
-#include "quantities.h"
 
 namespace lanthorn::program {
+
+namespace {
+
+struct Unit {
+  std::string_view name;
+  double factor;
+};
+
+constexpr Unit count_units[]{{"", 1}, {"k", 1e3}, {"K", 1e3}, {"M", 1e6}, {"G", 1e9}};
+constexpr Unit share_units[]{{"", 1}, {"%", 0.01}};
+constexpr Unit time_units[]{{"", 1}, {"s", 1}, {"m", 60}, {"min", 60}, {"h", 3600}};
+constexpr Unit byte_units[]{{"", 1}, {"k", 0x1p10}, {"K", 0x1p10}, {"M", 0x1p20}, {"G", 0x1p30}, {"T", 0x1p40}};
+
+// A number with its unit; nullopt unless the text is exactly that and the product is finite.
+std::optional<double> scaled(std::string_view text, std::span<const Unit> units) {
+  double value = 0;
+  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
+  const char* const end = text.data() + text.size();
+  const auto [next, error] = std::from_chars(text.data(), end, value);
+  const std::string_view name(next, static_cast<std::size_t>(end - next));
+  const auto unit = std::find_if(units.begin(), units.end(), [&](const Unit& u) { return u.name == name; });
+  if (error != std::errc() || unit == units.end() || !std::isfinite(value * unit->factor)) return std::nullopt;
+  return value * unit->factor;
+}
+
+// Numbers without fraction, exponent or unit are parsed as integers: a double cannot represent all of them.
+std::optional<std::uint64_t> whole(std::string_view text, std::span<const Unit> units) {
+  std::uint64_t count = 0;
+  const char* const end = text.data() + text.size();
+  const auto [next, error] = std::from_chars(text.data(), end, count);
+  if (error == std::errc() && next == end) return count;
+  const auto value = scaled(text, units);
+  if (!value || !(*value >= 0 && *value < 0x1p64) || *value != std::floor(*value)) return std::nullopt;
+  return static_cast<std::uint64_t>(*value);
+}
+
+}  // namespace
+
+std::optional<std::uint64_t> parse_count(std::string_view text) { return whole(text, count_units); }
+
+std::optional<double> parse_seconds(std::string_view text) { return scaled(text, time_units); }
+
+std::optional<double> parse_duration(std::string_view text) {
+  const auto seconds = parse_seconds(text);
+  return seconds && *seconds > 0 ? seconds : std::nullopt;
+}
+
+std::optional<std::uint64_t> parse_bytes(std::string_view text) {
+  std::string_view number = text;
+  for (const std::string_view ending : {"iB", "B"})
+    if (number.ends_with(ending)) {
+      number.remove_suffix(ending.size());
+      break;
+    }
+  const auto bytes = whole(number, byte_units);
+  return bytes && *bytes > 0 ? bytes : std::nullopt;
+}
+
+std::optional<double> parse_share(std::string_view text) {
+  const auto share = scaled(text, share_units);
+  return share && *share > 0 && *share <= 1 ? share : std::nullopt;
+}
+
+std::optional<double> parse_number(std::string_view text) { return scaled(text, std::span(count_units, 1)); }
 
 namespace {
 
@@ -53,6 +118,14 @@ std::optional<std::pair<std::string_view, std::string_view>> split(std::string_v
   const std::size_t at = text.find(separator);
   if (at == std::string_view::npos) return std::nullopt;
   return std::pair{text.substr(0, at), text.substr(at + 1)};
+}
+
+// "FIRST:END", counts with FIRST < END <= most.
+std::optional<PassRange> parse_range(std::string_view text, std::uint64_t most) {
+  const auto parts = split(text, ':');
+  if (!parts) return std::nullopt;
+  const auto begin = parse_count(parts->first), end = parse_count(parts->second);
+  return begin && end && *begin < *end && *end <= most ? std::optional(PassRange{*begin, *end}) : std::nullopt;
 }
 
 // A value of the type, or a word that means nullopt.
@@ -178,13 +251,8 @@ ValueType<std::array<int, 4>> pixel_window_type() {
 }
 
 ValueType<PassRange> pass_range_type() {
-  const auto parse = [](std::string_view text) -> std::optional<PassRange> {
-    const auto parts = split(text, ':');
-    if (!parts) return std::nullopt;
-    const auto begin = parse_count(parts->first), end = parse_count(parts->second);
-    return begin && end && *begin < *end && *end <= most_passes ? std::optional(PassRange{*begin, *end}) : std::nullopt;
-  };
-  return {"FIRST:END", fmt::format("FIRST:END with FIRST < END, {} at most, e.g. 0:50", most_passes), parse,
+  return {"FIRST:END", fmt::format("FIRST:END with FIRST < END, {} at most, e.g. 0:50", most_passes),
+          [](std::string_view text) { return parse_range(text, most_passes); },
           [](const PassRange& range) { return fmt::format("{}:{}", range.begin, range.end); }};
 }
 
@@ -199,11 +267,9 @@ ValueType<FrameRange> frame_range_type() {
       frames.per_second = *per_second;
       text = rate->first;
     }
-    const auto parts = split(text, ':');
-    if (!parts) return std::nullopt;
-    const auto begin = parse_count(parts->first), end = parse_count(parts->second);
-    if (!begin || !end || *begin >= *end || *end > most) return std::nullopt;
-    frames.begin = *begin, frames.end = *end;
+    const auto range = parse_range(text, most);
+    if (!range) return std::nullopt;
+    frames.begin = range->begin, frames.end = range->end;
     return frames;
   };
   return {"FIRST:END[@FPS]", "FIRST:END or FIRST:END@FPS with FIRST < END, e.g. 0:48@24", parse,

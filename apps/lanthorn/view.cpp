@@ -7,13 +7,11 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <set>
-#include <span>
 #include <string>
 #include <vector>
 
 #include "commands.h"
 #include "console.h"
-#include "json_text.h"
 #include "lanthorn/error.h"
 #include "lanthorn/file.h"
 #include "lanthorn/image_file.h"
@@ -26,6 +24,7 @@
 #include "output.h"
 #include "output_check.h"
 #include "render_command.h"
+#include "report_json.h"
 
 namespace lanthorn::program {
 
@@ -55,11 +54,6 @@ nlohmann::json report_json(const ViewerReport& r) {
           {"stages", std::move(stages)},
           {"photons_per_bounce", r.photons_per_bounce},
           {"limitations", r.limitations}};
-}
-
-void write_json(const std::string& file, const ViewerReport& report) {
-  const std::string text = report_text(report_json(report));
-  write_file(file, std::as_bytes(std::span(text)));
 }
 
 std::string known_methods() {
@@ -123,7 +117,7 @@ void show(const ViewCommand& a, const SharedScene& original, const ViewerOptions
   const ViewDescription view = view_of(*scene, a.changes, options.render);
   if (!a.headless) {
     const ViewerReport report = run_viewer(original, view, options);
-    if (!a.json.empty()) write_json(a.json, report);
+    if (!a.json.empty()) write_file(a.json, report_text(report_json(report)));
     return;
   }
   const ViewerFrames frames = render_frames(scene, view, options);
@@ -132,7 +126,7 @@ void show(const ViewCommand& a, const SharedScene& original, const ViewerOptions
   const nlohmann::json metadata{
       {"version", version}, {"method", frames.report.method}, {"frames", frames.report.frames}};
   write_picture(a.output, picture_for(a.output, frames.image), a.picture, view.film.measures_exposure, metadata.dump());
-  if (!a.json.empty()) write_json(a.json, frames.report);
+  if (!a.json.empty()) write_file(a.json, report_text(report_json(frames.report)));
   announce("{}: {} frames by {}{}\n", a.output, frames.report.frames, frames.report.method,
            frames.report.software ? " (OpenGL in software)" : "");
 }
@@ -170,23 +164,20 @@ void run_view(const ViewCommand& a) {
 
 OptionTable view_options(ViewCommand& a) {
   constexpr std::uint64_t most_frames = 1'000'000;
-  OptionTable own{{.names = "-i,--integrator",
-                   .value = into(a.method, text_type("INTEGRATOR")),
-                   .brief = "Method that is shown first",
-                   .details = method_help(),
-                   .otherwise = a.method},
-                  {.names = "--headless",
-                   .value = flag(a.headless),
-                   .brief = "Draw without a window or display; needs --passes and -o"},
-                  {.names = "-p,--passes",
-                   .value = into(a.frames, count_type({1, most_frames})),
-                   .brief = "With --headless: passes (frames) to average. Else: close after this many"},
-                  {.names = "-o,--output",
-                   .value = into(a.output, text_type("FILE")),
-                   .brief = "With --headless: the picture (.png, .jpg, .tif, or .exr with all layers)"},
-                  {.names = "--json",
-                   .value = into(a.json, text_type("FILE")),
-                   .brief = "Write frame times by stage and photons per bounce as JSON"}};
+  OptionTable own{
+      {.names = "-i,--integrator",
+       .value = into(a.method, text_type("INTEGRATOR")),
+       .brief = "Method that is shown first",
+       .details = method_help(),
+       .otherwise = a.method},
+      {.names = "--headless",
+       .value = flag(a.headless),
+       .brief = "Draw without a window or display; needs --passes and -o"},
+      {.names = "-p,--passes",
+       .value = into(a.frames, count_type({1, most_frames})),
+       .brief = "With --headless: passes (frames) to average. Else: close after this many"},
+      file_option("-o,--output", a.output, "With --headless: the picture (.png, .jpg, .tif, or .exr with all layers)"),
+      file_option("--json", a.json, "Write frame times by stage and photons per bounce as JSON")};
   OptionTable render = without(render_options(a), "--integrator");
   OptionTable table = joined(joined(std::move(render), scene_change_options(a.changes)), std::move(own));
   table.push_back(denoise_option(a.picture.denoise, "Remove the noise of pictures of offline methods, layer by layer"));

@@ -10,6 +10,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace lanthorn {
@@ -30,6 +31,9 @@ std::filesystem::path follow_links(const std::filesystem::path& path);
 /// only if a process reads from it. Throws `lanthorn::Error` that says what failed and what to do; a failed write
 /// leaves no file behind. Also removes temporary files for `path` that killed processes left behind.
 void write_file(const std::filesystem::path& path, std::span<const std::byte> bytes);
+inline void write_file(const std::filesystem::path& path, std::string_view text) {
+  write_file(path, std::as_bytes(std::span(text)));
+}
 
 /// Writes several files, all or none. Without `commit`, no file is left behind; if the process is killed, the next
 /// write to the same names removes the temporary files.

@@ -24,6 +24,10 @@ struct MethodInfo {
 
 /// All methods, in the order of `lanthorn list`.
 std::vector<MethodInfo> methods();
+/// Adds to `methods` those of the viewer's techniques that render frame by frame (`ispm` and `voxelcones`), if the
+/// library was built with LANTHORN_BUILD_VIEWER. Does not use OpenGL itself. Not thread-safe: call it once, before any
+/// render.
+void add_realtime_methods();
 /// Throws Error, naming the known methods, if none has this name.
 const MethodInfo& find_method(const std::string& name);
 /// Throws an Error that begins with `option` if passes of this method depend on earlier ones, so that a render cannot

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -44,6 +45,20 @@ struct ReadOptions {
 /// `files` identify the files read. Throws Error with its location (file, line and column; in glTF files file and JSON
 /// pointer) if the file, or one that it names, is invalid.
 SceneDescription read_scene(const std::filesystem::path& path, const ReadOptions& options = {});
+
+/// The PLY files of a pbrt scene, according to their headers. Gzipped files are not counted.
+struct ExpectedMeshes {
+  std::size_t files = 0;  ///< references from shapes to files
+  double faces = 0;
+  double bytes = 0;  ///< of memory, including acceleration structures
+};
+
+/// Called before any of the files is read.
+using MeshObserver = std::function<void(const ExpectedMeshes&)>;
+
+/// `read_scene` for callers that want to report the size of the scene before it is loaded.
+SceneDescription read_scene(const std::filesystem::path& path, const ReadOptions& options,
+                            const MeshObserver& observer);
 
 /// A scene file that is read once and yields the scene at several times of its animation.
 class SceneFile {
@@ -147,6 +162,17 @@ void scale_light(description::AreaLight& light, float factor);
 
 /// The description that the scene was built from, without its meshes, and including warnings from building.
 const SceneDescription& description_of(const Scene& scene);
+
+/// A light with a descriptive name, for user interfaces.
+struct NamedLight {
+  std::string id;  ///< `name_of_light` or `name_of_area_light`, as options use it
+  /// Kind or material, and place in the view of the scene's camera: "Lamp 2, ceiling", "Point light, left".
+  std::string words;
+};
+
+/// All lights in the order of the description: first the area lights that shapes use, then the others. Lights that
+/// would have equal words are numbered.
+std::vector<NamedLight> lights_of(const Scene& scene);
 
 /// Triangles of one shape, in the space of its instances. Counter-clockwise as seen from outside.
 struct SceneMesh {

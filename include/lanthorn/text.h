@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Text in messages: suggestions for misspelt names, durations, quotations from files. Whatever bytes a file holds, a
-// message stays on one line, has no effect on a terminal, and shows at most one token of the file.
+// Text in messages: suggestions for misspelt names, durations, numbers, quotations from files. Whatever bytes a file
+// holds, a message stays on one line, has no effect on a terminal, and shows at most one token of the file.
 #pragma once
 
 #include <optional>
@@ -36,5 +36,14 @@ std::string did_you_mean(std::string_view word, std::span<const std::string> kno
 
 /// Seconds as "1:02:03 h", "2:03 min" or "4 s".
 std::string format_duration(double seconds);
+
+/// Two significant digits ("0.0012", "12"), or a whole number from 100 to a million ("100", "12345"). Numbers beyond a
+/// million and below .0001 have an exponent ("2.3e+07").
+std::string short_number(double number);
+
+/// `text` quoted as one word of a POSIX shell's command line: in single quotes, unless it has only plain characters.
+/// Text with control characters, which a terminal would obey when the line is pasted, becomes printable ASCII in $'...'
+/// (POSIX 2024; bash, zsh, ksh).
+std::string shell_word(const std::string& text);
 
 }  // namespace lanthorn

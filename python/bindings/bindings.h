@@ -6,7 +6,6 @@
 #include <pybind11/pybind11.h>
 
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "lanthorn/error_estimate.h"
@@ -21,6 +20,13 @@ namespace lanthorn::python {
 
 namespace py = pybind11;
 
+/// What `work` returns, done without the GIL.
+template <class Work>
+auto without_gil(const Work& work) {
+  const py::gil_scoped_release release;
+  return work();
+}
+
 /// A scene with its view; a single value in Python.
 struct SeenScene {
   SharedScene scene;
@@ -33,6 +39,8 @@ struct Picture {
   std::optional<ErrorEstimate> error{};
   bool measures_exposure = false, display_emission = false;
 };
+/// The picture of light alone, without its noise.
+Picture denoised(const Picture& picture);
 Picture picture_of_state(const RenderState& state, bool with_noise_layers);
 
 /// The options of a render from keyword arguments: members of RenderOptions by their names; all other keywords are
@@ -41,11 +49,6 @@ RenderOptions options_of(const py::dict& keywords);
 py::list texts_of(const std::vector<description::Warning>& warnings);
 
 SceneDescription description_of_dict(const py::dict& data);
-py::dict dict_of_description(const SceneDescription& description, const ViewDescription& view);
-/// The scene with the replacements in the keywords `camera`, `film`, `filter`, `materials`, `lights`, `area_lights`,
-/// `instances` and `environment`.
-SeenScene edited(const SeenScene& scene, const py::dict& edits);
-EnvironmentChoice environment_of(py::handle data);
 
 /// The rows of an array of shape (n, 3), or (3,) for one. Throws Error with its `name`.
 std::vector<Vec3> vectors_of(py::handle data, const char* name);
@@ -61,6 +64,7 @@ void bind_session(py::module_& module);
 void bind_state(py::module_& module);
 void bind_photons(py::module_& module);
 void bind_rays(py::module_& module);
+void bind_integrator(py::module_& module);
 void bind_tools(py::module_& module);
 
 }  // namespace lanthorn::python

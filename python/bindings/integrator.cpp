@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 // Methods written in Python.
-#include <algorithm>
 #include <map>
 
 #include "bindings.h"

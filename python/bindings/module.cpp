@@ -3,12 +3,10 @@
 // The extension module lanthorn._lanthorn, whose names the package lanthorn re-exports.
 #include "bindings.h"
 #include "lanthorn/error.h"
-#include "lanthorn/realtime.h"
+#include "lanthorn/methods.h"
 #include "lanthorn/version.h"
 
 namespace lanthorn::python {
-
-void bind_integrator(py::module_& module);
 
 void bind_error(py::module_& module) {
   // NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): lives as long as the interpreter

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "arrays.h"
 #include "bindings.h"
+#include "plain_data.h"
 
 namespace lanthorn::python {
 

@@ -4,11 +4,8 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
-#include <algorithm>
-#include <array>
-
-#include "arrays.h"
 #include "bindings.h"
+#include "lanthorn/denoise.h"
 #include "lanthorn/error.h"
 #include "lanthorn/text.h"
 #include "plain_data.h"
@@ -24,6 +21,14 @@ Picture picture_of_state(const RenderState& state, bool with_noise_layers) {
   picture.image = with_noise_layers ? with_noise(state, measured.picture) : std::move(measured.picture);
   picture.image.window = summary.window;
   return picture;
+}
+
+Picture denoised(const Picture& picture) {
+  DenoisedPicture clean = denoise(picture.image);
+  Picture result = picture;
+  result.image = with_denoised_light(clean.picture);
+  result.error = clean.error;
+  return result;
 }
 
 namespace {
@@ -120,11 +125,7 @@ DisplaySettings display_of(const Picture& picture, const std::optional<float>& e
 
 py::bytes png_of(const Picture& picture, const std::optional<float>& exposure, const py::object& curve) {
   const DisplaySettings display = display_of(picture, exposure, curve);
-  std::vector<unsigned char> bytes;
-  {
-    const py::gil_scoped_release release;
-    bytes = encode_png(picture.image, display);
-  }
+  const std::vector<unsigned char> bytes = without_gil([&] { return encode_png(picture.image, display); });
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 

@@ -5,7 +5,6 @@
 
 #include <pybind11/stl.h>
 
-#include "arrays.h"
 #include "bindings.h"
 #include "plain_data.h"
 
@@ -23,12 +22,8 @@ std::size_t common_size(const std::vector<Vec3>& a, const std::vector<Vec3>& b, 
 py::object radiance(const SeenScene& scene, const py::object& origins, const py::object& directions,
                     std::uint32_t samples, std::uint64_t seed, int max_depth) {
   const std::vector<SceneRay> rays = rays_of(origins, directions);
-  std::vector<Rgb> light;
-  {
-    const py::gil_scoped_release release;
-    light = radiance_along(*scene.scene, rays, {.samples = samples, .seed = seed, .max_depth = max_depth});
-  }
-  return array_of<float>(std::move(light));
+  return array_of<float>(without_gil(
+      [&] { return radiance_along(*scene.scene, rays, {.samples = samples, .seed = seed, .max_depth = max_depth}); }));
 }
 
 template <class Scalar, class T>
@@ -41,11 +36,7 @@ py::object column(const std::vector<RayHit>& hits, T RayHit::*member) {
 
 py::dict hits_of(const SeenScene& scene, const py::object& origins, const py::object& directions) {
   const std::vector<SceneRay> rays = rays_of(origins, directions);
-  std::vector<RayHit> hits;
-  {
-    const py::gil_scoped_release release;
-    hits = intersect(*scene.scene, rays);
-  }
+  const std::vector<RayHit> hits = without_gil([&] { return intersect(*scene.scene, rays); });
   py::dict data;
   data["distance"] = column<float>(hits, &RayHit::distance);
   data["position"] = column<float>(hits, &RayHit::position);

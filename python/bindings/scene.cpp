@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Scenes: loading from files and Python data, and editing.
+// Scenes: loading from files and Python data, as plain data, and editing.
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
@@ -9,11 +9,22 @@
 #include <utility>
 
 #include "bindings.h"
-#include "lanthorn/light_names.h"
+#include "lanthorn/description_data.h"
+#include "lanthorn/scene.h"
 #include "lanthorn/session.h"
 #include "plain_data.h"
 
 namespace lanthorn::python {
+
+SceneDescription description_of_dict(const py::dict& data) { return description_of_data(value_of(data)); }
+
+RenderOptions options_of(const py::dict& keywords) { return options_of_data(value_of(keywords)); }
+
+py::list texts_of(const std::vector<description::Warning>& warnings) {
+  py::list texts;
+  for (const description::Warning& warning : warnings) texts.append(Error(warning.location, warning.message).what());
+  return texts;
+}
 
 namespace {
 
@@ -32,7 +43,7 @@ SeenScene load_file(const std::filesystem::path& path, const py::object& environ
                       .at = at,
                       .camera = camera,
                       .variant = variant};
-  if (!environment.is_none()) options.environment = environment_of(environment);
+  if (!environment.is_none()) options.environment = environment_of_data(value_of(environment));
   const py::gil_scoped_release release;
   return built(read_scene(path, options));
 }
@@ -45,6 +56,15 @@ SeenScene load_dict(const py::dict& data) {
   SceneDescription description = description_of_dict(data);
   const py::gil_scoped_release release;
   return built(std::move(description));
+}
+
+// The scene with the replacements in the keywords `camera`, `film`, `filter`, `materials`, `lights`, `area_lights`,
+// `instances` and `environment`.
+SeenScene edited(const SeenScene& scene, const py::kwargs& edits) {
+  DescriptionEdits changes = edits_of_data(value_of(edits), description_of(*scene.scene), scene.view);
+  SeenScene result{scene.scene, std::move(changes.view)};
+  if (changes.scene) result.scene = without_gil([&] { return build_scene(*std::move(changes.scene), scene.scene); });
+  return result;
 }
 
 py::dict summary_of(const SeenScene& seen) {
@@ -178,18 +198,18 @@ void bind_scene(py::module_& module) {
   py::class_<SeenScene>(module, "Scene",
                         "A scene that can be rendered, with its camera. Immutable: `edit` and `look_at` return\n"
                         "another scene, which shares geometry and images with this one.")
-      .def(
-          "edit", [](const SeenScene& self, const py::kwargs& edits) { return edited(self, edits); },
-          "The scene with replacements; takes a fraction of a millisecond unless geometry must be rebuilt.\n\n"
-          "camera, film, filter: dicts as in `description`; omitted keys keep their values.\n"
-          "materials: {index or name: dict}; lights: {index or 'light1': dict}; area_lights: {index or 'area1': "
-          "dict};\n"
-          "instances: {index: 4 x 4 matrix}; environment: a name, a file, or {'source', 'rotation', 'scale', 'up'}.\n"
-          "Raises Error, naming the place in the data, for invalid edits.")
+      .def("edit", &edited,
+           "The scene with replacements; takes a fraction of a millisecond unless geometry must be rebuilt.\n\n"
+           "camera, film, filter: dicts as in `description`; omitted keys keep their values.\n"
+           "materials: {index or name: dict}; lights: {index or 'light1': dict}; area_lights: {index or 'area1': "
+           "dict};\n"
+           "instances: {index: 4 x 4 matrix}; environment: a name, a file, or {'source', 'rotation', 'scale', 'up'}.\n"
+           "Raises Error, naming the place in the data, for invalid edits.")
       .def("look_at", &look, py::arg("eye"), py::arg("target"), py::arg("up") = py::make_tuple(0, 1, 0),
            "The scene with its camera at `eye`, looking at `target`: (x, y, z) in metres, in the file's coordinates.")
       .def_property_readonly(
-          "description", [](const SeenScene& s) { return dict_of_description(description_of(*s.scene), s.view); },
+          "description",
+          [](const SeenScene& s) { return object_of(data_of_description(description_of(*s.scene), s.view)); },
           "dict: the scene as plain data, as `load_dict` takes it. The meshes of a built scene are\n"
           "empty: only the ray tracer has them.")
       .def_property_readonly("summary", &summary_of,

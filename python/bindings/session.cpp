@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "bindings.h"
-#include "lanthorn/denoise.h"
 #include "lanthorn/methods.h"
 #include "lanthorn/scene.h"
 #include "lanthorn/session.h"
@@ -47,13 +46,7 @@ class PythonSession {
     require_pass();
     return picture_of_state(session_.state(), noise);
   }
-  Picture denoised() {
-    Picture noisy = picture(true);
-    DenoisedPicture clean = denoise(noisy.image);
-    noisy.image = with_denoised_light(clean.picture);
-    noisy.error = clean.error;
-    return noisy;
-  }
+  Picture denoised() { return python::denoised(picture(true)); }
   std::string method() const {
     return integrator_ ? *integrator_ : default_method(description_of(*scene_.scene).hints.integrator).name;
   }
@@ -100,11 +93,7 @@ class PythonSession {
       raised.emplace();
       is_stopped_ = true;
     };
-    RenderStatistics statistics;
-    {
-      const py::gil_scoped_release release;
-      statistics = session_.render(stop, observer);
-    }
+    RenderStatistics statistics = without_gil([&] { return session_.render(stop, observer); });
     statistics_ = std::move(statistics);  // with the GIL, because other threads may read it
     if (raised) throw py::error_already_set(std::move(*raised));
   }

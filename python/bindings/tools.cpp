@@ -10,7 +10,6 @@
 #include <limits>
 #include <memory>
 
-#include "arrays.h"
 #include "bindings.h"
 #include "lanthorn/convergence.h"
 #include "lanthorn/denoise.h"
@@ -50,14 +49,6 @@ py::dict compare(const Picture& picture, const Picture& reference) {
   data["max_difference"] = errors.max_difference;
   data["non_finite"] = errors.non_finite;
   return data;
-}
-
-Picture denoised(const Picture& picture) {
-  DenoisedPicture clean = denoise(picture.image);
-  Picture result = picture;
-  result.image = with_denoised_light(clean.picture);
-  result.error = clean.error;
-  return result;
 }
 
 constexpr double no_reference = std::numeric_limits<double>::quiet_NaN();
@@ -119,12 +110,7 @@ py::dict bake(const Picture& environment, int irradiance_size, int specular_size
   IblSettings settings{.irradiance_size = irradiance_size, .specular_size = specular_size, .samples = samples};
   settings.smallest_size = std::min(settings.smallest_size, specular_size);
   settings.checks = 0;
-  Ibl ibl;
-  {
-    const py::gil_scoped_release release;
-    ibl = bake_ibl(environment.image, settings);
-  }
-  return ibl_as_dict(ibl);
+  return ibl_as_dict(without_gil([&] { return bake_ibl(environment.image, settings); }));
 }
 
 py::list methods_as_list() {

@@ -6,7 +6,6 @@
 
 #include "io/replace_environment.h"
 #include "lanthorn/error.h"
-#include "lanthorn/expected_meshes.h"
 #include "lanthorn/scene.h"
 #include "math/hash.h"
 #include "render/method_of_file.h"

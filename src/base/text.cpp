@@ -11,8 +11,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "lanthorn/number_text.h"
-
 namespace lanthorn {
 
 namespace {

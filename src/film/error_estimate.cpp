@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "film/plane.h"
-#include "lanthorn/number_text.h"
+#include "lanthorn/text.h"
 
 namespace lanthorn {
 

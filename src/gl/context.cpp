@@ -8,7 +8,6 @@
 #include <fmt/ranges.h>
 
 #include <array>
-#include <optional>
 #include <string_view>
 #include <utility>
 #include <vector>

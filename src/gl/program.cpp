@@ -7,8 +7,6 @@
 #include <algorithm>
 #include <glm/gtc/type_ptr.hpp>
 #include <initializer_list>
-#include <set>
-#include <sstream>
 #include <vector>
 
 #include "lanthorn/error.h"
@@ -55,10 +53,11 @@ void expand(const ShaderFiles::Texts& texts, std::string_view file, std::vector<
   }
 }
 
-std::string log_of_shader(GLuint shader) {
+/// `get`: glGetShaderInfoLog or glGetProgramInfoLog.
+std::string log_of(GLuint object, void (*get)(GLuint, GLsizei, GLsizei*, GLchar*)) {
   std::string log(4096, '\0');
   GLsizei length = 0;
-  glGetShaderInfoLog(shader, static_cast<GLsizei>(log.size()), &length, log.data());
+  get(object, static_cast<GLsizei>(log.size()), &length, log.data());
   log.resize(static_cast<std::size_t>(length));
   return log;
 }
@@ -71,7 +70,8 @@ Shader compile(const ShaderFiles& files, GLenum stage, std::string_view file, st
   glCompileShader(shader.name());
   GLint done = 0;
   glGetShaderiv(shader.name(), GL_COMPILE_STATUS, &done);
-  if (done == GL_FALSE) throw Error(fmt::format("shader {} does not compile:\n{}", file, log_of_shader(shader.name())));
+  if (done == GL_FALSE)
+    throw Error(fmt::format("shader {} does not compile:\n{}", file, log_of(shader.name(), glGetShaderInfoLog)));
   return shader;
 }
 
@@ -83,10 +83,7 @@ GLuint link(std::initializer_list<const Shader*> shaders, std::string_view file)
   GLint done = 0;
   glGetProgramiv(program, GL_LINK_STATUS, &done);
   if (done != GL_FALSE) return program;
-  std::string log(4096, '\0');
-  GLsizei length = 0;
-  glGetProgramInfoLog(program, static_cast<GLsizei>(log.size()), &length, log.data());
-  log.resize(static_cast<std::size_t>(length));
+  const std::string log = log_of(program, glGetProgramInfoLog);
   glDeleteProgram(program);
   throw Error(fmt::format("shader {} does not link:\n{}", file, log));
 }

@@ -16,6 +16,19 @@ GLuint make_texture(GLenum target) {
   return name;
 }
 
+GLuint make_framebuffer() {
+  GLuint name = 0;
+  glCreateFramebuffers(1, &name);
+  return name;
+}
+
+void attach(GLuint framebuffer, GLenum place, const Texture& texture, int layer) {
+  if (texture.has_layers())
+    glNamedFramebufferTextureLayer(framebuffer, place, texture.name(), 0, layer);
+  else
+    glNamedFramebufferTexture(framebuffer, place, texture.name(), 0);
+}
+
 }  // namespace
 
 Texture::Texture(GLenum target, GLenum format, int width, int height, int layers, int levels)
@@ -79,6 +92,31 @@ BufferTexture::BufferTexture(GLenum format) : object_(make_texture(GL_TEXTURE_BU
 void BufferTexture::bind(GLuint unit, const Buffer& buffer) const {
   glTextureBuffer(object_.name(), format_, buffer.name());
   glBindTextureUnit(unit, object_.name());
+}
+
+Framebuffer::Framebuffer(std::initializer_list<const Texture*> colours, const Texture* depth, int layer)
+    : object_(make_framebuffer()) {
+  std::vector<GLenum> places;
+  for (const Texture* colour : colours) {
+    places.push_back(GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(places.size()));
+    attach(name(), places.back(), *colour, layer);
+    width_ = colour->width();
+    height_ = colour->height();
+  }
+  if (depth != nullptr) {
+    attach(name(), GL_DEPTH_ATTACHMENT, *depth, layer);
+    width_ = depth->width();
+    height_ = depth->height();
+  }
+  glNamedFramebufferDrawBuffers(name(), static_cast<GLsizei>(places.size()), places.data());
+  const GLenum status = glCheckNamedFramebufferStatus(name(), GL_DRAW_FRAMEBUFFER);
+  if (status != GL_FRAMEBUFFER_COMPLETE)
+    throw Error(fmt::format("OpenGL cannot draw into these textures (status {:#x})", status));
+}
+
+void Framebuffer::bind() const {
+  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, name());
+  glViewport(0, 0, width_, height_);
 }
 
 }  // namespace lanthorn::gl

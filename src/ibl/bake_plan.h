@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 // What `bake_ibl` filters, and into which maps; shared by the CPU and the GPU baker
-// (realtime/techniques/splitsum/environment_baker.h).
+// (realtime/techniques/splitsum/environment_maps.h).
 #pragma once
 
 #include <vector>

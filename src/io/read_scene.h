@@ -11,7 +11,6 @@
 #include <string_view>
 
 #include "io/known_method.h"
-#include "lanthorn/expected_meshes.h"
 #include "lanthorn/scene.h"
 
 namespace lanthorn {

@@ -11,7 +11,7 @@
 
 #include "base/memory.h"
 #include "lanthorn/error.h"
-#include "lanthorn/number_text.h"
+#include "lanthorn/text.h"
 #include "path/path_draw.h"
 #include "photon/photon_pass.h"
 

@@ -14,7 +14,7 @@
 #include <fmt/format.h>
 
 #include "lanthorn/error.h"
-#include "lanthorn/number_text.h"
+#include "lanthorn/text.h"
 #include "scene/scene_data.h"
 #include "shape/curves.h"
 #include "shape/displacement.h"

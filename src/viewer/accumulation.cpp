@@ -10,12 +10,6 @@
 
 namespace lanthorn {
 
-namespace {
-
-constexpr std::array layer_names_of_light{"emission", "direct", "indirect", "caustic"};
-
-}  // namespace
-
 Accumulation::Accumulation(int width, int height)
     : screen_(GL_RGBA8, width, height),
       accumulate_(shader_files(), "screen.vert.glsl", "accumulate.frag.glsl"),
@@ -53,9 +47,9 @@ void Accumulation::add(const Renderer& renderer, float factor) {
 void Accumulation::load(const Image& image) {
   frames_ = 0;
   std::vector<glm::vec4> texels(static_cast<std::size_t>(width()) * static_cast<std::size_t>(height()));
-  const bool has_layers = select_layer(image, layer_names_of_light[1]).has_value();
+  const bool has_layers = select_layer(image, light_layer_names[1]).has_value();
   for (std::size_t l = 0; l < layers_.size(); ++l) {
-    const auto layer = select_layer(image, l == 0 && !has_layers ? "color" : layer_names_of_light[l]);
+    const auto layer = select_layer(image, l == 0 && !has_layers ? "color" : light_layer_names[l]);
     std::fill(texels.begin(), texels.end(), glm::vec4(0));
     if (layer && layer->pixels.size() == 3 * texels.size())
       for (std::size_t i = 0; i < texels.size(); ++i)
@@ -79,7 +73,7 @@ void Accumulation::present(const ToneSettings& tone) {
 
 Image Accumulation::read() const {
   std::vector<std::string> names{"R", "G", "B"};
-  for (const char* layer : layer_names_of_light)
+  for (const char* layer : light_layer_names)
     for (const char* channel : {".R", ".G", ".B"}) names.push_back(std::string(layer) + channel);
   Image image(width(), height(), names);
   for (std::size_t l = 0; l < layers_.size(); ++l) {

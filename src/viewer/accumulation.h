@@ -6,15 +6,14 @@
 #include <array>
 #include <cstdint>
 
-#include "gl/framebuffer.h"
 #include "gl/program.h"
 #include "gl/texture.h"
 #include "lanthorn/image.h"
 #include "realtime/frame/renderer.h"
-#include "realtime/scene/constants.h"
-#include "realtime/scene/screen.h"
 
 namespace lanthorn {
+
+inline constexpr std::array light_layer_names{"emission", "direct", "indirect", "caustic"};
 
 /// Settings of a picture for a screen.
 struct ToneSettings {

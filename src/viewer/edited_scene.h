@@ -1,15 +1,17 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// A scene whose lights and objects the user edits.
+// A scene whose lights and objects the user edits, and its pbrt file with these edits.
 #pragma once
 
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "lanthorn/scene.h"
+#include "viewer/camera_motion.h"
 
 namespace lanthorn {
 
@@ -55,5 +57,11 @@ class EditedScene {
   SharedScene original_, scene_;
   std::vector<LightRow> lights_;
 };
+
+/// The text of a pbrt file with the camera in this place and with edited lights, area lights and instances; everything
+/// else stays letter by letter. `scene`: the description that was read from it. Throws Error if the file has no camera,
+/// or if an edited part is described in another file that it includes.
+std::string edited_pbrt(std::string_view text, const SceneDescription& scene, const CameraPose& camera,
+                        const SceneDescription& edited);
 
 }  // namespace lanthorn

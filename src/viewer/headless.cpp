@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
 #include <utility>
 
 #include "gl/context.h"
@@ -10,7 +9,6 @@
 #include "lanthorn/viewer.h"
 #include "scene/medium_around.h"
 #include "viewer/accumulation.h"
-#include "viewer/clock.h"
 #include "viewer/realtime_view.h"
 
 namespace lanthorn {

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "viewer/picking.h"
 
-#include <cmath>
 #include <tuple>
 
 #include "math/vec.h"

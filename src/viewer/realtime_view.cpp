@@ -183,9 +183,4 @@ std::vector<FrameStage> StageSums::means() const {
   return means;
 }
 
-void StageSums::clear() {
-  sums_.clear();
-  frames_ = 0;
-}
-
 }  // namespace lanthorn

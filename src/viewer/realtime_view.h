@@ -3,6 +3,7 @@
 // Frames of a camera at rest: each with its own random numbers, so that their mean gets smoother.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -69,13 +70,18 @@ class MovingResolution {
   double share_ = 1;
 };
 
+using ViewerClock = std::chrono::steady_clock;
+
+inline double seconds_since(ViewerClock::time_point start) {
+  return std::chrono::duration<double>(ViewerClock::now() - start).count();
+}
+
 /// Adds the times of a frame to sums by the name of the stage, in the order in which stages first came.
 class StageSums {
  public:
   void add(const FrameReport& report);
-  /// Mean of the frames since `clear`.
+  /// Mean of the frames so far.
   std::vector<FrameStage> means() const;
-  void clear();
 
  private:
   std::vector<FrameStage> sums_;

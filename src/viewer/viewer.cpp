@@ -12,7 +12,6 @@
 #include <future>
 #include <iterator>
 #include <optional>
-#include <span>
 #include <system_error>
 #include <utility>
 
@@ -22,20 +21,17 @@
 #include "lanthorn/file.h"
 #include "lanthorn/interactive_render.h"
 #include "lanthorn/methods.h"
-#include "lanthorn/shell.h"
 #include "lanthorn/text.h"
 #include "lanthorn/viewer.h"
 #include "render/scaled_view.h"
 #include "scene/medium_around.h"
 #include "viewer/accumulation.h"
-#include "viewer/clock.h"
 #include "viewer/edited_scene.h"
 #include "viewer/interaction.h"
 #include "viewer/offline_command.h"
 #include "viewer/panel.h"
 #include "viewer/picking.h"
 #include "viewer/realtime_view.h"
-#include "viewer/saved_scene.h"
 
 namespace lanthorn {
 
@@ -72,10 +68,14 @@ class OpenWindow {
   void* window_ = nullptr;
 };
 
+Ray middle_ray(const View& view) {
+  return ray_through(view,
+                     0.5f * Vec2(static_cast<float>(view.window.width()), static_cast<float>(view.window.height())));
+}
+
 // Distance of the point around which the camera turns: the surface in the middle of the picture.
 float first_distance(const Scene& scene, const View& view, const Picker& picker) {
-  const Vec2 middle(0.5f * static_cast<float>(view.window.width()), 0.5f * static_cast<float>(view.window.height()));
-  const Ray ray = ray_through(view, middle);
+  const Ray ray = middle_ray(view);
   if (const auto hit = picker.pick(ray)) return hit->distance;
   const BoundingSphere sphere = scene.bounding_sphere();
   return std::max(std::sqrt(distance_squared(ray.origin, sphere.centre)), 0.1f * sphere.radius);
@@ -85,8 +85,7 @@ float first_distance(const Scene& scene, const View& view, const Picker& picker)
 CameraPose first_pose(const ViewDescription& description, const Scene& scene, const View& view, const Picker& picker) {
   const description::Camera& camera = description.camera;
   if (!camera.subject) return pose_of(camera.camera_to_world.start, first_distance(scene, view, picker));
-  const Vec2 middle(0.5f * static_cast<float>(view.window.width()), 0.5f * static_cast<float>(view.window.height()));
-  return framing_pose(camera, ray_through(view, middle).origin);
+  return framing_pose(camera, middle_ray(view).origin);
 }
 
 ToneSettings::Curve window_curve(ToneCurve curve) {
@@ -246,7 +245,7 @@ void Viewer::note_change() {
 void Viewer::forget_frames() {
   picture_.reset();
   if (small_) small_->reset();
-  stages_.clear();
+  stages_ = {};
   next_measurement_ = 1;
 }
 
@@ -471,8 +470,7 @@ void Viewer::update_information() {
 void Viewer::save_picture(const std::string& extension) {
   Image image = offline_ ? *offline_image() : picture_.read();
   if (panel_.layer > 0 && extension == ".png") {
-    constexpr std::array names{"emission", "direct", "indirect", "caustic"};
-    Image layer = *select_layer(image, names[static_cast<std::size_t>(panel_.layer - 1)]);
+    Image layer = *select_layer(image, light_layer_names[static_cast<std::size_t>(panel_.layer - 1)]);
     layer.channels = {"R", "G", "B"};
     image = std::move(layer);
   }
@@ -511,7 +509,7 @@ fs::path Viewer::save_scene() {
   const std::string edited = edited_pbrt(text, description_of(*original_), interaction_.pose(), scene_.description());
   // Beside the scene, because file names in it are relative to that folder.
   const fs::path path = free_name(options_.scene_file.parent_path(), stem_of(options_.scene_file) + "-view", ".pbrt");
-  write_file(path, std::as_bytes(std::span(edited)));
+  write_file(path, edited);
   saved_file_ = path;
   saved_camera_ = interaction_.pose().camera_to_world;
   saved_scene_ = scene_.scene();

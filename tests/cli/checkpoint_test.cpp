@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 // The program's checkpoints, without the ten minutes between them.
-#include "checkpoint.h"
+#include "interim_files.h"
 
 #include <gtest/gtest.h>
 

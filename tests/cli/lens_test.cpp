@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 // A model in a user-chosen environment, through a user-chosen lens, from all sides.
-#include "lens.h"
+#include "scene_changes.h"
 
 #include <glm/geometric.hpp>
 

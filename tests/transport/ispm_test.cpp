@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "lanthorn/realtime.h"
+#include "lanthorn/methods.h"
 #include "support/opengl.h"
 #include "support/runs.h"
 

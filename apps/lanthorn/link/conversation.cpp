@@ -10,8 +10,7 @@
 #include <string>
 #include <utility>
 
-#include "../estimate_json.h"
-#include "../json_text.h"
+#include "../report_json.h"
 #include "../value_types.h"
 #include "lanthorn/description_data.h"
 #include "lanthorn/error.h"

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "../json_text.h"
+#include "../report_json.h"
 #include "lanthorn/image_file.h"
 #include "lanthorn/packed_float.h"
 

@@ -10,12 +10,11 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <string_view>
 #include <utility>
 
-#include "../estimate_json.h"
-#include "../json_text.h"
-#include "../quantities.h"
 #include "../render_arguments.h"
+#include "../report_json.h"
 #include "../value_types.h"
 #include "access.h"
 #include "lanthorn/denoise.h"
@@ -23,9 +22,11 @@
 #include "lanthorn/image_file.h"
 #include "lanthorn/methods.h"
 #include "lanthorn/text.h"
-#include "page.h"
 
 namespace lanthorn::program {
+
+// The files of serve/page; the build generates these definitions.
+extern const std::string_view page_document, page_style, page_program;
 
 namespace {
 
@@ -122,6 +123,21 @@ std::optional<Image> as_colors(const PageFrame& frame, const std::string& layer,
     colors.pixels[i] = is_vector ? 0.5f + 0.5f * value : is_grey ? (value > 0 ? scale * (value - black) : 0) : value;
   }
   return colors;
+}
+
+void replace_all(std::string& text, std::string_view what, std::string_view by) {
+  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + by.size()))
+    text.replace(at, what.size(), by);
+}
+
+// One document with its style and script, which requests only the server's pictures. `nonce`: from the content security
+// policy, authorises style and script.
+std::string page_html(const std::string& nonce) {
+  std::string page(page_document);
+  replace_all(page, "{{nonce}}", nonce);
+  replace_all(page, "{{style}}", page_style);
+  replace_all(page, "{{program}}", page_program);
+  return page;
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 #include <glm/geometric.hpp>
 #include <utility>
 
-#include "../json_text.h"
+#include "../report_json.h"
 #include "../value_types.h"
 #include "lanthorn/error.h"
 #include "lanthorn/methods.h"
@@ -49,11 +49,10 @@ nlohmann::json to_json(const LookAt& look, bool is_mirrored) {
 nlohmann::json to_json(const LensChanges& changes, const ViewDescription& view) {
   LensNumbers lens = lens_of(view);
   if (changes.aperture) lens.aperture = *changes.aperture;
-  const auto number = [](const std::optional<float>& x) { return x ? nlohmann::json(*x) : nlohmann::json(); };
   const bool is_auto = changes.focus ? !*changes.focus : changes.aperture && *changes.aperture;
-  return {{"fov", number(lens.fov)},
-          {"aperture", number(lens.aperture)},
-          {"focus", number(lens.focus)},
+  return {{"fov", or_null(lens.fov)},
+          {"aperture", or_null(lens.aperture)},
+          {"focus", or_null(lens.focus)},
           {"focuses_middle", is_auto},
           {"frames_subject", view.camera.subject.has_value()}};
 }
@@ -289,7 +288,7 @@ nlohmann::json Viewer::about(const InteractiveSnapshot& snapshot) {
           {"photons", state.pass_count * state.record.identity.photons},
           {"traces_photons", picture.statistics.light_paths > 0},
           {"error", picture.statistics.error ? describe_error(*picture.statistics.error) : ""},
-          {"seconds_left", picture.seconds_left ? nlohmann::json(*picture.seconds_left) : nlohmann::json()},
+          {"seconds_left", or_null(picture.seconds_left)},
           {"radius", picture.statistics.radius},
           {"volume_radius", picture.statistics.volume_radius},
           {"integrator", state.integrator},

@@ -19,7 +19,7 @@
 #include "frame.h"
 #include "http_server.h"
 #include "lanthorn/interactive_render.h"
-#include "lanthorn/light_names.h"
+#include "lanthorn/scene.h"
 
 namespace lanthorn::program {
 

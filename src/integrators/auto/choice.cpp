@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "lanthorn/number_text.h"
+#include "lanthorn/text.h"
 #include "photon/guides/rare_light.h"
 
 namespace lanthorn {

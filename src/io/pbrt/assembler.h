@@ -15,7 +15,7 @@
 #include "io/pbrt/context.h"
 #include "io/pbrt/directive.h"
 #include "io/ply.h"
-#include "lanthorn/expected_meshes.h"
+#include "lanthorn/scene.h"
 #include "lanthorn/transform.h"
 
 namespace lanthorn::pbrt {

@@ -8,7 +8,6 @@
 
 #include "io/known_method.h"
 #include "io/pbrt/context.h"
-#include "lanthorn/expected_meshes.h"
 #include "lanthorn/scene.h"
 
 namespace lanthorn::pbrt {

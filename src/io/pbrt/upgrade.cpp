@@ -75,6 +75,10 @@ void Upgrader::finish() {
   output_.finish();
 }
 
+void Upgrader::emit(std::string_view directive, Upgraded upgraded, Place place) {
+  output_.emit(directive, {std::move(upgraded.kind)}, std::move(upgraded.parameters), place);
+}
+
 void Upgrader::only_in_v2(Directive& d) {
   output_.note("directive " + in_quotes(d.name) + " belongs to pbrt-v2: ignored", d.place);
 }
@@ -146,22 +150,17 @@ void Upgrader::object_instance(Directive& d) {
 // Film and sampler depend on other directives; all directives whose defaults differ from pbrt-v4's are emitted here.
 void Upgrader::world_begin(Directive& d) {
   if (!film_) film_ = Directive{"Film", {}, {"image"}, {}, d.place};
-  const std::string film = film_->strings.front();
-  Upgraded upgraded_film = upgrade_film(film, old_parameters(*film_, ""), exposure_time_, output_);
-  output_.emit("Film", {upgraded_film.kind}, std::move(upgraded_film.parameters), film_->place);
+  emit("Film", upgrade_film(film_->strings.front(), old_parameters(*film_, ""), exposure_time_, output_), film_->place);
   if (!filter_) filter_ = Directive{"PixelFilter", {}, {"box"}, {}, d.place};
-  const std::string filter = filter_->strings.front();
-  Upgraded upgraded_filter = upgrade_filter(filter, old_parameters(*filter_, ""));
-  output_.emit("PixelFilter", {upgraded_filter.kind}, std::move(upgraded_filter.parameters), filter_->place);
+  emit("PixelFilter", upgrade_filter(filter_->strings.front(), old_parameters(*filter_, "")), filter_->place);
   if (sampler_ || passes_) {
     if (!sampler_) sampler_ = Directive{"Sampler", {}, {"halton"}, {}, d.place};
-    const std::string kind = sampler_->strings.front();
-    Upgraded sampler = upgrade_sampler(kind, old_parameters(*sampler_, ""));
+    Upgraded sampler = upgrade_sampler(sampler_->strings.front(), old_parameters(*sampler_, ""));
     if (passes_) {
       std::erase_if(sampler.parameters, [](const Parameter& p) { return p.name == "pixelsamples"; });
       sampler.parameters.push_back(integer_parameter("pixelsamples", *passes_, sampler_->place));
     }
-    output_.emit("Sampler", {sampler.kind}, std::move(sampler.parameters), sampler_->place);
+    emit("Sampler", std::move(sampler), sampler_->place);
   }
   output_.emit(std::move(d));
 }
@@ -173,7 +172,6 @@ void Upgrader::pixel_filter(Directive& d) { filter_ = std::move(d); }
 void Upgrader::sampler(Directive& d) { sampler_ = std::move(d); }
 
 void Upgrader::camera(Directive& d) {
-  const std::string kind = d.strings.front();
   OldParameters old = old_parameters(d, "");
   const auto time = [&](const char* name, float otherwise) {
     const Parameter* p = old.find(name);
@@ -182,15 +180,13 @@ void Upgrader::camera(Directive& d) {
   };
   exposure_time_ = time("shutterclose", 1) - time("shutteropen", 0);
   if (!(exposure_time_ > 0)) exposure_time_ = 1;
-  Upgraded result = upgrade_camera(kind, std::move(old), output_);
-  output_.emit("Camera", {result.kind}, std::move(result.parameters), d.place);
+  emit("Camera", upgrade_camera(d.strings.front(), std::move(old), output_), d.place);
 }
 
 void Upgrader::integrator(Directive& d) {
-  const std::string kind = d.strings.front();
-  UpgradedIntegrator result = upgrade_integrator(kind, old_parameters(d, ""), output_);
+  UpgradedIntegrator result = upgrade_integrator(d.strings.front(), old_parameters(d, ""), output_);
   passes_ = result.passes;
-  output_.emit("Integrator", {result.integrator.kind}, std::move(result.integrator.parameters), d.place);
+  emit("Integrator", std::move(result.integrator), d.place);
 }
 
 // Replaces textures' names by those in the output. `is_spectrum` tells, from a parameter's name, which kind of texture
@@ -250,7 +246,7 @@ void Upgrader::material(Directive& d) {
   auto old = std::make_shared<const OldMaterial>(OldMaterial{kind, kind, std::move(d.parameters)});
   UpgradedMaterial result = upgraded(*old, d);
   material_ = {std::move(old), "", result.opacity};
-  output_.emit("Material", {result.material.kind}, std::move(result.material.parameters), d.place);
+  emit("Material", std::move(result.material), d.place);
 }
 
 void Upgrader::make_named_material(Directive& d) {
@@ -284,16 +280,11 @@ void Upgrader::make_named_medium(Directive& d) {
   output_.emit(std::move(d));
 }
 
-void Upgrader::light_source(Directive& d) {
-  const std::string kind = d.strings.front();
-  upgrade_light(kind, old_parameters(d, ""), output_);
-}
+void Upgrader::light_source(Directive& d) { upgrade_light(d.strings.front(), old_parameters(d, ""), output_); }
 
 void Upgrader::area_light_source(Directive& d) {
-  const std::string kind = d.strings.front();
   is_lamp_ = true;
-  Upgraded result = upgrade_area_light(kind, old_parameters(d, ""), output_);
-  output_.emit("AreaLightSource", {result.kind}, std::move(result.parameters), d.place);
+  emit("AreaLightSource", upgrade_area_light(d.strings.front(), old_parameters(d, ""), output_), d.place);
 }
 
 // A shape may override parameters of its material. If so, emits a material with these values and returns true.
@@ -308,7 +299,7 @@ bool Upgrader::override_material(Directive& d) {
   d.parameters.erase(first, d.parameters.end());
   output_.emit("AttributeBegin", {}, {}, d.place);
   UpgradedMaterial result = upgraded(changed, d);
-  output_.emit("Material", {result.material.kind}, std::move(result.material.parameters), d.place);
+  emit("Material", std::move(result.material), d.place);
   material_.opacity = result.opacity;
   return true;
 }
@@ -326,7 +317,6 @@ bool Upgrader::make_visible(Place place) {
 void Upgrader::shape(Directive& d) {
   const Factor opacity = material_.opacity;
   const bool is_override = override_material(d) || make_visible(d.place);
-  const std::string kind = d.strings.front();
   OldParameters old = old_parameters(d, "");
   if (!material_.opacity.is(1)) {
     const Factor alpha = output_.product(material_.opacity, old.take_factor("alpha").value_or(Factor{1}), d.place);
@@ -334,8 +324,8 @@ void Upgrader::shape(Directive& d) {
     rest.push_back(factor_parameter("alpha", alpha, d.place));
     old = OldParameters(old.entity(), d.place, std::move(rest));
   }
-  if (auto result = upgrade_shape(kind, std::move(old), output_))
-    output_.emit("Shape", {result->kind}, std::move(result->parameters), d.place);
+  if (auto result = upgrade_shape(d.strings.front(), std::move(old), output_))
+    emit("Shape", std::move(*result), d.place);
   if (is_override) output_.emit("AttributeEnd", {}, {}, d.place);
   material_.opacity = opacity;
 }

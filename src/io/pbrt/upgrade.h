@@ -103,6 +103,7 @@ class Upgrader {
   void area_light_source(Directive& d);
   void shape(Directive& d);
 
+  void emit(std::string_view directive, Upgraded upgraded, Place place);
   OldParameters old_parameters(Directive& d, std::string_view textures_of);
   void rename_textures(Parameters& parameters, const std::function<bool(const std::string&)>& is_spectrum);
   std::string new_material(const std::string& name) const;

@@ -51,8 +51,7 @@ class Emission {
   // If an image replaces the spectrum, the factor cannot have a colour.
   void into_scale(OldParameters& old, UpgradeOutput& output) {
     if (!spectrum_) return;
-    const Factor grey = output.grey(*spectrum_, old.entity());
-    scale_ *= grey.value;
+    scale_ *= output.grey(*spectrum_, old.entity()).value;
     spectrum_.reset();
   }
 
@@ -78,7 +77,7 @@ class Emission {
     }
     const auto own = spectrum_ ? constant_colour(*spectrum_) : Rgb{1, 1, 1};
     if (own)
-      spectrum_ = rgb_parameter(name, {own->r * colour->r, own->g * colour->g, own->b * colour->b}, factor.place);
+      spectrum_ = rgb_parameter(name, *own * *colour, factor.place);
     else
       scale_ *= output.grey(factor, old.entity()).value;
   }
@@ -87,16 +86,11 @@ class Emission {
   float scale_ = 1;
 };
 
-void append(Parameters& to, Parameters from) {
-  to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
-}
-
 void emit_light(const std::string& kind, OldParameters& old, Emission emission, std::optional<Parameter> image,
                 UpgradeOutput& output) {
   Parameters parameters = emission.parameters(old.place());
   if (image) parameters.push_back(renamed(std::move(*image), "filename"));
-  append(parameters, old.rest());
-  output.emit("LightSource", {kind}, std::move(parameters), old.place());
+  output.emit("LightSource", {kind}, old.with_rest(std::move(parameters)), old.place());
 }
 
 void infinite(OldParameters& old, UpgradeOutput& output) {
@@ -114,8 +108,7 @@ void projection(OldParameters& old, UpgradeOutput& output) {
   const Place place = old.place();
   Parameters fov;
   if (!old.has("fov")) fov.push_back(float_parameter("fov", 45, place));
-  append(fov, old.rest());
-  OldParameters rest(old.entity(), place, std::move(fov));
+  OldParameters rest(old.entity(), place, old.with_rest(std::move(fov)));
   output.emit("AttributeBegin", {}, {}, place);
   output.emit({"Scale", {1, -1, 1}, {}, {}, place});
   emit_light("projection", rest, std::move(emission), std::move(image), output);
@@ -144,9 +137,7 @@ void upgrade_light(const std::string& kind, OldParameters old, UpgradeOutput& ou
 Upgraded upgrade_area_light(const std::string& kind, OldParameters old, UpgradeOutput& output) {
   if (kind != "diffuse" && kind != "area")
     throw output.context().unknown("area light", "AreaLightSource", kind, old.place());
-  Upgraded result{"diffuse", Emission(old, "L", output).parameters(old.place())};
-  append(result.parameters, old.rest());
-  return result;
+  return {"diffuse", old.with_rest(Emission(old, "L", output).parameters(old.place()))};
 }
 
 }  // namespace lanthorn::pbrt

@@ -427,7 +427,7 @@ class MaterialUpgrade {
   // The product of two spectra, at least one of which should be a colour: otherwise the second is replaced by its mean.
   Parameter times(const Parameter& a, const Parameter& b) {
     const auto x = constant_colour(a), y = constant_colour(b);
-    if (x && y) return rgb_parameter(a.name, {x->r * y->r, x->g * y->g, x->b * y->b}, a.place);
+    if (x && y) return rgb_parameter(a.name, *x * *y, a.place);
     return output_.scaled(a, mean(b));
   }
 
@@ -508,9 +508,7 @@ UpgradedMaterial upgrade_material(const std::string& kind, OldParameters old, co
   if (entry == entries.end()) throw output.context().unknown("material", "Material", kind, old.place());
   MaterialUpgrade upgrade(old, name, output);
   Upgraded result = (upgrade.*entry->upgrade)();
-  Parameters rest = old.rest();
-  result.parameters.insert(result.parameters.end(), std::make_move_iterator(rest.begin()),
-                           std::make_move_iterator(rest.end()));
+  result.parameters = old.with_rest(std::move(result.parameters));
   return {std::move(result), upgrade.opacity()};
 }
 

@@ -25,9 +25,7 @@ std::string new_name(const std::array<Renamed, N>& names, const std::string& old
 }
 
 Upgraded with_rest(std::string kind, Parameters parameters, OldParameters& old) {
-  Parameters rest = old.rest();
-  parameters.insert(parameters.end(), std::make_move_iterator(rest.begin()), std::make_move_iterator(rest.end()));
-  return {std::move(kind), std::move(parameters)};
+  return {std::move(kind), old.with_rest(std::move(parameters))};
 }
 
 }  // namespace
@@ -141,7 +139,7 @@ Parameters upgrade_medium(OldParameters old) {
     if (!old.has("sigma_a")) parameters.push_back(rgb_parameter("sigma_a", {0.0011f, 0.0024f, 0.014f}, place));
     if (!old.has("sigma_s")) parameters.push_back(rgb_parameter("sigma_s", {2.55f, 3.21f, 3.77f}, place));
   }
-  return with_rest({}, std::move(parameters), old).parameters;
+  return old.with_rest(std::move(parameters));
 }
 
 namespace {

@@ -18,9 +18,7 @@ struct OldTexture {
   UpgradeOutput& output;
 
   void add(const std::string& kind, Parameters parameters) {
-    Parameters rest = old.rest();
-    parameters.insert(parameters.end(), std::make_move_iterator(rest.begin()), std::make_move_iterator(rest.end()));
-    output.add_texture(name, is_spectrum, kind, std::move(parameters), old.place());
+    output.add_texture(name, is_spectrum, kind, old.with_rest(std::move(parameters)), old.place());
   }
 };
 
@@ -56,7 +54,7 @@ void scale(OldTexture from) {
     return from.add("scale", {renamed(std::move(first), "tex"), renamed(std::move(second), "scale")});
   if (is_grey(first) || (!is_grey(second) && constant_colour(first))) std::swap(first, second);
   const auto a = constant_colour(first), b = constant_colour(second);
-  if (a && b) return from.add("constant", {rgb_parameter("value", {a->r * b->r, a->g * b->g, a->b * b->b}, place)});
+  if (a && b) return from.add("constant", {rgb_parameter("value", *a * *b, place)});
   if (!b)
     from.output.note("the product of two textures: one of them is replaced by its mean of red, green and blue", place);
   const Factor factor = from.output.grey(second, "a texture \"scale\"");

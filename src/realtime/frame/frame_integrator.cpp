@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include "realtime/frame/frame_integrator.h"
-
+// Techniques as methods of `render`: every pass is a frame with its own photons, views of lights and turns, and the
+// image is the mean of the frames.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -16,11 +16,13 @@
 #include "base/parallel.h"
 #include "film/film_pass.h"
 #include "gl/context.h"
-#include "lanthorn/realtime.h"
+#include "integrators/integrator.h"
+#include "lanthorn/methods.h"
 #include "math/sampler.h"
 #include "path/path_draw.h"
 #include "photon/photon.h"
 #include "realtime/frame/renderer.h"
+#include "realtime/techniques/technique.h"
 #include "scene/scene_data.h"
 
 namespace lanthorn {
@@ -161,8 +163,7 @@ PassReport FrameIntegrator::render_pass(const RenderJob& job, std::uint32_t pass
   return report;
 }
 
-}  // namespace
-
+/// The method that renders by frames of this technique.
 IntegratorInfo frame_method(const TechniqueInfo& technique) {
   const TechniqueDescription& description = technique.description;
   std::vector<ParameterInfo> parameters;
@@ -172,6 +173,8 @@ IntegratorInfo frame_method(const TechniqueInfo& technique) {
             return std::make_unique<FrameIntegrator>(technique, p);
           }};
 }
+
+}  // namespace
 
 void add_realtime_methods() {
   for (const TechniqueInfo* technique : technique_registry())

@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "realtime/scene/materials.h"
+#include "realtime/scene/projection.h"
 #include "realtime/scene/shader_files.h"
-#include "realtime/scene/view_focus.h"
 
 namespace lanthorn {
 

@@ -21,7 +21,6 @@
 #include "realtime/lights/traced_shadows.h"
 #include "realtime/scene/gbuffer.h"
 #include "realtime/scene/gpu_scene.h"
-#include "realtime/scene/screen.h"
 #include "realtime/techniques/frame_context.h"
 #include "realtime/techniques/technique.h"
 #include "scene/scene.h"

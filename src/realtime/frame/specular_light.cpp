@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <span>
 
 #include "path/direct_light.h"
 #include "path/eye_pass.h"

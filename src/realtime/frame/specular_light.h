@@ -11,10 +11,9 @@
 
 #include "camera/view.h"
 #include "gl/buffer.h"
-#include "gl/framebuffer.h"
+#include "gl/object.h"
 #include "gl/program.h"
 #include "gl/texture.h"
-#include "gl/vertex_array.h"
 #include "realtime/scene/gbuffer.h"
 #include "realtime/scene/gpu_scene.h"
 #include "realtime/techniques/technique.h"

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "gl/buffer.h"
-#include "gl/framebuffer.h"
 #include "gl/program.h"
 #include "gl/texture.h"
 #include "realtime/lights/light_views.h"

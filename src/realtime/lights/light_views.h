@@ -10,7 +10,7 @@
 
 #include "math/sampler.h"
 #include "math/vec.h"
-#include "realtime/scene/constants.h"
+#include "realtime/scene/layouts.h"
 #include "realtime/scene/projection.h"
 #include "scene/scene.h"
 

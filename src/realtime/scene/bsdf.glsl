@@ -5,7 +5,6 @@
 #include "constants.glsl"
 #include "layouts.glsl"
 #include "octahedral.glsl"
-#include "pi.glsl"
 
 layout(std430, binding = storage_materials) readonly buffer Materials { Material materials[]; };
 layout(binding = unit_surfaces) uniform sampler2DArray textures;

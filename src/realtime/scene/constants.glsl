@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Numbers that C++ and shaders share. This text is valid in both languages (realtime/scene/constants.h).
+// Numbers that C++ and shaders share. This text is valid in both languages (realtime/scene/layouts.h).
+
+const float pi = 3.14159265358979f;
 
 // Texture units.
 const int unit_surfaces = 0;        // SurfaceTextures

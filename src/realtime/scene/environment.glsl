@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The environment as seen directly, and blurred.
 #include "constants.glsl"
-#include "pi.glsl"
 layout(binding = unit_environment) uniform sampler2D environment;  // equirectangular around +y
 
 vec2 place_in_environment(vec3 d) { return vec2(atan(d.z, d.x) / (2 * pi) + 0.5, acos(clamp(d.y, -1, 1)) / pi); }

@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "realtime/scene/constants.h"
+#include "realtime/scene/layouts.h"
 
 namespace lanthorn {
 

@@ -14,3 +14,9 @@ Surface surface_at(ivec2 pixel) {
                  decode_octahedral(packed_surface.y), texelFetch(g_colour, pixel, 0), texelFetch(g_lobe, pixel, 0),
                  materials[packed_surface.z], packed_surface.w);
 }
+
+// Where a frame is seen from.
+uniform vec3 eye;
+uniform vec4 axis;  // of the view; a: 1 if its rays are parallel
+
+vec3 direction_to_eye(vec3 position) { return axis.a > 0 ? -axis.xyz : normalize(eye - position); }

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "gl/framebuffer.h"
 #include "gl/texture.h"
 
 namespace lanthorn {

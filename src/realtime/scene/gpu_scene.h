@@ -8,13 +8,13 @@
 #include <vector>
 
 #include "gl/buffer.h"
+#include "gl/object.h"
 #include "gl/program.h"
 #include "gl/texture.h"
-#include "gl/vertex_array.h"
 #include "lanthorn/scene.h"
 #include "math/vec.h"
 #include "realtime/scene/layouts.h"
-#include "realtime/scene/surface_textures.h"
+#include "realtime/scene/materials.h"
 #include "scene/geometry.h"
 #include "scene/scene.h"
 
@@ -43,6 +43,10 @@ void set_eye_paths(const gl::Program& program, const EyePaths& eye_paths);
 float opacity_at(const ShapeStore& shape, const Vec2& uv);
 /// The shapes of a scene in the order of the meshes of its model.
 std::vector<const ShapeStore*> shapes_of(const Scene& scene);
+
+/// Radiance from directions all around, and from one direction of each light, by which environments are told apart:
+/// edits change their strength or colour.
+std::vector<Vec3> environment_fingerprint(const Scene& scene);
 
 /// One command of glMultiDrawElementsIndirect.
 struct DrawCommand {

@@ -1,21 +1,24 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Structs in buffers that C++ and shaders share.
+// Numbers, and structs in buffers, that C++ and shaders share.
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
 #include "math/vec.h"
-#include "realtime/scene/constants.h"
 
 namespace lanthorn::gpu {
 
 // NOLINTBEGIN(readability-identifier-naming): the names of GLSL
+using uint = std::uint32_t;
 using vec3 = glm::vec3;
 using vec4 = glm::vec4;
 using uvec4 = glm::uvec4;
 using mat4 = glm::mat4;
 // NOLINTEND(readability-identifier-naming)
+#include "realtime/scene/constants.glsl"
+// After the numbers that it uses.
 #include "realtime/scene/layouts.glsl"
 
 // GLSL's layout std430 lets a vector begin at multiples of 16 bytes. C++ would not leave a gap there.

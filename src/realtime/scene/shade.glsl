@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A shader that draws the light of what each pixel of the G-buffer shows. It defines `shade`.
 #include "gbuffer.glsl"
-#include "eye.glsl"
 layout(location = 0) out vec4 radiance;
 
 // Radiance from a surface towards the eye. `wi`: direction to the eye.

@@ -6,21 +6,19 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
-#include <string>
 #include <utility>
 #include <vector>
 
 #include "camera/view.h"
-#include "gl/framebuffer.h"
+#include "gl/object.h"
 #include "gl/texture.h"
 #include "gl/timer.h"
 #include "realtime/lights/light_maps.h"
 #include "realtime/lights/light_views.h"
-#include "realtime/scene/constants.h"
 #include "realtime/scene/gbuffer.h"
 #include "realtime/scene/gpu_scene.h"
+#include "realtime/scene/layouts.h"
 #include "realtime/scene/projection.h"
-#include "realtime/scene/screen.h"
 #include "realtime/techniques/technique.h"
 #include "scene/scene.h"
 
@@ -80,6 +78,22 @@ struct LightTextures {
 /// These layers, each alone, to draw into.
 struct LightTargets {
   gl::Framebuffer direct, indirect, caustic;
+};
+
+/// The triangle of screen.vert.glsl, which covers all pixels of the render target.
+class Screen {
+ public:
+  Screen() : no_vertices_(gl::make_vertex_array()) {}
+
+  /// Runs the program in use in each pixel.
+  void draw() const {
+    glDisable(GL_DEPTH_TEST);
+    glBindVertexArray(no_vertices_.name());
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+  }
+
+ private:
+  gl::VertexArray no_vertices_;
 };
 
 /// Data of a frame for a technique.

@@ -17,7 +17,6 @@
 
 #include "lanthorn/error.h"
 #include "lanthorn/text.h"
-#include "realtime/techniques/built_in.h"
 
 namespace lanthorn {
 

@@ -79,6 +79,8 @@ struct TechniqueInfo {
   std::vector<std::string> (*limitations)(const Scene& scene, const GpuScene* gpu_scene) = nullptr;
 };
 
+/// The techniques that techniques/CMakeLists.txt lists.
+std::vector<TechniqueInfo> built_in_techniques();
 /// All techniques, in the order of the viewer's list.
 std::vector<const TechniqueInfo*> technique_registry();
 /// Adds a technique. Throws Error if its name is taken. Call it before any frame: not thread-safe.

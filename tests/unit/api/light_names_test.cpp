@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include "lanthorn/light_names.h"
+#include "lanthorn/scene.h"
 
 #include <gtest/gtest.h>
 

@@ -13,9 +13,9 @@
 #include "lanthorn/ibl.h"
 #include "lanthorn/metrics.h"
 #include "realtime/frame/renderer.h"
-#include "realtime/scene/environment_fingerprint.h"
+#include "realtime/scene/gpu_scene.h"
 #include "realtime/scene/shader_files.h"
-#include "realtime/techniques/splitsum/environment_baker.h"
+#include "realtime/techniques/splitsum/environment_maps.h"
 #include "support/opengl.h"
 #include "support/render_scene.h"
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "lanthorn/error.h"
-#include "lanthorn/realtime.h"
+#include "lanthorn/methods.h"
 #include "lanthorn/viewer.h"
 #include "realtime/frame/renderer.h"
 #include "support/error_text.h"

@@ -17,7 +17,7 @@
 #include "path/walk.h"
 #include "realtime/frame/renderer.h"
 #include "realtime/scene/shader_files.h"
-#include "realtime/techniques/ispm/bounce_map.h"
+#include "realtime/techniques/ispm/photon_walk.h"
 #include "support/chi2.h"
 #include "support/edited.h"
 #include "support/opengl.h"

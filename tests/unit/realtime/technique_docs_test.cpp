@@ -10,7 +10,7 @@
 #include <string>
 
 #include "lanthorn/file.h"
-#include "realtime/techniques/built_in.h"
+#include "realtime/techniques/technique.h"
 
 namespace lanthorn::technique_docs_test {
 namespace {

@@ -146,7 +146,7 @@ class Reference {
 };
 
 // The lights of the lamps, by lamp.
-std::map<std::size_t, std::vector<std::uint32_t>> lights_of(const Scene& scene) {
+std::map<std::size_t, std::vector<std::uint32_t>> lights_by_lamp(const Scene& scene) {
   std::map<std::size_t, std::vector<std::uint32_t>> lights;
   for (std::uint32_t l = 0; l < scene.lights().size(); ++l)
     lights[static_cast<std::size_t>(scene.light_location(l).line - 5)].push_back(l);
@@ -209,7 +209,7 @@ class LampCheck {
 
 void check(const std::vector<Lamp>& lamps, const Place& place) {
   const Scene scene = test::world(scene_of(lamps, place), "TransformTimes 0 1");
-  const auto lights = lights_of(scene);
+  const auto lights = lights_by_lamp(scene);
   ASSERT_EQ(lights.size(), lamps.size());
   for (const auto& [index, own] : lights) {
     SCOPED_TRACE(lamps[index].shape);

@@ -15,7 +15,6 @@
 #include "viewer/edited_scene.h"
 #include "viewer/interaction.h"
 #include "viewer/picking.h"
-#include "viewer/saved_scene.h"
 
 namespace lanthorn::scene_hands_test {
 namespace {

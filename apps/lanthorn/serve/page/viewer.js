@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 'use strict';
 const byId = (id) => document.getElementById(id);
+const make = (tag, properties) => Object.assign(document.createElement(tag), properties);
 const canvas = byId('picture'), stage = byId('stage'), context = canvas.getContext('2d', {alpha: false});
 
 // State of the display: the last frame {about, halves}, how it is shown, and the camera as this page moves it.
@@ -529,8 +530,7 @@ async function save(button, address) {
   try {
     const response = await fetch(address);
     if (!response.ok) throw new Error(response.statusText);
-    const link = document.createElement('a');
-    link.href = URL.createObjectURL(await response.blob());
+    const link = make('a', {href: URL.createObjectURL(await response.blob())});
     link.download = /filename="([^"]+)"/.exec(response.headers.get('Content-Disposition'))?.[1] ?? 'picture';
     link.click();
     setTimeout(() => URL.revokeObjectURL(link.href), 10000);
@@ -609,18 +609,11 @@ const factorText = (factor) => factor === 0 ? 'off' : `× ${Number(factor.toPrec
 const factorOf = (stops) => stops <= darkest ? 0 : Number((2 ** stops).toPrecision(4));
 
 function lightRow({name, description}) {
-  const row = document.createElement('div'), head = document.createElement('div'), label = document.createElement('label');
-  const shown = document.createElement('output'), slider = document.createElement('input'), detail = document.createElement('small');
-  row.className = 'light';
-  head.className = 'row';
-  label.className = 'name';
-  slider.id = `light-${name}`;
-  label.htmlFor = slider.id;
+  const row = make('div', {className: 'light'}), head = make('div', {className: 'row'}), shown = make('output');
+  const slider = make('input', {id: `light-${name}`, type: 'range', min: darkest, max: 4, step: 0.1, value: 0});
+  const label = make('label', {className: 'name', htmlFor: slider.id});
   shown.htmlFor.add(slider.id);
-  label.append(`${description} `);
-  detail.textContent = name;
-  label.append(detail);
-  Object.assign(slider, {type: 'range', min: darkest, max: 4, step: 0.1, value: 0});
+  label.append(`${description} `, make('small', {textContent: name}));
   const show = (factor) => {
     shown.textContent = factorText(factor);
     slider.setAttribute('aria-valuetext', factor === 0 ? 'off' : `${Number(factor.toPrecision(3))} times`);
@@ -642,9 +635,7 @@ function lightRow({name, description}) {
 function showLights(known) {
   sliders = {};
   lights = {};
-  const none = document.createElement('p');
-  none.className = 'note';
-  none.textContent = 'No lights to dim';
+  const none = make('p', {className: 'note', textContent: 'No lights to dim'});
   byId('light-list').replaceChildren(...known.length > 0 ? known.map(lightRow) : [none]);
 }
 /// Another environment is another light.
@@ -668,11 +659,7 @@ for (const id of ['width', 'height'])
 function showScene(scene) {
   document.title = `${scene.title} – Lanthorn`;
   byId('title').textContent = scene.title;
-  byId('method').replaceChildren(...scene.methods.map(({name, description}) => {
-    const option = new Option(name, name);
-    option.title = description;
-    return option;
-  }));
+  byId('method').replaceChildren(...scene.methods.map(({name, description}) => make('option', {value: name, text: name, title: description})));
   byId('environment-source').replaceChildren(...scene.environments.map(({source, label}) => new Option(label, source)));
   showLights(scene.lights);
   display.curve = byId('curve').value = scene.curve;
@@ -681,11 +668,7 @@ function showScene(scene) {
   const warnings = byId('warnings');
   warnings.hidden = scene.warnings.length === 0;
   warnings.querySelector('summary').textContent = `${scene.warnings.length} ${scene.warnings.length === 1 ? 'warning' : 'warnings'}`;
-  warnings.querySelector('ul').replaceChildren(...scene.warnings.map((text) => {
-    const item = document.createElement('li');
-    item.textContent = text;
-    return item;
-  }));
+  warnings.querySelector('ul').replaceChildren(...scene.warnings.map((text) => make('li', {textContent: text})));
 }
 
 async function start() {

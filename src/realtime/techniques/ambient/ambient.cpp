@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "light/light.h"
-#include "realtime/scene/view_focus.h"
+#include "realtime/scene/projection.h"
 #include "realtime/techniques/frame_context.h"
 
 namespace lanthorn {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The bounce maps of the lights, and the distribution of photons over their texels (realtime/techniques/ispm/bounce_map.h).
+// The bounce maps of the lights, and the distribution of photons over their texels (realtime/techniques/ispm/photon_walk.h).
 #include "bsdf.glsl"
 #include "light_views.glsl"
 #include "ispm_constants.glsl"

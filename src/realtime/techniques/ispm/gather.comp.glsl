@@ -3,13 +3,12 @@
 // The same as splat.frag.glsl, tile by tile: each pixel adds up, in their order, the photons near it among those that may
 // cover its tile (Mara, Luebke & McGuire 2013, "Toward Practical Real-Time Photon Mapping", section 4.3).
 #include "gbuffer.glsl"
-#include "eye.glsl"
 #include "photon.glsl"
 layout(local_size_x = tile_side, local_size_y = tile_side) in;  // a tile
 layout(binding = image_of_technique, rgba32f) uniform image2D radiance;
 uniform int first, count;  // which entries of each list
 // The lists of the tiles, one after the other, and where they begin: positions and numbers of photons
-// (realtime/techniques/ispm/photon_tiles.h).
+// (realtime/techniques/ispm/photon_light.h).
 layout(binding = unit_tile_begins) uniform usamplerBuffer tile_begins;
 layout(binding = unit_tile_photons) uniform usamplerBuffer tile_photons;
 

@@ -18,11 +18,9 @@
 #include "photon/gather/photon_hit.h"
 #include "photon/gather/pilot_radius.h"
 #include "photon/gather/radius_schedule.h"
-#include "realtime/scene/view_focus.h"
+#include "realtime/scene/projection.h"
 #include "realtime/techniques/frame_context.h"
-#include "realtime/techniques/ispm/bounce_map.h"
 #include "realtime/techniques/ispm/photon_light.h"
-#include "realtime/techniques/ispm/photon_tiles.h"
 #include "realtime/techniques/ispm/photon_walk.h"
 
 namespace lanthorn {

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Adds the light of a photon to the pixels in its volume.
 #include "gbuffer.glsl"
-#include "eye.glsl"
 #include "photon.glsl"
 flat in vec3 photon_position, photon_normal, photon_power, photon_wi;
 layout(location = 0) out vec4 radiance;

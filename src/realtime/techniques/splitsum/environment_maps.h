@@ -8,7 +8,9 @@
 #include "gl/program.h"
 #include "gl/texture.h"
 #include "ibl/cube_map.h"
+#include "ibl/environment.h"
 #include "ibl/split_sum.h"
+#include "lanthorn/ibl.h"
 
 namespace lanthorn {
 
@@ -48,6 +50,23 @@ struct EnvironmentMaps {
 
   /// For a program that includes environment_maps.glsl.
   void bind(const gl::Program& program) const;
+};
+
+/// The maps of `bake_ibl` by compute shaders. The CPU finds the suns, halves the environment and draws the samples; the
+/// GPU does the sums over them, which take nearly all of the time.
+class EnvironmentBaker {
+ public:
+  explicit EnvironmentBaker(const gl::ShaderFiles& files);
+
+  /// Irradiance, specular levels and the table of `split_sum_table_size`. Sizes must be powers of two.
+  EnvironmentMaps bake(const Image& environment, const IblSettings& settings) const;
+
+ private:
+  void bake_irradiance(const std::vector<PointFlux>& points, CubeAtlas& map) const;
+  void close_seams(CubeAtlas& map, int level) const;
+  void bake_table(gl::Texture& table) const;
+
+  gl::Program irradiance_, prefilter_, seams_, brdf_;
 };
 
 }  // namespace lanthorn

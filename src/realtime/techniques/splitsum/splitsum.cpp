@@ -10,9 +10,9 @@
 #include "gl/context.h"
 #include "gl/program.h"
 #include "integrators/environment_image.h"
-#include "realtime/scene/environment_fingerprint.h"
+#include "realtime/scene/gpu_scene.h"
 #include "realtime/techniques/frame_context.h"
-#include "realtime/techniques/splitsum/environment_baker.h"
+#include "realtime/techniques/splitsum/environment_maps.h"
 
 namespace lanthorn {
 

@@ -11,7 +11,6 @@
 #include "realtime/lights/light_maps.h"
 #include "realtime/scene/gpu_scene.h"
 #include "realtime/scene/projection.h"
-#include "realtime/techniques/voxelcones/voxel_grids.h"
 #include "realtime/techniques/voxelcones/voxels.h"
 #include "scene/scene.h"
 

@@ -6,10 +6,9 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <utility>
+#include <cstdint>
 
 #include "realtime/scene/materials.h"
-#include "surface/fresnel.h"
 
 namespace lanthorn {
 
@@ -89,13 +88,9 @@ struct Albedo {
 Albedo albedo_of(const GpuMaterial& m) {
   const auto rgb = [](const glm::vec4& v) { return Vec3(v); };
   if (m.kind == gpu::kind_diffuse) return {rgb(m.colour), rgb(m.through)};
-  if (m.kind == gpu::kind_metal) {
-    const Spectrum f0 = fresnel_conductor(1, Spectrum(m.through.x, m.through.y, m.through.z, 1),
-                                          Spectrum(m.specular.x, m.specular.y, m.specular.z, 1));
-    return {Vec3(f0[0], f0[1], f0[2]), Vec3(0)};
-  }
-  const Vec3 f0 = rgb(m.through);
-  return {f0 + (1.0f - f0) * rgb(m.colour), Vec3(0)};
+  const GpuMaterial plastic = as_plastic(m);
+  const Vec3 f0 = rgb(plastic.through);
+  return {f0 + (1.0f - f0) * rgb(plastic.colour), Vec3(0)};
 }
 
 /// Adds the triangles of draws to the sums of their cells.
@@ -230,6 +225,39 @@ void for_triangles(const GpuScene& gpu_scene, const GpuTriangles& triangles, con
 }
 
 }  // namespace
+
+int voxel_grid_limit(int size) {
+  // Six directions of four half floats, and an eighth more for each coarser level.
+  constexpr std::int64_t most_bytes = std::int64_t{2} << 30, bytes_of_voxel = 6 * 8;
+  const std::int64_t voxels = std::int64_t{size} * size * size, bytes = voxels * bytes_of_voxel * 8 / 7;
+  return static_cast<int>(std::clamp<std::int64_t>(most_bytes / bytes, 1, gpu::most_voxel_grids));
+}
+
+std::vector<VoxelGrid> voxel_grids(const Bounds& bounds, int size, const ViewFocus& focus, int count) {
+  constexpr float width_by_distance = 1.5f;
+  constexpr int steps = 8;  // of a corner along the grid's edge
+  // Centres the surfaces in the grid, so that the outermost walls lie in the middles of voxels.
+  VoxelGrid whole;
+  whole.size = size;
+  const float widest = bounds.empty() ? 0 : max_component(bounds.extent());
+  whole.side = widest > 0 && widest < infinity ? widest / static_cast<float>(size - 3) : 1;
+  whole.corner = (bounds.empty() ? Point(0) : bounds.centre()) - 0.5f * whole.edge();
+  std::vector<VoxelGrid> grids{whole};
+  const int limit = count > 0 ? std::min(count, voxel_grid_limit(size)) : voxel_grid_limit(size);
+  while (static_cast<int>(grids.size()) < limit) {
+    VoxelGrid next = grids.back();
+    next.side *= 0.5f;
+    if (count == 0 && !(next.edge() >= width_by_distance * focus.distance)) break;
+    const float step = next.edge() / steps;
+    for (int axis = 0; axis < 3; ++axis) {
+      const float wanted = (focus.centre[axis] - 0.5f * next.edge() - whole.corner[axis]) / step;
+      const float last = (whole.edge() - next.edge()) / step;
+      next.corner[axis] = whole.corner[axis] + step * std::clamp(std::round(wanted), 0.0f, last);
+    }
+    grids.push_back(next);
+  }
+  return grids;
+}
 
 Bounds bounds_of(const GpuScene& gpu_scene, const GpuTriangles& triangles) {
   Bounds bounds;

@@ -6,7 +6,6 @@
 // cover; a: that share. Each level is half as fine as the one before. Grids lie side by side in x: grid 0 holds the
 // whole scene, and the voxels of each further grid are half as wide as those of the grid before.
 #include "frame.glsl"
-#include "pi.glsl"
 #include "constants.glsl"
 #include "layouts.glsl"
 #include "voxelcones_constants.glsl"

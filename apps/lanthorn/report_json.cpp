@@ -1,10 +1,18 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include "scene_report.h"
+#include "report_json.h"
 
 namespace lanthorn::program {
 
-nlohmann::json scene_report(const SceneSummary& s) {
+nlohmann::json estimate_json(const ErrorEstimate& error) {
+  return {{"noise", error.noise},
+          {"bias", error.bias},
+          {"error", error.error},
+          {"bound", error.bound},
+          {"doubt", error.doubt}};
+}
+
+nlohmann::json scene_json(const SceneSummary& s) {
   const auto vector = [](const Vec3& v) { return nlohmann::json{v.x, v.y, v.z}; };
   return {{"triangles", s.triangles},
           {"patches", s.patches},

@@ -1,11 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
+// JSON of reports, of answers to clients and of the metadata of pictures.
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 
+#include "lanthorn/error_estimate.h"
 #include "lanthorn/render_record.h"
+#include "lanthorn/scene.h"
 
 namespace lanthorn::program {
 
@@ -22,5 +26,17 @@ inline std::string report_text(const nlohmann::json& json) { return json_text(js
 
 /// The record of a render for a report, a client or a picture's metadata.
 inline nlohmann::json settings_json(const RenderRecord& record) { return nlohmann::json::parse(settings_text(record)); }
+
+/// The value; null if there is none.
+template <class Value>
+nlohmann::json or_null(const std::optional<Value>& value) {
+  return value ? nlohmann::json(*value) : nlohmann::json();
+}
+
+/// The estimate's members by their names.
+nlohmann::json estimate_json(const ErrorEstimate& error);
+
+/// Summary for `info --json` and for reports of renders.
+nlohmann::json scene_json(const SceneSummary& scene);
 
 }  // namespace lanthorn::program
