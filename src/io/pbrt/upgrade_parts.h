@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "io/pbrt/upgrade_output.h"
+#include "io/pbrt/upgrade_tools.h"
 
 namespace lanthorn::pbrt {
 

@@ -1,14 +1,18 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include "io/pbrt/upgrade_values.h"
+#include "io/pbrt/upgrade_tools.h"
 
 #include <algorithm>
 #include <utility>
 #include <vector>
 
+#include "io/pbrt/values.h"
+
 namespace lanthorn::pbrt {
 
 namespace {
+
+float mean(const Rgb& colour) { return (colour.r + colour.g + colour.b) / 3; }
 
 Parameter parameter(ParameterType type, std::string name, Parameter::Values values, Place place) {
   Parameter result;
@@ -20,6 +24,108 @@ Parameter parameter(ParameterType type, std::string name, Parameter::Values valu
 }
 
 }  // namespace
+
+void UpgradeOutput::note(const std::string& message, Place place) {
+  const auto [it, is_new] = note_of_message_.try_emplace(message, notes_.size());
+  if (is_new) notes_.push_back({place, message});
+  ++notes_[it->second].count;
+}
+
+void UpgradeOutput::finish() {
+  for (const Note& note : notes_)
+    context_.scene.warnings.push_back(
+        {note.place.location(),
+         note.message + (note.count > 1 ? " (" + std::to_string(note.count) + " times)" : std::string())});
+}
+
+std::string UpgradeOutput::fresh_name(char space, const std::string& wanted) {
+  std::string name = wanted;
+  while (!names_.try_emplace({space, name}, 2).second) name = wanted + "-" + std::to_string(names_[{space, wanted}]++);
+  return name;
+}
+
+void UpgradeOutput::add_texture(const std::string& name, bool is_spectrum, const std::string& kind,
+                                Parameters parameters, Place place) {
+  if (is_spectrum) spectrum_textures_[name] = {kind, parameters, place};
+  emit("Texture", {name, is_spectrum ? "spectrum" : "float", kind}, std::move(parameters), place);
+}
+
+Parameter UpgradeOutput::scaled(Parameter spectrum, float factor) {
+  static_cast<void>(constant_colour(spectrum));  // throws unless it is a spectrum
+  if (factor == 1) return spectrum;
+  if (auto* numbers = std::get_if<std::vector<float>>(&spectrum.values)) {
+    const bool is_sampled = spectrum.type == ParameterType::spectrum;
+    for (std::size_t i = is_sampled ? 1 : 0; i < numbers->size(); i += is_sampled ? 2 : 1) (*numbers)[i] *= factor;
+    return spectrum;
+  }
+  const auto& names = std::get<std::vector<std::string>>(spectrum.values);
+  const std::string base = names.empty() ? std::string() : names.front();
+  auto [it, is_new] = scaled_textures_.try_emplace({base, factor});
+  if (is_new) {
+    it->second = fresh_name(texture_space, base + "-scaled");
+    add_texture(it->second, true, "scale", {renamed(spectrum, "tex"), float_parameter("scale", factor, spectrum.place)},
+                spectrum.place);
+  }
+  return texture_parameter(spectrum.name, it->second, spectrum.place);
+}
+
+Factor UpgradeOutput::grey(const Parameter& spectrum, const std::string& entity) {
+  if (const std::string texture = texture_of(spectrum); !texture.empty())
+    return {0, grey_texture(texture, spectrum.place)};
+  const auto colour = constant_colour(spectrum);
+  if (!colour) {
+    note("a tabulated spectrum as " + in_quotes(spectrum.name) + " of " + entity + " is not supported: it is 0.5",
+         spectrum.place);
+    return {0.5f};
+  }
+  if (colour->r != colour->g || colour->g != colour->b)
+    note(in_quotes(spectrum.name) + " of " + entity + " is coloured: its mean is used", spectrum.place);
+  return {mean(*colour)};
+}
+
+// A float texture like this spectrum texture, with means instead of colours.
+std::string UpgradeOutput::grey_texture(const std::string& name, Place place, int depth) {
+  constexpr int deepest = 100;
+  if (const auto known = grey_textures_.find(name); known != grey_textures_.end()) return known->second;
+  const auto source = spectrum_textures_.find(name);
+  if (source == spectrum_textures_.end()) return name;  // undefined: reported where it is used
+  if (depth > deepest)
+    throw Error(place.location(), "textures are nested more than " + std::to_string(deepest) + " levels deep");
+  Texture texture = source->second;
+  if (texture.kind == "marble") {
+    note("texture \"marble\" as a number is not supported: it is 0.5", place);
+    texture = {"constant", {float_parameter("value", 0.5f, place)}, place};
+  }
+  for (Parameter& p : texture.parameters) {
+    if (const std::string input = texture_of(p); !input.empty() && spectrum_textures_.contains(input))
+      p = texture_parameter(p.name, grey_texture(input, place, depth + 1), p.place);
+    else if (p.type == ParameterType::rgb || p.type == ParameterType::spectrum)
+      p = float_parameter(p.name, mean(constant_colour(p).value_or(Rgb{0.5f, 0.5f, 0.5f})), p.place);
+  }
+  std::string result = fresh_name(texture_space, name + "-grey");
+  grey_textures_.emplace(name, result);
+  add_texture(result, false, texture.kind, std::move(texture.parameters), texture.place);
+  return result;
+}
+
+Factor UpgradeOutput::product(const Factor& a, const Factor& b, Place place) {
+  if (a.texture.empty() && b.texture.empty()) return {a.value * b.value};
+  if (a.is(1)) return b;
+  if (b.is(1)) return a;
+  const Factor &texture = a.texture.empty() ? b : a, &other = a.texture.empty() ? a : b;
+  Factor result{0, fresh_name(texture_space, texture.texture + "-product")};
+  add_texture(result.texture, false, "scale",
+              {texture_parameter("tex", texture.texture, place), factor_parameter("scale", other, place)}, place);
+  return result;
+}
+
+float UpgradeOutput::luminance(const Parameter& spectrum) {
+  const ParameterList list("a light", spectrum.place, {spectrum});
+  const auto value = find_spectrum(list, spectrum.name, description::SpectrumRole::illuminant, context_);
+  const auto* samples = value ? std::get_if<description::SampledSpectrum>(&*value) : nullptr;
+  if (samples == nullptr) return 1;
+  return luminance_of(resample(samples->nm.data(), samples->values.data(), samples->nm.size(), true));
+}
 
 Parameter float_parameter(std::string name, float value, Place place) {
   return parameter(ParameterType::real, std::move(name), std::vector{value}, place);
