@@ -20,7 +20,6 @@
 #include "render/method_of_file.h"
 #include "render/plan.h"
 #include "render/render.h"
-#include "render/scaled_view.h"
 #include "scene/scene.h"
 
 namespace lanthorn {

@@ -12,6 +12,7 @@
 #include "camera/view.h"
 #include "integrators/integrator.h"
 #include "lanthorn/render_options.h"
+#include "lanthorn/scene_description.h"
 #include "lanthorn/session.h"
 #include "render/state.h"
 #include "scene/scene.h"
@@ -47,5 +48,11 @@ void check_error_bound(double bound);
 /// Resolves options against scene and view. Throws Error for unknown integrators or parameters, values out of range,
 /// and a shutter that is not the scene's although something moves.
 RenderPlan plan_render(const Scene& scene, const ViewDescription& view, const RenderOptions& options);
+
+/// The options for a picture of the same part of the scene with `share` times the width and the height.
+ViewOptions scaled(ViewOptions options, const description::Film& film, double share);
+
+/// The options for a pass of such a picture. `photons`: light paths of a pass of the whole picture.
+RenderOptions coarse_options(RenderOptions options, const description::Film& film, double share, double photons);
 
 }  // namespace lanthorn

@@ -18,10 +18,9 @@
 #include "base/parallel.h"
 #include "integrators/integrator.h"
 #include "lanthorn/error.h"
-#include "render/deadline.h"
+#include "render/abandoned_pass.h"
 #include "render/looks.h"
 #include "render/pass_batch.h"
-#include "render/pass_undo.h"
 #include "render/stand_in.h"
 #include "render/team/member.h"
 

@@ -25,7 +25,7 @@
 #include "lanthorn/shell.h"
 #include "lanthorn/text.h"
 #include "lanthorn/viewer.h"
-#include "render/scaled_view.h"
+#include "render/plan.h"
 #include "scene/medium_around.h"
 #include "viewer/accumulation.h"
 #include "viewer/clock.h"
