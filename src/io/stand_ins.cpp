@@ -14,8 +14,8 @@
 #include <variant>
 #include <vector>
 
+#include "io/environments.h"
 #include "io/lit_sides.h"
-#include "io/own_environments.h"
 #include "io/surfaces.h"
 #include "lanthorn/scene_description.h"
 #include "math/vec.h"
