@@ -22,7 +22,6 @@
 #include "lanthorn/number_text.h"
 #include "path/path_draw.h"
 #include "photon/photon_pass.h"
-#include "render/identity.h"
 #include "render/method_of_file.h"
 #include "scene/medium_around.h"
 #include "scene/scene.h"

@@ -12,6 +12,7 @@
 #include "camera/view.h"
 #include "integrators/integrator.h"
 #include "lanthorn/render_options.h"
+#include "lanthorn/render_record.h"
 #include "lanthorn/scene_description.h"
 #include "lanthorn/session.h"
 #include "render/state.h"
@@ -48,6 +49,10 @@ void check_error_bound(double bound);
 /// Resolves options against scene and view. Throws Error for unknown integrators or parameters, values out of range,
 /// and a shutter that is not the scene's although something moves.
 RenderPlan plan_render(const Scene& scene, const ViewDescription& view, const RenderOptions& options);
+
+/// `RenderState::record` of this render before its preparation.
+RenderRecord record_of(const Scene& scene, const ViewDescription& view, const RenderOptions& options,
+                       const RenderPlan& plan);
 
 /// The options for a picture of the same part of the scene with `share` times the width and the height.
 ViewOptions scaled(ViewOptions options, const description::Film& film, double share);
