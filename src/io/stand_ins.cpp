@@ -27,28 +27,6 @@ namespace {
 
 using namespace description;
 
-/// Removes grounds from a scene, so that a view can frame the objects on them. A ground is a mesh that is flat along a
-/// world axis along which the whole scene is also flat, and whose bounding box is at least four times as large as the
-/// box of all other meshes: in a view of everything, these would be small. All grounds of a scene are on the same side
-/// of the other meshes.
-class Grounds {
- public:
-  explicit Grounds(SceneDescription& scene);
-
-  /// The unit normal of the grounds, towards the objects; nullopt if there are no grounds.
-  const std::optional<Vec3>& side() const { return side_; }
-  /// Restores all grounds. The scene's shapes and instances must be those that the constructor left.
-  void put_back(SceneDescription& scene);
-
- private:
-  // Positions in the scene's vectors, ascending.
-  std::vector<std::pair<std::size_t, description::Shape>> shapes_;
-  std::vector<std::pair<std::size_t, description::Instance>> instances_;
-  std::optional<Vec3> side_;
-};
-
-using namespace description;
-
 float size_of(const Bounds& box) { return box.empty() ? 0 : std::sqrt(length_squared(box.extent())); }
 
 // The axis along which a box is thin, if the box is wide along both other axes.
@@ -134,22 +112,38 @@ void insert(std::vector<T>& into, std::vector<std::pair<std::size_t, T>> taken) 
   into = std::move(all);
 }
 
-Grounds::Grounds(SceneDescription& scene) {
-  const std::vector<Part> parts = sorted_parts(scene);
-  const FoundGrounds found = find_grounds(parts);
-  if (found.count == 0) return;
-  side_ = found.side;
-  std::vector<std::size_t> shapes, instances;
-  for (std::size_t i = 0; i < found.count; ++i) (parts[i].is_instance ? instances : shapes).push_back(parts[i].place);
-  shapes_ = take(scene.shapes.edit(), std::move(shapes));
-  instances_ = take(scene.instances.edit(), std::move(instances));
-}
+/// Removes grounds from a scene, so that a view can frame the objects on them. A ground is a mesh that is flat along a
+/// world axis along which the whole scene is also flat, and whose bounding box is at least four times as large as the
+/// box of all other meshes: in a view of everything, these would be small. All grounds of a scene are on the same side
+/// of the other meshes.
+class Grounds {
+ public:
+  explicit Grounds(SceneDescription& scene) {
+    const std::vector<Part> parts = sorted_parts(scene);
+    const FoundGrounds found = find_grounds(parts);
+    if (found.count == 0) return;
+    side_ = found.side;
+    std::vector<std::size_t> shapes, instances;
+    for (std::size_t i = 0; i < found.count; ++i) (parts[i].is_instance ? instances : shapes).push_back(parts[i].place);
+    shapes_ = take(scene.shapes.edit(), std::move(shapes));
+    instances_ = take(scene.instances.edit(), std::move(instances));
+  }
 
-void Grounds::put_back(SceneDescription& scene) {
-  if (!side_) return;
-  insert(scene.shapes.edit(), std::exchange(shapes_, {}));
-  insert(scene.instances.edit(), std::exchange(instances_, {}));
-}
+  /// The unit normal of the grounds, towards the objects; nullopt if there are no grounds.
+  const std::optional<Vec3>& side() const { return side_; }
+  /// Restores all grounds. The scene's shapes and instances must be those that the constructor left.
+  void put_back(SceneDescription& scene) {
+    if (!side_) return;
+    insert(scene.shapes.edit(), std::exchange(shapes_, {}));
+    insert(scene.instances.edit(), std::exchange(instances_, {}));
+  }
+
+ private:
+  // Positions in the scene's vectors, ascending.
+  std::vector<std::pair<std::size_t, description::Shape>> shapes_;
+  std::vector<std::pair<std::size_t, description::Instance>> instances_;
+  std::optional<Vec3> side_;
+};
 
 // World space is right-handed, camera space left-handed: x runs to the right of the picture in both.
 Transform to_world(const ViewFrame& frame, const Point& eye) {

@@ -293,8 +293,6 @@ TriangleMesh decode_draco(Document& document, const Value& extension, const Surf
   return mesh;
 }
 
-using namespace description;
-
 Primitive read_compressed(Document& document, const Value& primitive, const Value& compressed, const Surface& surface,
                           const Deformation& deformation) {
   Primitive result{decode_draco(document, compressed, surface, deformation.joints), {}};
