@@ -19,7 +19,6 @@
 #include "lanthorn/error.h"
 #include "render/method_of_file.h"
 #include "render/plan.h"
-#include "render/render.h"
 #include "scene/scene.h"
 
 namespace lanthorn {

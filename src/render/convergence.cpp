@@ -10,7 +10,6 @@
 #include "lanthorn/error.h"
 #include "render/picture.h"
 #include "render/plan.h"
-#include "render/render.h"
 #include "scene/scene.h"
 
 namespace lanthorn {

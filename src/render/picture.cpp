@@ -22,13 +22,7 @@ namespace {
 
 using Passes = std::vector<PassRange>;
 
-std::uint64_t count(const Passes& passes) {
-  std::uint64_t sum = 0;
-  for (const PassRange& range : passes) sum += range.end - range.begin;
-  return sum;
-}
-
-std::uint64_t passes_or_one(const Passes& passes) { return std::max<std::uint64_t>(1, count(passes)); }
+std::uint64_t passes_or_one(const Passes& passes) { return std::max<std::uint64_t>(1, pass_count(passes)); }
 
 // The passes that belong to this half.
 Passes passes_in(const Passes& passes, FilmHalf half) {
@@ -66,7 +60,7 @@ MeasuredError measure_error(const RenderState& state, const Film& film, const Sh
   for (const FilmHalf half : {FilmHalf::first, FilmHalf::second}) {
     const auto h = static_cast<std::size_t>(half);
     const Passes own = passes_in(passes, half);
-    pictures.passes[h] = count(own);
+    pictures.passes[h] = pass_count(own);
     HalfPicture resolved = film.resolve_half(half, pictures.passes[h], colour_balance(state, own));
     pictures.halves[h] = {shown(part, std::move(resolved.color)), shown(part, std::move(resolved.bias))};
   }
@@ -115,10 +109,6 @@ Rgb white_of(const Wavelengths& w) {
   return w.to_rgb(light);
 }
 
-}  // namespace
-
-namespace {
-
 MeasuredPicture measured_part(const RenderState& state, const Film& film, const ShownPart& part, const Passes& passes) {
   Image image = shown(part, film.resolve(passes_or_one(passes), colour_balance(state, passes)));
   MeasuredError error = measure_error(state, film, part, passes, *select_layer(image, "color"));
@@ -131,10 +121,10 @@ MeasuredPicture measured_part(const RenderState& state, const Film& film, const 
 Image part_with_noise(const RenderState& state, const ShownPart& part, const Image& picture) {
   const Passes first = passes_in(state.passes, FilmHalf::first);
   const Rgb balance = colour_balance(state, first);
-  Image half = shown(part, state.film.resolve_first_half(count(first), balance));
+  Image half = shown(part, state.film.resolve_first_half(pass_count(first), balance));
   Image noisy = with_layers(picture, prefixed("noise.", noise_of(picture, std::move(half))));
   if (!picture.find_channel("bias.R")) return noisy;
-  const HalfPicture own = state.film.resolve_half(FilmHalf::first, count(first), balance);
+  const HalfPicture own = state.film.resolve_half(FilmHalf::first, pass_count(first), balance);
   return with_layers(noisy, noise_of_bias(picture, prefixed("bias.", smoothed_bias(shown(part, own.bias)))));
 }
 
@@ -178,8 +168,7 @@ Rgb colour_balance(const RenderState& state) { return colour_balance(state, stat
 Rgb colour_balance(const RenderState& state, std::span<const PassRange> passes) {
   constexpr std::uint64_t many = 1 << 20;  // as good as all
   const RenderIdentity& render = state.record.identity;
-  std::uint64_t count = 0;
-  for (const PassRange& range : passes) count += range.end - range.begin;
+  const std::uint64_t count = pass_count(passes);
   if (!render.wavelength_sets || count == 0 || count > many) return {1, 1, 1};
   const std::uint32_t sets = *render.wavelength_sets;
   std::array<double, 3> sum{};

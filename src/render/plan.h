@@ -15,6 +15,7 @@
 #include "lanthorn/render_record.h"
 #include "lanthorn/scene_description.h"
 #include "lanthorn/session.h"
+#include "lanthorn/statistics.h"
 #include "render/state.h"
 #include "scene/scene.h"
 
@@ -59,5 +60,9 @@ ViewOptions scaled(ViewOptions options, const description::Film& film, double sh
 
 /// The options for a pass of such a picture. `photons`: light paths of a pass of the whole picture.
 RenderOptions coarse_options(RenderOptions options, const description::Film& film, double share, double photons);
+
+/// Renders the passes of `stop.passes` that the plan's state has not done yet, in order, into that state. Prepares the
+/// integrator first if it is not prepared. If the first pass is given up, the state has no passes.
+RenderStatistics render(const Scene& scene, RenderPlan& plan, const StopRule& stop, const Observer& observer = {});
 
 }  // namespace lanthorn

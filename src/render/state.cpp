@@ -39,7 +39,7 @@ double coarse(double seconds) { return std::round(seconds * 0x1p20) * 0x1p-20; }
 
 }  // namespace
 
-std::uint64_t RenderState::pass_count() const {
+std::uint64_t pass_count(std::span<const PassRange> passes) {
   std::uint64_t count = 0;
   for (const PassRange& range : passes) count += range.end - range.begin;
   return count;
@@ -114,7 +114,7 @@ void add_head(RenderState& sum, const RenderState& more, std::vector<PassRange> 
 
 }  // namespace
 
-void add_state(RenderState& sum, const RenderState& more) {
+void merge_into(RenderState& sum, const RenderState& more) {
   require_mergeable(sum, more);
   require_films_fit(sum.film.compatible(more.film));
   std::vector<PassRange> passes = passes_of_both(sum, more);
@@ -122,7 +122,7 @@ void add_state(RenderState& sum, const RenderState& more) {
   add_head(sum, more, std::move(passes));
 }
 
-void add_state(RenderState& sum, const StateReader& more) {
+void merge_into(RenderState& sum, const StateReader& more) {
   require_mergeable(sum, more.head());
   require_films_fit(more.fits(sum.film));
   std::vector<PassRange> passes = passes_of_both(sum, more.head());
@@ -132,7 +132,7 @@ void add_state(RenderState& sum, const StateReader& more) {
 
 RenderState merge_states(const RenderState& a, const RenderState& b) {
   RenderState merged = a;
-  add_state(merged, b);
+  merge_into(merged, b);
   return merged;
 }
 
@@ -178,8 +178,6 @@ std::shared_ptr<RenderState> merge(const RenderState& a, const RenderState& b) {
   return std::make_shared<RenderState>(merge_states(a, b));
 }
 
-void merge_into(RenderState& sum, const RenderState& more) { add_state(sum, more); }
-
 SavedState::SavedState(const std::filesystem::path& path)
     : reader_(std::make_unique<StateReader>(open_state_reader(path))) {}
 SavedState::~SavedState() = default;
@@ -194,6 +192,6 @@ std::optional<std::string> SavedState::identity_difference(const RenderState& ot
 
 std::shared_ptr<RenderState> SavedState::load() const { return std::make_shared<RenderState>(reader_->load()); }
 
-void SavedState::merge_into(RenderState& sum) const { add_state(sum, *reader_); }
+void SavedState::merge_into(RenderState& sum) const { lanthorn::merge_into(sum, *reader_); }
 
 }  // namespace lanthorn
