@@ -18,7 +18,6 @@
 #include "io/missing_files.h"
 #include "io/obj/faces.h"
 #include "io/obj/materials.h"
-#include "io/obj/texture_beside.h"
 #include "io/obj/words.h"
 #include "lanthorn/text.h"
 #include "math/hash.h"
