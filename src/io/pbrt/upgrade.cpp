@@ -146,17 +146,14 @@ void Upgrader::object_instance(Directive& d) {
 // Film and sampler depend on other directives; all directives whose defaults differ from pbrt-v4's are emitted here.
 void Upgrader::world_begin(Directive& d) {
   if (!film_) film_ = Directive{"Film", {}, {"image"}, {}, d.place};
-  const std::string film = film_->strings.front();
-  Upgraded upgraded_film = upgrade_film(film, old_parameters(*film_, ""), exposure_time_, output_);
+  Upgraded upgraded_film = upgrade_film(film_->strings.front(), old_parameters(*film_, ""), exposure_time_, output_);
   output_.emit("Film", {upgraded_film.kind}, std::move(upgraded_film.parameters), film_->place);
   if (!filter_) filter_ = Directive{"PixelFilter", {}, {"box"}, {}, d.place};
-  const std::string filter = filter_->strings.front();
-  Upgraded upgraded_filter = upgrade_filter(filter, old_parameters(*filter_, ""));
+  Upgraded upgraded_filter = upgrade_filter(filter_->strings.front(), old_parameters(*filter_, ""));
   output_.emit("PixelFilter", {upgraded_filter.kind}, std::move(upgraded_filter.parameters), filter_->place);
   if (sampler_ || passes_) {
     if (!sampler_) sampler_ = Directive{"Sampler", {}, {"halton"}, {}, d.place};
-    const std::string kind = sampler_->strings.front();
-    Upgraded sampler = upgrade_sampler(kind, old_parameters(*sampler_, ""));
+    Upgraded sampler = upgrade_sampler(sampler_->strings.front(), old_parameters(*sampler_, ""));
     if (passes_) {
       std::erase_if(sampler.parameters, [](const Parameter& p) { return p.name == "pixelsamples"; });
       sampler.parameters.push_back(integer_parameter("pixelsamples", *passes_, sampler_->place));
@@ -173,7 +170,6 @@ void Upgrader::pixel_filter(Directive& d) { filter_ = std::move(d); }
 void Upgrader::sampler(Directive& d) { sampler_ = std::move(d); }
 
 void Upgrader::camera(Directive& d) {
-  const std::string kind = d.strings.front();
   OldParameters old = old_parameters(d, "");
   const auto time = [&](const char* name, float otherwise) {
     const Parameter* p = old.find(name);
@@ -182,13 +178,12 @@ void Upgrader::camera(Directive& d) {
   };
   exposure_time_ = time("shutterclose", 1) - time("shutteropen", 0);
   if (!(exposure_time_ > 0)) exposure_time_ = 1;
-  Upgraded result = upgrade_camera(kind, std::move(old), output_);
+  Upgraded result = upgrade_camera(d.strings.front(), std::move(old), output_);
   output_.emit("Camera", {result.kind}, std::move(result.parameters), d.place);
 }
 
 void Upgrader::integrator(Directive& d) {
-  const std::string kind = d.strings.front();
-  UpgradedIntegrator result = upgrade_integrator(kind, old_parameters(d, ""), output_);
+  UpgradedIntegrator result = upgrade_integrator(d.strings.front(), old_parameters(d, ""), output_);
   passes_ = result.passes;
   output_.emit("Integrator", {result.integrator.kind}, std::move(result.integrator.parameters), d.place);
 }
@@ -284,15 +279,11 @@ void Upgrader::make_named_medium(Directive& d) {
   output_.emit(std::move(d));
 }
 
-void Upgrader::light_source(Directive& d) {
-  const std::string kind = d.strings.front();
-  upgrade_light(kind, old_parameters(d, ""), output_);
-}
+void Upgrader::light_source(Directive& d) { upgrade_light(d.strings.front(), old_parameters(d, ""), output_); }
 
 void Upgrader::area_light_source(Directive& d) {
-  const std::string kind = d.strings.front();
   is_lamp_ = true;
-  Upgraded result = upgrade_area_light(kind, old_parameters(d, ""), output_);
+  Upgraded result = upgrade_area_light(d.strings.front(), old_parameters(d, ""), output_);
   output_.emit("AreaLightSource", {result.kind}, std::move(result.parameters), d.place);
 }
 
@@ -326,7 +317,6 @@ bool Upgrader::make_visible(Place place) {
 void Upgrader::shape(Directive& d) {
   const Factor opacity = material_.opacity;
   const bool is_override = override_material(d) || make_visible(d.place);
-  const std::string kind = d.strings.front();
   OldParameters old = old_parameters(d, "");
   if (!material_.opacity.is(1)) {
     const Factor alpha = output_.product(material_.opacity, old.take_factor("alpha").value_or(Factor{1}), d.place);
@@ -334,7 +324,7 @@ void Upgrader::shape(Directive& d) {
     rest.push_back(factor_parameter("alpha", alpha, d.place));
     old = OldParameters(old.entity(), d.place, std::move(rest));
   }
-  if (auto result = upgrade_shape(kind, std::move(old), output_))
+  if (auto result = upgrade_shape(d.strings.front(), std::move(old), output_))
     output_.emit("Shape", {result->kind}, std::move(result->parameters), d.place);
   if (is_override) output_.emit("AttributeEnd", {}, {}, d.place);
   material_.opacity = opacity;
