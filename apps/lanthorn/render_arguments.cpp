@@ -113,14 +113,11 @@ Option parameter_option(RenderOptions& o) {
           .details = "'lanthorn list INTEGRATOR' shows its parameters."};
 }
 
-}  // namespace
-
-namespace {
-
 ValueType<std::string> type_of(const RenderOption<std::string>&) { return text_type("INTEGRATOR"); }
 ValueType<float> type_of(const RenderOption<float>&) { return number_type<float>(); }
 ValueType<ColorMode> type_of(const RenderOption<ColorMode>&) {
-  return choice_type<ColorMode>({{"rgb", ColorMode::rgb}, {"spectral", ColorMode::spectral}});
+  const auto& [rgb, spectral] = color_mode_names;
+  return choice_type<ColorMode>({{std::string(rgb), ColorMode::rgb}, {std::string(spectral), ColorMode::spectral}});
 }
 ValueType<std::array<int, 2>> type_of(const RenderOption<std::array<int, 2>>&) { return resolution_type(); }
 ValueType<std::array<int, 4>> type_of(const RenderOption<std::array<int, 4>>&) { return pixel_window_type(); }

@@ -4,9 +4,11 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string_view>
 
 namespace lanthorn {
 
@@ -26,6 +28,8 @@ enum class ColorSpace : std::uint8_t { srgb, dci_p3, rec2020, aces2065_1 };
 
 /// The quantity that a path carries: RGB, or radiance at a few randomly sampled wavelengths.
 enum class ColorMode : std::uint8_t { rgb, spectral };
+/// Their names, in order, in options, plain data and files.
+inline constexpr std::array<std::string_view, 2> color_mode_names{"rgb", "spectral"};
 
 inline constexpr float lambda_min = 360;  ///< nm
 inline constexpr float lambda_max = 830;  ///< nm

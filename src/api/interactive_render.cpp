@@ -19,8 +19,6 @@
 #include "lanthorn/error.h"
 #include "render/method_of_file.h"
 #include "render/plan.h"
-#include "render/render.h"
-#include "render/scaled_view.h"
 #include "scene/scene.h"
 
 namespace lanthorn {
@@ -80,19 +78,97 @@ void leave_out_pilot(RenderOptions& options) {
 class InteractiveRender::Worker {
  public:
   Worker(SharedScene scene, const ViewDescription& view, const RenderOptions& options,
-         const InteractiveSettings& settings);
+         const InteractiveSettings& settings)
+      : settings_(settings),
+        scene_(std::move(scene)),
+        wanted_{{}, 0, 1, 1, view, options},
+        denoises_(settings.denoises) {
+    make_plan(wanted_);
+    warnings_ = warnings_of(*scene_, view);
+    if (std::string limitation = plan_->integrator->limitation(*scene_); !limitation.empty())
+      warnings_.push_back({{}, std::move(limitation)});
+    if (!settings_.coarse_first) coarse_revision_ = 1;
+    thread_ = std::thread([this] { run(); });
+  }
+
   ~Worker() { stop(); }
   Worker(const Worker&) = delete;
   Worker& operator=(const Worker&) = delete;
 
-  std::uint64_t edit(RenderEdit edit);
-  void pause(bool is_paused);
-  void denoise(bool is_wanted);
-  InteractiveSnapshot snapshot() const;
-  InteractiveSnapshot wait(std::uint64_t number, std::chrono::milliseconds patience) const;
+  std::uint64_t edit(RenderEdit edit) {
+    const std::lock_guard lock(mutex_);
+    if (edit.scene || edit.view || edit.options) {
+      ++wanted_.revision;
+      if (edit.scene) {
+        wanted_.make_scene = std::make_shared<const std::function<SharedScene()>>(std::move(edit.scene));
+        wanted_.scene_revision = wanted_.revision;
+      }
+      if (edit.view) wanted_.view = std::move(*edit.view);
+      if (edit.options) {
+        wanted_.options = std::move(*edit.options);
+        wanted_.options_revision = wanted_.revision;
+      }
+      if (!settings_.coarse_first) coarse_revision_ = wanted_.revision;
+      drop_ = drop_denoising_ = true;
+    }
+    moving_until_ = edit.is_moving ? Clock::now() + moving_time : Clock::time_point();
+    edited_.notify_all();
+    tell_phase();
+    return wanted_.revision;
+  }
+
+  void pause(bool is_paused) {
+    const std::lock_guard lock(mutex_);
+    if (is_paused == is_paused_) return;
+    rest_ = is_paused_ = is_paused;
+    edited_.notify_all();
+    tell_phase();
+  }
+
+  void denoise(bool is_wanted) {
+    const std::lock_guard lock(mutex_);
+    if (is_wanted == denoises_) return;
+    denoises_ = is_wanted;
+    drop_denoising_ = !is_wanted;
+    denoised_.reset();
+    ++number_;
+    edited_.notify_all();
+    changed_.notify_all();
+  }
+
+  InteractiveSnapshot snapshot() const {
+    const std::lock_guard lock(mutex_);
+    return seen();
+  }
+
+  InteractiveSnapshot wait(std::uint64_t number, std::chrono::milliseconds patience) const {
+    Lock lock(mutex_);
+    changed_.wait_for(lock, patience, [&] { return number_ != number || has_ended_; });
+    return seen();
+  }
+
   const std::vector<description::Warning>& warnings() const { return warnings_; }
-  void stop();
-  const RenderState* state() const;
+  void stop() {
+    {
+      const std::lock_guard lock(mutex_);
+      has_ended_ = true;
+      drop_ = end_ = drop_denoising_ = true;
+      edited_.notify_all();
+      changed_.notify_all();
+    }
+    std::call_once(joined_, [this] {
+      thread_.join();
+      const std::lock_guard lock(mutex_);
+      is_over_ = true;
+    });
+  }
+
+  const RenderState* state() const {
+    const std::lock_guard lock(mutex_);
+    const bool is_there = is_over_ && settings_.keeps_sums && plan_ && plan_revision_ == wanted_.revision &&
+                          plan_->state.pass_count() > 0;
+    return is_there ? &plan_->state : nullptr;
+  }
 
  private:
   using Lock = std::unique_lock<std::mutex>;
@@ -104,34 +180,291 @@ class InteractiveRender::Worker {
   };
   enum class Step : std::uint8_t { coarse, refine, preview, denoise, rest, end };
 
-  void run();
-  Step next_step() const;
-  Step next_step_at_rest() const;
-  void rest(Lock& lock);
-  void render(Step step, Wanted& wanted);
-  void render_coarse(const Wanted& wanted);
-  double render_coarse(const Wanted& wanted, double pixels, bool is_first);
-  void refine(const Wanted& wanted);
-  void denoise_if_due(const RenderStatistics& statistics);
-  void denoise_shown(bool is_preview);
+  void run() {
+    Lock lock(mutex_);
+    while (true) {
+      tell_phase();
+      const Step step = next_step();
+      if (step == Step::end) break;
+      if (step == Step::rest) {
+        rest(lock);
+        continue;
+      }
+      Wanted wanted = wanted_;
+      drop_ = false;
+      rest_ = is_paused_;
+      lock.unlock();
+      render(step, wanted);
+      lock.lock();
+    }
+    if (plan_) plan_->integrator.reset();  // its OpenGL objects belong to this thread
+  }
+
+  Step next_step() const {
+    if (has_ended_) return Step::end;
+    if (failed_revision_ == wanted_.revision) return Step::rest;
+    if (coarse_revision_ != wanted_.revision) return Step::coarse;
+    if (Clock::now() < moving_until_) return Step::rest;
+    const bool rests = is_paused_ || over_revision_ == wanted_.revision;
+    return rests ? next_step_at_rest() : Step::refine;
+  }
+
+  // Final and paused pictures are denoised: first as a preview, then at full quality.
+  Step next_step_at_rest() const {
+    if (!can_denoise_shown()) return Step::rest;
+    const bool is_over = over_revision_ == wanted_.revision;
+    const bool is_of_shown = denoised_ && denoised_->passes == picture_->state.pass_count;
+    if (!denoised_ || (!is_of_shown && !is_over)) return Step::preview;
+    return is_over && (!is_of_shown || denoised_->is_preview) ? Step::denoise : Step::rest;
+  }
+
+  // Waits until something changes or the current movement ends.
+  void rest(Lock& lock) {
+    if (Clock::now() < moving_until_)
+      edited_.wait_until(lock, moving_until_);
+    else
+      edited_.wait(lock);
+  }
+
+  void render(Step step, Wanted& wanted) {
+    try {
+      if (scene_revision_ != wanted.scene_revision) make_scene(wanted);
+      // Invalid options are rejected before a coarse picture is shown.
+      if (options_revision_ != wanted.options_revision) make_plan(wanted);
+      if (step == Step::coarse)
+        render_coarse(wanted);
+      else if (step == Step::refine)
+        refine(wanted);
+      else
+        denoise_shown(step == Step::preview);
+    } catch (const std::bad_alloc&) {
+      fail(wanted, "not enough memory for this picture");
+    } catch (const std::exception& problem) {
+      fail(wanted, problem.what());
+    }
+  }
+
+  // Renders coarse pictures, each finer than the last, until the full one will follow soon.
+  void render_coarse(const Wanted& wanted) {
+    const double full = pixels_of(window_of(wanted.view, wanted.options));
+    const double taken = render_coarse(wanted, coarse_pixels_, /*is_first=*/true);
+    // For few pixels, fixed costs dominate: then this pixel count is a cautious guess.
+    const double growth = std::clamp(coarse_seconds / std::max(taken, 1e-4), 0.25, 2.0);
+    double pixels = std::min(coarse_pixels_, full);
+    coarse_pixels_ = std::clamp(pixels * growth, std::min(fewest_coarse_pixels, full), full);
+    {
+      const std::lock_guard lock(mutex_);
+      coarse_revision_ = wanted.revision;
+      if (Clock::now() < moving_until_ || is_paused_) return;
+    }
+    for (double rate = taken / pixels; rate * full > patient_seconds && is_wanted(wanted);) {
+      pixels *= largest_growth;
+      if (2 * pixels > full) return;
+      rate = render_coarse(wanted, pixels, /*is_first=*/false) / pixels;
+    }
+  }
+
+  // Returns the seconds that it took.
+  double render_coarse(const Wanted& wanted, double pixels, bool is_first) {
+    const Clock::time_point start = Clock::now();
+    const double full = pixels_of(window_of(wanted.view, wanted.options));
+    const double share = std::sqrt(std::min(1.0, pixels / full));
+    RenderOptions options = coarse_options(wanted.options, wanted.view.film, share, photons_of(wanted, full));
+    if (plan_->info->name == automatic_method) leave_out_pilot(options);
+    RenderPlan plan = plan_render(*scene_, wanted.view, options);
+    // The first picture of an edit is always completed; later ones may be abandoned.
+    const RenderStatistics statistics =
+        lanthorn::render(*scene_, plan, {.passes = {0, 1}, .drop = is_first ? &end_ : &drop_, .undo = Undo::never});
+    if (plan.state.pass_count() > 0) {
+      auto picture = coarse_picture(wanted, plan, statistics);
+      const std::lock_guard lock(mutex_);
+      show(std::move(picture));
+    }
+    return seconds(Clock::now() - start);
+  }
+
+  void refine(const Wanted& wanted) {
+    if (plan_revision_ != wanted.revision) make_plan(wanted);
+    StopRule stop = plan_->stop;
+    if (stop.seconds) *stop.seconds = std::max(0.0, *stop.seconds - plan_->state.seconds);
+    stop.interrupted = &rest_;
+    stop.drop = &drop_;
+    stop.undo = settings_.keeps_sums ? Undo::always : Undo::never;
+    std::uint64_t shown_passes = 0;
+    Observer observer;
+    observer.progress = [&](const RenderState&, const RenderStatistics& statistics) {
+      const Clock::time_point now = Clock::now();
+      if (now < next_picture_) return;
+      auto picture = full_picture(wanted, stop, statistics);
+      {
+        const std::lock_guard lock(mutex_);
+        show(std::move(picture));
+      }
+      shown_passes = plan_->state.pass_count();
+      next_picture_ = Clock::now() + std::max(picture_interval, picture_share * (Clock::now() - now));
+      denoise_if_due(statistics);
+    };
+    const RenderStatistics statistics = lanthorn::render(*scene_, *plan_, stop, observer);
+    if (statistics.out_of_memory) throw std::bad_alloc();
+    if (drop_) return;
+    const bool is_news = shown_passes < plan_->state.pass_count();
+    auto last = is_news ? full_picture(wanted, stop, statistics) : nullptr;
+    // Updates phase and picture together, so that an observer of the end also sees its picture.
+    const std::lock_guard lock(mutex_);
+    if (!rest_) note_end(wanted, statistics, stop);
+    if (last) show(std::move(last));
+  }
+
+  void denoise_if_due(const RenderStatistics& statistics) {
+    const Clock::time_point now = Clock::now();
+    {
+      const std::lock_guard lock(mutex_);
+      if (!can_denoise_shown() || now < next_preview_) return;
+      const double pixels = static_cast<double>(picture_->image.width) * picture_->image.height;
+      if (!denoised_ && statistics.seconds < denoising_rest * preview_seconds_ * pixels) return;
+      const auto passes = static_cast<double>(picture_->state.pass_count);
+      if (denoised_ && passes < denoising_growth * static_cast<double>(denoised_->passes)) return;
+    }
+    denoise_shown(/*is_preview=*/true);
+    next_preview_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(denoising_rest * (Clock::now() - now));
+  }
+
+  // Runs without the lock, because edits would have to wait for it.
+  void denoise_shown(bool is_preview) {
+    std::shared_ptr<const InteractivePicture> picture;
+    {
+      const std::lock_guard lock(mutex_);
+      if (!can_denoise_shown()) return;
+      picture = picture_;
+      drop_denoising_ = has_ended_;
+    }
+    const Clock::time_point start = Clock::now();
+    std::shared_ptr<const InteractiveDenoised> made;
+    try {
+      const StopScope scope(&drop_denoising_);
+      made = std::make_shared<const InteractiveDenoised>(denoised_picture(*picture, is_preview));
+    } catch (const Stopped&) {
+      return;
+    }
+    const double pixels = static_cast<double>(picture->image.width) * picture->image.height;
+    if (is_preview) preview_seconds_ = seconds(Clock::now() - start) / pixels;
+    const std::lock_guard lock(mutex_);
+    if (!can_denoise_shown()) return;
+    denoised_ = std::move(made);
+    ++number_;
+    changed_.notify_all();
+  }
+
+  // The parts that coarse and full pictures have in common.
   InteractivePicture make_picture(const Wanted& wanted, const RenderPlan& plan,
-                                  const RenderStatistics& statistics) const;
+                                  const RenderStatistics& statistics) const {
+    const PixelWindow full = window_of(wanted.view, wanted.options);
+    InteractivePicture picture{.image = picture_of(plan.state),
+                               .revision = wanted.revision,
+                               .full_size = {full.width(), full.height()},
+                               .state = summarize(plan.state),
+                               .statistics = statistics,
+                               .limitation = plan.integrator->limitation(*scene_)};
+    picture.state.integrator = plan_->state.integrator;  // even if a coarse picture used another method
+    return picture;
+  }
+
   std::shared_ptr<const InteractivePicture> coarse_picture(const Wanted& wanted, const RenderPlan& plan,
-                                                           const RenderStatistics& statistics) const;
+                                                           const RenderStatistics& statistics) const {
+    InteractivePicture picture = make_picture(wanted, plan, statistics);
+    picture.is_coarse = true;
+    return std::make_shared<const InteractivePicture>(std::move(picture));
+  }
+
   std::shared_ptr<const InteractivePicture> full_picture(const Wanted& wanted, const StopRule& stop,
-                                                         const RenderStatistics& statistics) const;
-  void make_scene(Wanted& wanted);
-  void make_plan(const Wanted& wanted);
-  double photons_of(const Wanted& wanted, double pixels) const;
-  bool is_wanted(const Wanted& wanted) const;
-  void fail(const Wanted& wanted, const std::string& problem);
-  InteractivePhase phase() const;
-  InteractiveSnapshot seen() const;
-  void tell_phase();
-  // Call with the lock held.
-  bool can_denoise_shown() const;
-  void show(std::shared_ptr<const InteractivePicture> picture);
-  void note_end(const Wanted& wanted, const RenderStatistics& statistics, const StopRule& stop);
+                                                         const RenderStatistics& statistics) const {
+    InteractivePicture picture = make_picture(wanted, *plan_, statistics);
+    picture.image = with_noise(plan_->state, picture.image);
+    picture.seconds_left = progress_of(stop, plan_->state, statistics).seconds_left;
+    picture.remark = plan_->integrator->remark();
+    return std::make_shared<const InteractivePicture>(std::move(picture));
+  }
+
+  void make_scene(Wanted& wanted) {
+    SharedScene made = (*wanted.make_scene)();
+    if (!made) throw Error("the function of the edit made no scene");
+    scene_ = std::move(made);
+    scene_revision_ = wanted.scene_revision;
+    // The function may hold a whole description.
+    wanted.make_scene.reset();
+    const std::lock_guard lock(mutex_);
+    if (wanted_.scene_revision == scene_revision_) wanted_.make_scene.reset();
+  }
+
+  void make_plan(const Wanted& wanted) {
+    plan_.reset();  // two films may not fit into memory
+    plan_revision_ = options_revision_ = 0;
+    plan_.emplace(plan_render(*scene_, wanted.view, wanted.options));
+    plan_->coarse = nullptr;  // `render_coarse` has shown coarse pictures
+    plan_revision_ = wanted.revision;
+    options_revision_ = wanted.options_revision;
+    const RenderSettings& settings = plan_->settings;
+    photons_per_pixel_ = static_cast<double>(settings.photons * settings.parts) / pixels_of(plan_->view.window);
+  }
+
+  double photons_of(const Wanted& wanted, double pixels) const {
+    return wanted.options.photons ? static_cast<double>(*wanted.options.photons) : photons_per_pixel_ * pixels;
+  }
+
+  bool is_wanted(const Wanted& wanted) const {
+    const std::lock_guard lock(mutex_);
+    return !has_ended_ && wanted.revision == wanted_.revision;
+  }
+
+  void fail(const Wanted& wanted, const std::string& problem) {
+    const std::lock_guard lock(mutex_);
+    failed_revision_ = wanted.revision;
+    problem_ = problem;
+  }
+
+  InteractivePhase phase() const {
+    if (failed_revision_ == wanted_.revision) return InteractivePhase::failed;
+    if (over_revision_ == wanted_.revision) return over_;
+    if (is_paused_) return InteractivePhase::paused;
+    const bool is_there = picture_ && !picture_->is_coarse && picture_->revision == wanted_.revision;
+    return is_there ? InteractivePhase::refining : InteractivePhase::preparing;
+  }
+
+  InteractiveSnapshot seen() const {
+    const InteractivePhase now = phase();
+    return {number_,
+            {wanted_.revision, now, now == InteractivePhase::failed ? problem_ : std::string()},
+            picture_,
+            denoised_};
+  }
+
+  void tell_phase() {
+    if (const InteractivePhase now = phase(); now != told_) {
+      told_ = now;
+      ++number_;
+      changed_.notify_all();
+    }
+  }
+
+  // Call this one and the next two with the lock held.
+  bool can_denoise_shown() const {
+    return denoises_ && picture_ && picture_->revision == wanted_.revision && has_both_halves(*picture_);
+  }
+
+  void show(std::shared_ptr<const InteractivePicture> picture) {
+    if (picture_ && picture_->revision != picture->revision) denoised_.reset();
+    picture_ = std::move(picture);
+    told_ = phase();
+    ++number_;
+    changed_.notify_all();
+  }
+
+  void note_end(const Wanted& wanted, const RenderStatistics& statistics, const StopRule& stop) {
+    over_revision_ = wanted.revision;
+    const bool is_good = stop.noise && statistics.error && statistics.error->is_below(*stop.noise);
+    const bool has_all = plan_->state.pass_count() >= stop.passes.end - stop.passes.begin;
+    over_ = is_good || has_all ? InteractivePhase::finished : InteractivePhase::out_of_time;
+  }
 
   const InteractiveSettings settings_;
 
@@ -167,377 +500,6 @@ class InteractiveRender::Worker {
   std::once_flag joined_;
   std::thread thread_;
 };
-
-InteractiveRender::Worker::Worker(SharedScene scene, const ViewDescription& view, const RenderOptions& options,
-                                  const InteractiveSettings& settings)
-    : settings_(settings), scene_(std::move(scene)), wanted_{{}, 0, 1, 1, view, options}, denoises_(settings.denoises) {
-  make_plan(wanted_);
-  warnings_ = warnings_of(*scene_, view);
-  if (std::string limitation = plan_->integrator->limitation(*scene_); !limitation.empty())
-    warnings_.push_back({{}, std::move(limitation)});
-  if (!settings_.coarse_first) coarse_revision_ = 1;
-  thread_ = std::thread([this] { run(); });
-}
-
-void InteractiveRender::Worker::run() {
-  Lock lock(mutex_);
-  while (true) {
-    tell_phase();
-    const Step step = next_step();
-    if (step == Step::end) break;
-    if (step == Step::rest) {
-      rest(lock);
-      continue;
-    }
-    Wanted wanted = wanted_;
-    drop_ = false;
-    rest_ = is_paused_;
-    lock.unlock();
-    render(step, wanted);
-    lock.lock();
-  }
-  if (plan_) plan_->integrator.reset();  // its OpenGL objects belong to this thread
-}
-
-InteractiveRender::Worker::Step InteractiveRender::Worker::next_step() const {
-  if (has_ended_) return Step::end;
-  if (failed_revision_ == wanted_.revision) return Step::rest;
-  if (coarse_revision_ != wanted_.revision) return Step::coarse;
-  if (Clock::now() < moving_until_) return Step::rest;
-  const bool rests = is_paused_ || over_revision_ == wanted_.revision;
-  return rests ? next_step_at_rest() : Step::refine;
-}
-
-// Final and paused pictures are denoised: first as a preview, then at full quality.
-InteractiveRender::Worker::Step InteractiveRender::Worker::next_step_at_rest() const {
-  if (!can_denoise_shown()) return Step::rest;
-  const bool is_over = over_revision_ == wanted_.revision;
-  const bool is_of_shown = denoised_ && denoised_->passes == picture_->state.pass_count;
-  if (!denoised_ || (!is_of_shown && !is_over)) return Step::preview;
-  return is_over && (!is_of_shown || denoised_->is_preview) ? Step::denoise : Step::rest;
-}
-
-// Waits until something changes or the current movement ends.
-void InteractiveRender::Worker::rest(Lock& lock) {
-  if (Clock::now() < moving_until_)
-    edited_.wait_until(lock, moving_until_);
-  else
-    edited_.wait(lock);
-}
-
-void InteractiveRender::Worker::render(Step step, Wanted& wanted) {
-  try {
-    if (scene_revision_ != wanted.scene_revision) make_scene(wanted);
-    // Invalid options are rejected before a coarse picture is shown.
-    if (options_revision_ != wanted.options_revision) make_plan(wanted);
-    if (step == Step::coarse)
-      render_coarse(wanted);
-    else if (step == Step::refine)
-      refine(wanted);
-    else
-      denoise_shown(step == Step::preview);
-  } catch (const std::bad_alloc&) {
-    fail(wanted, "not enough memory for this picture");
-  } catch (const std::exception& problem) {
-    fail(wanted, problem.what());
-  }
-}
-
-void InteractiveRender::Worker::make_scene(Wanted& wanted) {
-  SharedScene made = (*wanted.make_scene)();
-  if (!made) throw Error("the function of the edit made no scene");
-  scene_ = std::move(made);
-  scene_revision_ = wanted.scene_revision;
-  // The function may hold a whole description.
-  wanted.make_scene.reset();
-  const std::lock_guard lock(mutex_);
-  if (wanted_.scene_revision == scene_revision_) wanted_.make_scene.reset();
-}
-
-void InteractiveRender::Worker::make_plan(const Wanted& wanted) {
-  plan_.reset();  // two films may not fit into memory
-  plan_revision_ = options_revision_ = 0;
-  plan_.emplace(plan_render(*scene_, wanted.view, wanted.options));
-  plan_->coarse = nullptr;  // `render_coarse` has shown coarse pictures
-  plan_revision_ = wanted.revision;
-  options_revision_ = wanted.options_revision;
-  const RenderSettings& settings = plan_->settings;
-  photons_per_pixel_ = static_cast<double>(settings.photons * settings.parts) / pixels_of(plan_->view.window);
-}
-
-bool InteractiveRender::Worker::is_wanted(const Wanted& wanted) const {
-  const std::lock_guard lock(mutex_);
-  return !has_ended_ && wanted.revision == wanted_.revision;
-}
-
-// Renders coarse pictures, each finer than the last, until the full one will follow soon.
-void InteractiveRender::Worker::render_coarse(const Wanted& wanted) {
-  const double full = pixels_of(window_of(wanted.view, wanted.options));
-  const double taken = render_coarse(wanted, coarse_pixels_, /*is_first=*/true);
-  // For few pixels, fixed costs dominate: then this pixel count is a cautious guess.
-  const double growth = std::clamp(coarse_seconds / std::max(taken, 1e-4), 0.25, 2.0);
-  double pixels = std::min(coarse_pixels_, full);
-  coarse_pixels_ = std::clamp(pixels * growth, std::min(fewest_coarse_pixels, full), full);
-  {
-    const std::lock_guard lock(mutex_);
-    coarse_revision_ = wanted.revision;
-    if (Clock::now() < moving_until_ || is_paused_) return;
-  }
-  for (double rate = taken / pixels; rate * full > patient_seconds && is_wanted(wanted);) {
-    pixels *= largest_growth;
-    if (2 * pixels > full) return;
-    rate = render_coarse(wanted, pixels, /*is_first=*/false) / pixels;
-  }
-}
-
-// Returns the seconds that it took.
-double InteractiveRender::Worker::render_coarse(const Wanted& wanted, double pixels, bool is_first) {
-  const Clock::time_point start = Clock::now();
-  const double full = pixels_of(window_of(wanted.view, wanted.options));
-  const double share = std::sqrt(std::min(1.0, pixels / full));
-  RenderOptions options = coarse_options(wanted.options, wanted.view.film, share, photons_of(wanted, full));
-  if (plan_->info->name == automatic_method) leave_out_pilot(options);
-  RenderPlan plan = plan_render(*scene_, wanted.view, options);
-  // The first picture of an edit is always completed; later ones may be abandoned.
-  const RenderStatistics statistics =
-      lanthorn::render(*scene_, plan, {.passes = {0, 1}, .drop = is_first ? &end_ : &drop_, .undo = Undo::never});
-  if (plan.state.pass_count() > 0) {
-    auto picture = coarse_picture(wanted, plan, statistics);
-    const std::lock_guard lock(mutex_);
-    show(std::move(picture));
-  }
-  return seconds(Clock::now() - start);
-}
-
-double InteractiveRender::Worker::photons_of(const Wanted& wanted, double pixels) const {
-  return wanted.options.photons ? static_cast<double>(*wanted.options.photons) : photons_per_pixel_ * pixels;
-}
-
-void InteractiveRender::Worker::refine(const Wanted& wanted) {
-  if (plan_revision_ != wanted.revision) make_plan(wanted);
-  StopRule stop = plan_->stop;
-  if (stop.seconds) *stop.seconds = std::max(0.0, *stop.seconds - plan_->state.seconds);
-  stop.interrupted = &rest_;
-  stop.drop = &drop_;
-  stop.undo = settings_.keeps_sums ? Undo::always : Undo::never;
-  std::uint64_t shown_passes = 0;
-  Observer observer;
-  observer.progress = [&](const RenderState&, const RenderStatistics& statistics) {
-    const Clock::time_point now = Clock::now();
-    if (now < next_picture_) return;
-    auto picture = full_picture(wanted, stop, statistics);
-    {
-      const std::lock_guard lock(mutex_);
-      show(std::move(picture));
-    }
-    shown_passes = plan_->state.pass_count();
-    next_picture_ = Clock::now() + std::max(picture_interval, picture_share * (Clock::now() - now));
-    denoise_if_due(statistics);
-  };
-  const RenderStatistics statistics = lanthorn::render(*scene_, *plan_, stop, observer);
-  if (statistics.out_of_memory) throw std::bad_alloc();
-  if (drop_) return;
-  const bool is_news = shown_passes < plan_->state.pass_count();
-  auto last = is_news ? full_picture(wanted, stop, statistics) : nullptr;
-  // Updates phase and picture together, so that an observer of the end also sees its picture.
-  const std::lock_guard lock(mutex_);
-  if (!rest_) note_end(wanted, statistics, stop);
-  if (last) show(std::move(last));
-}
-
-void InteractiveRender::Worker::denoise_if_due(const RenderStatistics& statistics) {
-  const Clock::time_point now = Clock::now();
-  {
-    const std::lock_guard lock(mutex_);
-    if (!can_denoise_shown() || now < next_preview_) return;
-    const double pixels = static_cast<double>(picture_->image.width) * picture_->image.height;
-    if (!denoised_ && statistics.seconds < denoising_rest * preview_seconds_ * pixels) return;
-    const auto passes = static_cast<double>(picture_->state.pass_count);
-    if (denoised_ && passes < denoising_growth * static_cast<double>(denoised_->passes)) return;
-  }
-  denoise_shown(/*is_preview=*/true);
-  next_preview_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(denoising_rest * (Clock::now() - now));
-}
-
-bool InteractiveRender::Worker::can_denoise_shown() const {
-  return denoises_ && picture_ && picture_->revision == wanted_.revision && has_both_halves(*picture_);
-}
-
-// Runs without the lock, because edits would have to wait for it.
-void InteractiveRender::Worker::denoise_shown(bool is_preview) {
-  std::shared_ptr<const InteractivePicture> picture;
-  {
-    const std::lock_guard lock(mutex_);
-    if (!can_denoise_shown()) return;
-    picture = picture_;
-    drop_denoising_ = has_ended_;
-  }
-  const Clock::time_point start = Clock::now();
-  std::shared_ptr<const InteractiveDenoised> made;
-  try {
-    const StopScope scope(&drop_denoising_);
-    made = std::make_shared<const InteractiveDenoised>(denoised_picture(*picture, is_preview));
-  } catch (const Stopped&) {
-    return;
-  }
-  const double pixels = static_cast<double>(picture->image.width) * picture->image.height;
-  if (is_preview) preview_seconds_ = seconds(Clock::now() - start) / pixels;
-  const std::lock_guard lock(mutex_);
-  if (!can_denoise_shown()) return;
-  denoised_ = std::move(made);
-  ++number_;
-  changed_.notify_all();
-}
-
-void InteractiveRender::Worker::note_end(const Wanted& wanted, const RenderStatistics& statistics,
-                                         const StopRule& stop) {
-  over_revision_ = wanted.revision;
-  const bool is_good = stop.noise && statistics.error && statistics.error->is_below(*stop.noise);
-  const bool has_all = plan_->state.pass_count() >= stop.passes.end - stop.passes.begin;
-  over_ = is_good || has_all ? InteractivePhase::finished : InteractivePhase::out_of_time;
-}
-
-// The parts that coarse and full pictures have in common.
-InteractivePicture InteractiveRender::Worker::make_picture(const Wanted& wanted, const RenderPlan& plan,
-                                                           const RenderStatistics& statistics) const {
-  const PixelWindow full = window_of(wanted.view, wanted.options);
-  InteractivePicture picture{.image = picture_of(plan.state),
-                             .revision = wanted.revision,
-                             .full_size = {full.width(), full.height()},
-                             .state = summarize(plan.state),
-                             .statistics = statistics,
-                             .limitation = plan.integrator->limitation(*scene_)};
-  picture.state.integrator = plan_->state.integrator;  // even if a coarse picture used another method
-  return picture;
-}
-
-std::shared_ptr<const InteractivePicture> InteractiveRender::Worker::coarse_picture(
-    const Wanted& wanted, const RenderPlan& plan, const RenderStatistics& statistics) const {
-  InteractivePicture picture = make_picture(wanted, plan, statistics);
-  picture.is_coarse = true;
-  return std::make_shared<const InteractivePicture>(std::move(picture));
-}
-
-std::shared_ptr<const InteractivePicture> InteractiveRender::Worker::full_picture(
-    const Wanted& wanted, const StopRule& stop, const RenderStatistics& statistics) const {
-  InteractivePicture picture = make_picture(wanted, *plan_, statistics);
-  picture.image = with_noise(plan_->state, picture.image);
-  picture.seconds_left = progress_of(stop, plan_->state, statistics).seconds_left;
-  picture.remark = plan_->integrator->remark();
-  return std::make_shared<const InteractivePicture>(std::move(picture));
-}
-
-void InteractiveRender::Worker::show(std::shared_ptr<const InteractivePicture> picture) {
-  if (picture_ && picture_->revision != picture->revision) denoised_.reset();
-  picture_ = std::move(picture);
-  told_ = phase();
-  ++number_;
-  changed_.notify_all();
-}
-
-void InteractiveRender::Worker::fail(const Wanted& wanted, const std::string& problem) {
-  const std::lock_guard lock(mutex_);
-  failed_revision_ = wanted.revision;
-  problem_ = problem;
-}
-
-InteractivePhase InteractiveRender::Worker::phase() const {
-  if (failed_revision_ == wanted_.revision) return InteractivePhase::failed;
-  if (over_revision_ == wanted_.revision) return over_;
-  if (is_paused_) return InteractivePhase::paused;
-  const bool is_there = picture_ && !picture_->is_coarse && picture_->revision == wanted_.revision;
-  return is_there ? InteractivePhase::refining : InteractivePhase::preparing;
-}
-
-void InteractiveRender::Worker::tell_phase() {
-  if (const InteractivePhase now = phase(); now != told_) {
-    told_ = now;
-    ++number_;
-    changed_.notify_all();
-  }
-}
-
-InteractiveSnapshot InteractiveRender::Worker::seen() const {
-  const InteractivePhase now = phase();
-  return {number_,
-          {wanted_.revision, now, now == InteractivePhase::failed ? problem_ : std::string()},
-          picture_,
-          denoised_};
-}
-
-std::uint64_t InteractiveRender::Worker::edit(RenderEdit edit) {
-  const std::lock_guard lock(mutex_);
-  if (edit.scene || edit.view || edit.options) {
-    ++wanted_.revision;
-    if (edit.scene) {
-      wanted_.make_scene = std::make_shared<const std::function<SharedScene()>>(std::move(edit.scene));
-      wanted_.scene_revision = wanted_.revision;
-    }
-    if (edit.view) wanted_.view = std::move(*edit.view);
-    if (edit.options) {
-      wanted_.options = std::move(*edit.options);
-      wanted_.options_revision = wanted_.revision;
-    }
-    if (!settings_.coarse_first) coarse_revision_ = wanted_.revision;
-    drop_ = drop_denoising_ = true;
-  }
-  moving_until_ = edit.is_moving ? Clock::now() + moving_time : Clock::time_point();
-  edited_.notify_all();
-  tell_phase();
-  return wanted_.revision;
-}
-
-void InteractiveRender::Worker::pause(bool is_paused) {
-  const std::lock_guard lock(mutex_);
-  if (is_paused == is_paused_) return;
-  rest_ = is_paused_ = is_paused;
-  edited_.notify_all();
-  tell_phase();
-}
-
-void InteractiveRender::Worker::denoise(bool is_wanted) {
-  const std::lock_guard lock(mutex_);
-  if (is_wanted == denoises_) return;
-  denoises_ = is_wanted;
-  drop_denoising_ = !is_wanted;
-  denoised_.reset();
-  ++number_;
-  edited_.notify_all();
-  changed_.notify_all();
-}
-
-InteractiveSnapshot InteractiveRender::Worker::snapshot() const {
-  const std::lock_guard lock(mutex_);
-  return seen();
-}
-
-InteractiveSnapshot InteractiveRender::Worker::wait(std::uint64_t number, std::chrono::milliseconds patience) const {
-  Lock lock(mutex_);
-  changed_.wait_for(lock, patience, [&] { return number_ != number || has_ended_; });
-  return seen();
-}
-
-void InteractiveRender::Worker::stop() {
-  {
-    const std::lock_guard lock(mutex_);
-    has_ended_ = true;
-    drop_ = end_ = drop_denoising_ = true;
-    edited_.notify_all();
-    changed_.notify_all();
-  }
-  std::call_once(joined_, [this] {
-    thread_.join();
-    const std::lock_guard lock(mutex_);
-    is_over_ = true;
-  });
-}
-
-const RenderState* InteractiveRender::Worker::state() const {
-  const std::lock_guard lock(mutex_);
-  const bool is_there =
-      is_over_ && settings_.keeps_sums && plan_ && plan_revision_ == wanted_.revision && plan_->state.pass_count() > 0;
-  return is_there ? &plan_->state : nullptr;
-}
 
 InteractiveRender::InteractiveRender(SharedScene scene, const ViewDescription& view, const RenderOptions& options,
                                      const InteractiveSettings& settings)

@@ -5,7 +5,9 @@
 #include <utility>
 
 #include "base/parallel.h"
+#include "camera/view.h"
 #include "lanthorn/error.h"
+#include "lanthorn/scene.h"
 #include "path/path_draw.h"
 #include "path/radiance_along.h"
 #include "scene/medium_around.h"
@@ -119,6 +121,24 @@ std::optional<SurfaceBsdf> bsdf_at(SharedScene scene, const SceneRay& ray) {
   std::optional<SurfacePoint> point = nearest_surface(*scene, ray_in_scene(*scene, ray, 0));
   if (!point) return std::nullopt;
   return SurfaceBsdf(std::make_shared<const SurfaceBsdf::At>(SurfaceBsdf::At{std::move(scene), *point}));
+}
+
+std::optional<float> depth_at(const Scene& scene, const ViewDescription& description, const ViewOptions& options,
+                              const std::optional<Vec2>& pixel) {
+  const View view = make_view(description, options);
+  const Camera& camera = view.camera;
+  const Vec2 middle = 0.5f * Vec2(static_cast<float>(camera.width()), static_cast<float>(camera.height()));
+  Ray ray = camera.sample_ray(pixel.value_or(middle), Vec2(0.5f), camera.time(0)).ray;
+  const Transform to_camera = framing(description.camera, camera.width(), camera.height()).start.inverted();
+  const Wavelengths w = Wavelengths::rgb(0.5f);
+  constexpr int most_interfaces = 1000;
+  for (int i = 0; i < most_interfaces; ++i) {
+    const std::optional<SurfacePoint> hit = scene.intersect(ray, w);
+    if (!hit) return std::nullopt;
+    if (!hit->is_interface) return to_camera.point(hit->position).z;
+    ray.origin = offset_origin(*hit, ray.direction);
+  }
+  return std::nullopt;
 }
 
 }  // namespace lanthorn

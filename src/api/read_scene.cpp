@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include "io/replace_environment.h"
+#include "io/environments.h"
 #include "lanthorn/error.h"
 #include "lanthorn/scene.h"
 #include "math/hash.h"

@@ -15,7 +15,6 @@
 #include "lanthorn/error.h"
 #include "render/picture.h"
 #include "render/plan.h"
-#include "render/render.h"
 #include "render/stand_in.h"
 #include "render/state.h"
 #include "scene/scene.h"

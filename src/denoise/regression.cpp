@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include "denoise/regression.h"
+#include "denoise/layer.h"
 
 #include <cmath>
 #include <utility>

@@ -22,8 +22,8 @@ struct Glyph {
   char character;
   std::array<std::uint8_t, 5> rows;
 };
-constexpr int glyph_width = 3, glyph_height = 5, dot = 2, advance = (glyph_width + 1) * dot,
-              line_height = (glyph_height + 2) * dot;
+constexpr int glyph_width = 3, glyph_height = 5, dot_size = 2, advance = (glyph_width + 1) * dot_size,
+              line_height = (glyph_height + 2) * dot_size;
 constexpr std::array<Glyph, 30> glyphs{{
     {'0', {7, 5, 5, 5, 7}}, {'1', {2, 6, 2, 2, 7}}, {'2', {7, 1, 7, 4, 7}}, {'3', {7, 1, 7, 1, 7}},
     {'4', {5, 5, 7, 1, 1}}, {'5', {7, 4, 7, 1, 7}}, {'6', {7, 4, 7, 5, 7}}, {'7', {7, 1, 1, 1, 1}},
@@ -76,9 +76,9 @@ class Sheet {
   void write(std::string_view text, int left, int top) {
     for (const char character : text) {
       const auto rows = rows_of(character);
-      for (int y = 0; y < glyph_height * dot; ++y)
-        for (int x = 0; x < glyph_width * dot; ++x)
-          if ((rows[static_cast<std::size_t>(y / dot)] >> (glyph_width - 1 - x / dot) & 1) != 0)
+      for (int y = 0; y < glyph_height * dot_size; ++y)
+        for (int x = 0; x < glyph_width * dot_size; ++x)
+          if ((rows[static_cast<std::size_t>(y / dot_size)] >> (glyph_width - 1 - x / dot_size) & 1) != 0)
             for (std::size_t c = 0; c < 3; ++c) image_.at(left + x, top + y, c) = white_;
       left += advance;
     }

@@ -12,7 +12,7 @@
 
 #include "base/bytes.h"
 #include "base/parallel.h"
-#include "image/image_encoder.h"
+#include "image/own_formats.h"
 #include "lanthorn/error.h"
 #include "lanthorn/packed_float.h"
 #include "spectrum/rgb_matrix.h"

@@ -14,7 +14,7 @@
 #include <utility>
 
 #include "base/memory.h"
-#include "image/radiance_picture.h"
+#include "image/own_formats.h"
 #include "lanthorn/text.h"
 #include "spectrum/rgb_matrix.h"
 

@@ -7,7 +7,7 @@
 #include <new>
 #include <string_view>
 
-#include "image/image_encoder.h"
+#include "image/own_formats.h"
 
 namespace lanthorn {
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 // G. Ward, "Real Pixels", Graphics Gems II, 1991, and the reference manual of Radiance, "File Formats" (picture files).
-#include "image/radiance_picture.h"
+#include "image/own_formats.h"
 
 #include <algorithm>
 #include <array>

@@ -20,7 +20,9 @@
 #include "io/gzip.h"
 #include "io/obj/reader.h"
 #include "io/pbrt/reader.h"
+#include "io/ply.h"
 #include "lanthorn/file.h"
+#include "lanthorn/scene.h"
 #include "lanthorn/text.h"
 #include "math/hash.h"
 
@@ -189,6 +191,20 @@ SceneDescription read_pbrt_text(std::string_view text, const std::filesystem::pa
                                 const FindMethod& methods) {
   const FileAccess access;
   return finished(pbrt::read(text, folder, name, methods, decompressing_reader(access)), text, access);
+}
+
+std::vector<description::Shape> read_mesh(const std::filesystem::path& path) {
+  const std::string name = path.string();
+  PlyMesh mesh = parse_ply(decompressed(read_file(path), name), name);
+  std::vector<description::Shape> shapes;
+  const auto add = [&](auto&& geometry) {
+    description::Shape& shape = shapes.emplace_back();
+    shape.geometry = std::forward<decltype(geometry)>(geometry);
+    shape.location.file = name;
+  };
+  if (!mesh.triangles.positions.empty()) add(std::move(mesh.triangles));
+  if (!mesh.quads.positions.empty()) add(std::move(mesh.quads));
+  return shapes;
 }
 
 }  // namespace lanthorn

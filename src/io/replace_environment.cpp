@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include "io/replace_environment.h"
+#include "io/environments.h"
 
 #include <fmt/format.h>
 
@@ -18,7 +18,6 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "ibl/cube_map.h"
-#include "io/own_environments.h"
 #include "lanthorn/error.h"
 #include "lanthorn/file.h"
 #include "lanthorn/ibl.h"

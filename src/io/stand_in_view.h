@@ -1,16 +1,41 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Chooses the position of the default camera for a model without camera.
+// Chooses the position of the default camera for a model without camera. Recognises models that are rooms, and chooses
+// a view from inside them.
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "io/model_views.h"
-#include "io/view_inside.h"
 #include "lanthorn/scene_description.h"
 
 namespace lanthorn {
+
+/// A view from inside a closed room.
+struct ViewInside {
+  ViewFrame frame;
+  Direction up{0, 1, 0};  ///< of the room
+  Point eye{0};
+  Point lamp{0};            ///< position that illuminates most of what the eye sees
+  float lamp_radius = 0;    ///< metres; a sphere of three times this radius is empty
+  float lamp_distance = 0;  ///< metres, typical distance to the surfaces it illuminates
+};
+
+/// The view from inside that shows most, if the space that surfaces surround is nearly as large as the model, and
+/// - the model is wider than high, nearly everything visible from outside is walls or backs of surfaces, and at least a
+///   twentieth of what is visible from inside is neither wall nor clearly visible from outside: a furnished room. It
+///   may have z up, if its things lie near the lower side of z; or
+/// - separate flat parts make the six sides of a box with the proportions of a room: a room, even if it is empty; or
+/// - nearly everything visible from outside is backs that viewers cull, hardly any backs are visible from inside, and
+///   the model has no opening: walls that face inwards, a sky; or
+/// - `is_dark_outside`: the scene's own lights illuminate hardly anything that is visible from outside.
+/// Rooms may have windows unless `has_open_side`: then the model is seen through that side. `parts`: bounding boxes of
+/// the file's objects. `from_outside`: what is visible from around the model.
+std::optional<ViewInside> view_inside(const ModelSamples& model, std::span<const Bounds> parts,
+                                      std::span<const OutsideView* const> from_outside, bool is_dark_outside,
+                                      bool has_open_side);
 
 struct StandInView {
   ViewFrame frame;

@@ -20,7 +20,7 @@ using namespace description;
 template <>
 constexpr auto value_names<ColorSpace> = words("srgb", "dci_p3", "rec2020", "aces2065_1");
 template <>
-constexpr auto value_names<ColorMode> = words("rgb", "spectral");
+constexpr auto value_names<ColorMode> = color_mode_names;
 template <>
 constexpr auto value_names<ToneCurve> = words("none", "filmic", "agx", "highlights");
 template <>

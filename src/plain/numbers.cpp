@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include "plain/numbers.h"
+#include "plain/type.h"
 
 #include <algorithm>
 #include <cmath>

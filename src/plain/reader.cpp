@@ -13,7 +13,6 @@
 #include "lanthorn/error.h"
 #include "lanthorn/text.h"
 #include "math/hash.h"
-#include "plain/numbers.h"
 #include "plain/type.h"
 
 namespace lanthorn::plain {

@@ -8,7 +8,6 @@
 #include <utility>
 #include <variant>
 
-#include "plain/numbers.h"
 #include "plain/type.h"
 
 namespace lanthorn::plain {

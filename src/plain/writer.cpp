@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "lanthorn/plain_data.h"
-#include "plain/numbers.h"
 #include "plain/type.h"
 
 namespace lanthorn::plain {

@@ -8,9 +8,8 @@
 #include <cmath>
 
 #include "lanthorn/error.h"
-#include "render/colour_balance.h"
+#include "render/picture.h"
 #include "render/plan.h"
-#include "render/render.h"
 #include "scene/scene.h"
 
 namespace lanthorn {

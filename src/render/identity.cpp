@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include "render/identity.h"
+#include "render/plan.h"
 
 #include <fmt/format.h>
 

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -12,7 +13,8 @@
 
 #include "film/error_estimate.h"
 #include "lanthorn/image.h"
-#include "render/colour_balance.h"
+#include "path/path_draw.h"
+#include "spectrum/cie.h"
 
 namespace lanthorn {
 
@@ -20,13 +22,7 @@ namespace {
 
 using Passes = std::vector<PassRange>;
 
-std::uint64_t count(const Passes& passes) {
-  std::uint64_t sum = 0;
-  for (const PassRange& range : passes) sum += range.end - range.begin;
-  return sum;
-}
-
-std::uint64_t passes_or_one(const Passes& passes) { return std::max<std::uint64_t>(1, count(passes)); }
+std::uint64_t passes_or_one(const Passes& passes) { return std::max<std::uint64_t>(1, pass_count(passes)); }
 
 // The passes that belong to this half.
 Passes passes_in(const Passes& passes, FilmHalf half) {
@@ -64,7 +60,7 @@ MeasuredError measure_error(const RenderState& state, const Film& film, const Sh
   for (const FilmHalf half : {FilmHalf::first, FilmHalf::second}) {
     const auto h = static_cast<std::size_t>(half);
     const Passes own = passes_in(passes, half);
-    pictures.passes[h] = count(own);
+    pictures.passes[h] = pass_count(own);
     HalfPicture resolved = film.resolve_half(half, pictures.passes[h], colour_balance(state, own));
     pictures.halves[h] = {shown(part, std::move(resolved.color)), shown(part, std::move(resolved.bias))};
   }
@@ -106,9 +102,12 @@ Image noise_of_bias(const Image& picture, Image first_half) {
   return prefixed("noise.", std::move(first_half));
 }
 
-}  // namespace
-
-namespace {
+// The film's colour of the illuminant D65, estimated with four wavelengths. Its mean over wavelengths is (1, 1, 1).
+Rgb white_of(const Wavelengths& w) {
+  Spectrum light;
+  for (int i = 0; i < 4; ++i) light[i] = illuminant_d65.at(w.lambda[static_cast<unsigned>(i)]);
+  return w.to_rgb(light);
+}
 
 MeasuredPicture measured_part(const RenderState& state, const Film& film, const ShownPart& part, const Passes& passes) {
   Image image = shown(part, film.resolve(passes_or_one(passes), colour_balance(state, passes)));
@@ -122,10 +121,10 @@ MeasuredPicture measured_part(const RenderState& state, const Film& film, const 
 Image part_with_noise(const RenderState& state, const ShownPart& part, const Image& picture) {
   const Passes first = passes_in(state.passes, FilmHalf::first);
   const Rgb balance = colour_balance(state, first);
-  Image half = shown(part, state.film.resolve_first_half(count(first), balance));
+  Image half = shown(part, state.film.resolve_first_half(pass_count(first), balance));
   Image noisy = with_layers(picture, prefixed("noise.", noise_of(picture, std::move(half))));
   if (!picture.find_channel("bias.R")) return noisy;
-  const HalfPicture own = state.film.resolve_half(FilmHalf::first, count(first), balance);
+  const HalfPicture own = state.film.resolve_half(FilmHalf::first, pass_count(first), balance);
   return with_layers(noisy, noise_of_bias(picture, prefixed("bias.", smoothed_bias(shown(part, own.bias)))));
 }
 
@@ -162,6 +161,31 @@ ErrorEstimate estimate_error(const RenderState& state) {
   const ShownPart part = shown_part(state);
   Image color = shown(part, state.film.resolve_color(passes_or_one(state.passes), colour_balance(state)));
   return measure_error(state, state.film, part, state.passes, std::move(color)).estimate;
+}
+
+Rgb colour_balance(const RenderState& state) { return colour_balance(state, state.passes); }
+
+Rgb colour_balance(const RenderState& state, std::span<const PassRange> passes) {
+  constexpr std::uint64_t many = 1 << 20;  // as good as all
+  const RenderIdentity& render = state.record.identity;
+  const std::uint64_t count = pass_count(passes);
+  if (!render.wavelength_sets || count == 0 || count > many) return {1, 1, 1};
+  const std::uint32_t sets = *render.wavelength_sets;
+  std::array<double, 3> sum{};
+  for (const PassRange& range : passes)
+    for (std::uint64_t set = range.begin * sets; set < range.end * sets; ++set) {
+      const PlaceInHalf place = place_in_half(static_cast<std::uint32_t>(set), sets);
+      const Rgb white = white_of(wavelengths_of_pass(render.seed, ColorMode::spectral, place, render.heroes_of_paths));
+      sum[0] += static_cast<double>(white.r);
+      sum[1] += static_cast<double>(white.g);
+      sum[2] += static_cast<double>(white.b);
+    }
+  const auto all = static_cast<double>(count * sets);
+  const auto factor = [&](double channel) {
+    constexpr double largest = 100;  // bound for wavelengths that all miss a channel
+    return static_cast<float>(channel * largest > all ? all / channel : 1.0);
+  };
+  return {factor(sum[0]), factor(sum[1]), factor(sum[2])};
 }
 
 }  // namespace lanthorn

@@ -5,22 +5,115 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <map>
+#include <optional>
+#include <string>
 #include <utility>
 
+#include "base/memory.h"
+#include "film/film.h"
+#include "integrators/integrator.h"
 #include "lanthorn/error.h"
-#include "render/identity.h"
-#include "render/memory_need.h"
+#include "lanthorn/text.h"
+#include "path/path_draw.h"
+#include "photon/photon_pass.h"
 #include "render/method_of_file.h"
-#include "render/scaled_view.h"
 #include "scene/medium_around.h"
 #include "scene/scene.h"
 
 namespace lanthorn {
 
 namespace {
+
+// Light paths traced to measure how many photons each stores: 4096 give the mean to a few percent.
+constexpr std::uint64_t probed_paths = 4096;
+
+// Mean storage of a light path, on surfaces and in media.
+struct Stored {
+  double photons = 0, bytes = 0;
+};
+
+Stored stored_per_light_path(const RenderJob& job, const MemoryUse& use) {
+  const RenderSettings& settings = job.settings;
+  const PassDraw draw = draw_for_pass(job, 0);
+  PhotonTracer tracer;
+  tracer.trace(job.scene, {settings.seed, Stream::pilot_light, 0, std::min(probed_paths, settings.photons)},
+               {.first_depth = use.first_depth, .max_depth = settings.max_depth, .media = use.media}, draw);
+  const double paths = static_cast<double>(std::max<std::uint64_t>(1, tracer.emitted()));
+  const double all = static_cast<double>(tracer.stored()), in_media = static_cast<double>(tracer.stored_in_media());
+  const double in_medium = use.per_medium_photon > 0 ? use.per_medium_photon : bytes_of_medium_photon(use.media);
+  return {all / paths, ((all - in_media) * use.per_photon + in_media * in_medium) / paths};
+}
+
+// The memory available, and its name in messages.
+struct Limit {
+  double bytes;
+  std::string words;
+};
+
+Limit limit_of(std::optional<std::uint64_t> option) {
+  if (option) return {static_cast<double>(*option), "--memory allows " + memory_text(static_cast<double>(*option))};
+  const auto available = available_memory();
+  if (!available) return {std::numeric_limits<double>::infinity(), {}};
+  return {static_cast<double>(*available), "there are only " + memory_text(static_cast<double>(*available))};
+}
+
+std::string too_many_photons(const RenderSettings& settings, const MemoryUse& use, const Stored& per_path, double bytes,
+                             double film, const Limit& limit) {
+  const bool has_blocks = use.photon_block < settings.photons;
+  const char* const of = has_blocks ? " at a time" : settings.parts > 1 ? " of a part of a pass" : " a pass";
+  return fmt::format(
+      "{} light paths{} take {} of memory{}, beside {} for the picture, but {}: choose fewer with --photons{}",
+      has_blocks ? use.photon_block : settings.photons, of, memory_text(bytes),
+      per_path.photons > 0 ? fmt::format(" ({} photons each)", short_number(per_path.photons)) : "", memory_text(film),
+      limit.words,
+      use.photon_block == MemoryUse{}.photon_block
+          ? ", or a method that does not need all of them at a time (probppm, vcm, bpm, auto)"
+          : "");
+}
+
+// Refuses a render that does not fit into memory before any of it is allocated. Counts the film's sums and the picture
+// made from them, the method's own data for each pixel, and the photons or light vertices of a pass; their number for
+// each light path is measured on a few thousand paths. Scene and textures are in memory already and do not count.
+// `option`: bytes for all of these together; by default the free memory of the machine. Sets `settings.memory` for
+// methods that work in blocks. Returns how many passes fit at once: into the limit, or into half of the free memory.
+// Throws Error with the memory needed and the options that reduce it.
+std::size_t plan_memory(const Scene& scene, const View& view, const Integrator& integrator,
+                        const FilmContents& contents, std::optional<std::uint64_t> option, RenderSettings& settings) {
+  const Limit limit = limit_of(option);
+  const MemoryUse use = integrator.memory_use(settings);
+  const int width = view.window.width(), height = view.window.height();
+  // At the end, the picture and the data that its error is measured from exist beside the sums.
+  constexpr double film_bytes = 1.5 * sizeof(std::int64_t);
+  const double pixels = static_cast<double>(width) * height;
+  const double film = pixels * (film_bytes * static_cast<double>(Film::stride(contents)) + use.per_pixel);
+  if (film > limit.bytes)
+    throw Error(fmt::format(
+        "{} x {} pixels take {} of memory, but {}: choose fewer with --resolution, or render parts with --crop", width,
+        height, memory_text(film), limit.words));
+
+  const bool keeps_photons = use.per_photon > 0 && settings.photons > 0;
+  const Stored per_path = keeps_photons ? stored_per_light_path({scene, view, settings}, use) : Stored{};
+  const std::uint64_t held = std::min(settings.photons, use.photon_block);
+  const double of_blocks = held < settings.photons ? pixels * use.per_pixel_of_blocks : 0;
+  const double photons = static_cast<double>(held) * (per_path.bytes + use.per_light_path) + of_blocks;
+  if (film + photons > limit.bytes) throw Error(too_many_photons(settings, use, per_path, photons, film, limit));
+  // Random numbers and maps have indices of 32 bits.
+  constexpr double most_numbers = std::numeric_limits<std::uint32_t>::max();
+  if (std::max(static_cast<double>(settings.photons), static_cast<double>(held) * per_path.photons) > most_numbers)
+    throw Error(fmt::format("--photons {}: a pass can have at most {:.0f} light paths, and as many photons",
+                            settings.photons, most_numbers));
+  if (use.fills_the_rest && option) settings.memory = static_cast<std::uint64_t>(limit.bytes - film - photons);
+  // Other programs may need some of the memory that is free now.
+  const double room = option ? limit.bytes : limit.bytes / 2;
+  constexpr double most = 1024;
+  return static_cast<std::size_t>(std::clamp(photons > 0 ? (room - film) / photons : most, 1.0, most));
+}
 
 constexpr std::uint64_t default_passes = 64;
 
@@ -45,15 +138,6 @@ PassRange choose_passes(const description::RenderHints& hints, const RenderOptio
   if (options.seconds || options.noise) return {0, never};
   return {0, hints.pixel_samples ? static_cast<std::uint64_t>(std::max(1, *hints.pixel_samples)) : default_passes};
 }
-
-}  // namespace
-
-void check_error_bound(double bound) {
-  if (!(bound > 0 && bound <= 1))
-    throw Error(fmt::format("--noise {}: expected a share above 0 and at most 1, such as 0.02 for 2 %", bound));
-}
-
-namespace {
 
 // Throws Error for limits that no render can keep.
 void check_limits(const RenderOptions& options) {
@@ -94,7 +178,7 @@ RenderSettings choose_settings(const Scene& scene, const ViewDescription& descri
   const LightPathRange& range = plan.info->light_paths;
   const std::uint64_t automatic = std::clamp(pixels, range.fewest, range.most);
   const std::uint64_t of_pass = choose_light_paths(hints, options, plan.info->name, automatic);
-  // Two sets of four wavelengths are enough for the colours of smooth spectra (render/colour_balance.h).
+  // Two sets of four wavelengths are enough for the colours of smooth spectra (render/picture.h).
   s.parts = plan.integrator->passes_share_wavelengths() && s.color == ColorMode::spectral ? 2 : 1;
   s.photons = of_pass / s.parts + (of_pass % s.parts > 0 ? 1 : 0);
   return s;
@@ -123,6 +207,11 @@ void require_shutter_of(const Scene& scene, const description::Camera& camera) {
 }
 
 }  // namespace
+
+void check_error_bound(double bound) {
+  if (!(bound > 0 && bound <= 1))
+    throw Error(fmt::format("--noise {}: expected a share above 0 and at most 1, such as 0.02 for 2 %", bound));
+}
 
 RenderPlan plan_render(const Scene& scene, const ViewDescription& view, const RenderOptions& options) {
   const description::RenderHints& hints = scene.description().hints;
@@ -157,6 +246,28 @@ RenderPlan plan_render(const Scene& scene, const ViewDescription& view, const Re
     return plan_render(same, view, coarse_options(exact, view.film, share, photons));
   };
   return plan;
+}
+
+ViewOptions scaled(ViewOptions options, const description::Film& film, double share) {
+  const std::array<int, 2> full = options.resolution.value_or(std::array<int, 2>{film.width, film.height});
+  const auto scale = [share](int x) { return static_cast<int>(std::lround(share * x)); };
+  options.resolution = {std::max(1, scale(full[0])), std::max(1, scale(full[1]))};
+  if (options.crop) {
+    const auto& [x0, y0, x1, y1] = *options.crop;
+    const auto& [width, height] = *options.resolution;
+    const int left = std::min(scale(x0), width - 1), top = std::min(scale(y0), height - 1);
+    options.crop = {left, top, std::clamp(scale(x1), left + 1, width), std::clamp(scale(y1), top + 1, height)};
+  }
+  return options;
+}
+
+RenderOptions coarse_options(RenderOptions options, const description::Film& film, double share, double photons) {
+  constexpr double fewest = 8000;
+  static_cast<ViewOptions&>(options) = scaled(options, film, share);
+  options.photons =
+      static_cast<std::uint64_t>(std::min(std::max(fewest, photons * share * share), std::max(1.0, photons)));
+  options.pass_range.reset();
+  return options;
 }
 
 }  // namespace lanthorn

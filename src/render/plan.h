@@ -12,7 +12,10 @@
 #include "camera/view.h"
 #include "integrators/integrator.h"
 #include "lanthorn/render_options.h"
+#include "lanthorn/render_record.h"
+#include "lanthorn/scene_description.h"
 #include "lanthorn/session.h"
+#include "lanthorn/statistics.h"
 #include "render/state.h"
 #include "scene/scene.h"
 
@@ -47,5 +50,19 @@ void check_error_bound(double bound);
 /// Resolves options against scene and view. Throws Error for unknown integrators or parameters, values out of range,
 /// and a shutter that is not the scene's although something moves.
 RenderPlan plan_render(const Scene& scene, const ViewDescription& view, const RenderOptions& options);
+
+/// `RenderState::record` of this render before its preparation.
+RenderRecord record_of(const Scene& scene, const ViewDescription& view, const RenderOptions& options,
+                       const RenderPlan& plan);
+
+/// The options for a picture of the same part of the scene with `share` times the width and the height.
+ViewOptions scaled(ViewOptions options, const description::Film& film, double share);
+
+/// The options for a pass of such a picture. `photons`: light paths of a pass of the whole picture.
+RenderOptions coarse_options(RenderOptions options, const description::Film& film, double share, double photons);
+
+/// Renders the passes of `stop.passes` that the plan's state has not done yet, in order, into that state. Prepares the
+/// integrator first if it is not prepared. If the first pass is given up, the state has no passes.
+RenderStatistics render(const Scene& scene, RenderPlan& plan, const StopRule& stop, const Observer& observer = {});
 
 }  // namespace lanthorn

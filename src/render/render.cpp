@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include "render/render.h"
+// The pass loop: one for all methods.
+#include "render/plan.h"
 
 #include <fmt/format.h>
 
@@ -18,10 +19,9 @@
 #include "base/parallel.h"
 #include "integrators/integrator.h"
 #include "lanthorn/error.h"
-#include "render/deadline.h"
+#include "render/abandoned_pass.h"
 #include "render/looks.h"
 #include "render/pass_batch.h"
-#include "render/pass_undo.h"
 #include "render/stand_in.h"
 #include "render/team/member.h"
 
@@ -299,7 +299,7 @@ PassLoop::Batch PassLoop::next_of_team() {
 }
 
 void PassLoop::add_gathered(const RoundSums& sums) {
-  if (sums) add_state(*total_, *sums);
+  if (sums) merge_into(*total_, *sums);
   looks_.look_if_due(*total_, statistics_, statistics_.seconds);
   member_->settle(is_reached(stop_, statistics_));
   if (observer_.checkpoint(*total_, seconds_between(last_checkpoint_, Clock::now()))) last_checkpoint_ = Clock::now();

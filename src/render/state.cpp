@@ -5,10 +5,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "lanthorn/error.h"
 #include "render/record.h"
@@ -37,7 +39,7 @@ double coarse(double seconds) { return std::round(seconds * 0x1p20) * 0x1p-20; }
 
 }  // namespace
 
-std::uint64_t RenderState::pass_count() const {
+std::uint64_t pass_count(std::span<const PassRange> passes) {
   std::uint64_t count = 0;
   for (const PassRange& range : passes) count += range.end - range.begin;
   return count;
@@ -112,7 +114,7 @@ void add_head(RenderState& sum, const RenderState& more, std::vector<PassRange> 
 
 }  // namespace
 
-void add_state(RenderState& sum, const RenderState& more) {
+void merge_into(RenderState& sum, const RenderState& more) {
   require_mergeable(sum, more);
   require_films_fit(sum.film.compatible(more.film));
   std::vector<PassRange> passes = passes_of_both(sum, more);
@@ -120,7 +122,7 @@ void add_state(RenderState& sum, const RenderState& more) {
   add_head(sum, more, std::move(passes));
 }
 
-void add_state(RenderState& sum, const StateReader& more) {
+void merge_into(RenderState& sum, const StateReader& more) {
   require_mergeable(sum, more.head());
   require_films_fit(more.fits(sum.film));
   std::vector<PassRange> passes = passes_of_both(sum, more.head());
@@ -130,7 +132,7 @@ void add_state(RenderState& sum, const StateReader& more) {
 
 RenderState merge_states(const RenderState& a, const RenderState& b) {
   RenderState merged = a;
-  add_state(merged, b);
+  merge_into(merged, b);
   return merged;
 }
 
@@ -143,5 +145,53 @@ RenderState empty_like(const RenderState& state) {
   empty.shardable = state.shardable;
   return empty;
 }
+
+ShownPart shown_part(const RenderState& state) {
+  const RenderIdentity& identity = state.record.identity;
+  const auto& [x0, y0, x1, y1] = identity.crop;
+  const auto& [left, top, right, bottom] = identity.margin.value_or(std::array<int, 4>{});
+  return {left, top, x1 - x0, y1 - y0, {x0, y0, identity.resolution[0], identity.resolution[1]}};
+}
+
+StateSummary summarize(const RenderState& state) {
+  const ShownPart shown = shown_part(state);
+  return {.integrator = state.integrator,
+          .passes = state.passes,
+          .pass_count = state.pass_count(),
+          .seconds = state.seconds,
+          .mergeable = state.shardable,
+          .record = state.record,
+          .width = shown.width,
+          .height = shown.height,
+          .window = shown.window,
+          .margin = std::max({shown.x, shown.y, state.film.width() - shown.width - shown.x,
+                              state.film.height() - shown.height - shown.y}),
+          .report = state.film.report(),
+          .cut_share = std::max(state.eye.share(), state.light.share())};
+}
+
+std::shared_ptr<RenderState> open_state(const std::filesystem::path& path) {
+  return std::make_shared<RenderState>(load_state(path));
+}
+
+std::shared_ptr<RenderState> merge(const RenderState& a, const RenderState& b) {
+  return std::make_shared<RenderState>(merge_states(a, b));
+}
+
+SavedState::SavedState(const std::filesystem::path& path)
+    : reader_(std::make_unique<StateReader>(open_state_reader(path))) {}
+SavedState::~SavedState() = default;
+SavedState::SavedState(SavedState&&) noexcept = default;
+SavedState& SavedState::operator=(SavedState&&) noexcept = default;
+
+const std::vector<PassRange>& SavedState::passes() const { return reader_->head().passes; }
+
+std::optional<std::string> SavedState::identity_difference(const RenderState& other) const {
+  return lanthorn::identity_difference(reader_->head(), other);
+}
+
+std::shared_ptr<RenderState> SavedState::load() const { return std::make_shared<RenderState>(reader_->load()); }
+
+void SavedState::merge_into(RenderState& sum) const { lanthorn::merge_into(sum, *reader_); }
 
 }  // namespace lanthorn

@@ -18,6 +18,9 @@
 
 namespace lanthorn {
 
+/// The number of passes in these ranges.
+std::uint64_t pass_count(std::span<const PassRange> passes);
+
 struct RenderState {
   Film film;
   std::vector<PassRange> passes;            ///< done; sorted, disjoint, not touching, none empty
@@ -28,7 +31,7 @@ struct RenderState {
   double seconds = 0;     ///< spent rendering, over all processes
   PathEnds eye, light;    ///< of the paths of all passes (RayCounts)
 
-  std::uint64_t pass_count() const;
+  std::uint64_t pass_count() const { return lanthorn::pass_count(passes); }
   /// Records a pass as done; it must not be done yet.
   void add_pass(std::uint64_t pass);
   bool has_pass(std::uint64_t pass) const;
@@ -56,12 +59,9 @@ RenderState load_state(const std::filesystem::path& path);
 /// As `merge`.
 RenderState merge_states(const RenderState& a, const RenderState& b);
 
-/// As `merge`, into `sum`, which stays as it is if an Error is thrown.
-void add_state(RenderState& sum, const RenderState& more);
-
 class StateReader;
 /// As `SavedState::merge_into`.
-void add_state(RenderState& sum, const StateReader& more);
+void merge_into(RenderState& sum, const StateReader& more);
 
 /// A state without passes of the same render.
 RenderState empty_like(const RenderState& state);

@@ -23,7 +23,7 @@
 #include "lanthorn/methods.h"
 #include "lanthorn/text.h"
 #include "lanthorn/viewer.h"
-#include "render/scaled_view.h"
+#include "render/plan.h"
 #include "scene/medium_around.h"
 #include "viewer/accumulation.h"
 #include "viewer/edited_scene.h"

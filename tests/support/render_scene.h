@@ -19,7 +19,6 @@
 #include "lanthorn/image.h"
 #include "lanthorn/scene.h"
 #include "render/plan.h"
-#include "render/render.h"
 #include "scene/scene.h"
 #include "support/statistics.h"
 

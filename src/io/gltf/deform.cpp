@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include "io/gltf/deform.h"
+#include "io/gltf/meshes.h"
 
 #include <algorithm>
 #include <glm/matrix.hpp>

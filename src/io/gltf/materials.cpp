@@ -12,7 +12,6 @@
 #include <utility>
 #include <variant>
 
-#include "io/gltf/textures.h"
 #include "lanthorn/text.h"
 #include "math/vec.h"
 

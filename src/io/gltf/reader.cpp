@@ -19,7 +19,6 @@
 #include "io/gltf/materials.h"
 #include "io/gltf/meshes.h"
 #include "io/gltf/nodes.h"
-#include "io/gltf/pose.h"
 #include "io/missing_files.h"
 #include "io/surfaces.h"
 #include "lanthorn/text.h"

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include "io/gltf/textures.h"
+#include "io/gltf/materials.h"
 
 #include <cmath>
 #include <string>

@@ -44,4 +44,8 @@ void read_materials(std::string_view text, const std::filesystem::path& folder, 
 /// 1 on meshes without any.
 void add_vertex_colors(SceneDescription& scene);
 
+/// Finds a picture in the model's folder whose name marks it as the model's colours, such as MODEL_diffuse.png beside
+/// MODEL.obj: many collections ship such pictures without an MTL file that names them.
+std::optional<std::string> texture_beside(const std::filesystem::path& model);
+
 }  // namespace lanthorn::obj

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include "io/obj/texture_beside.h"
+#include "io/obj/materials.h"
 
 #include <algorithm>
 #include <array>

@@ -12,11 +12,27 @@
 #include "io/counted_warnings.h"
 #include "io/known_method.h"
 #include "io/pbrt/parameters.h"
-#include "io/pbrt/version.h"
+#include "io/pbrt/tokenizer.h"
 #include "lanthorn/file.h"
 #include "lanthorn/scene_description.h"
 
 namespace lanthorn::pbrt {
+
+/// Evidence of a file's version, such as `Film "image"`.
+struct VersionSign {
+  bool is_v3 = false;
+  std::string text;
+  SourceLocation location;
+};
+
+/// Finds the first feature in the file, or in one that it includes, that only pbrt-v3 or only pbrt-v4 has, and reads no
+/// further. nullopt if there is none, or if the file is malformed, which the parser reports later. `read_included`
+/// returns included files by name.
+std::optional<VersionSign> find_version_sign(std::string_view text, const std::string& name,
+                                             const FileReader& read_included);
+
+/// For messages about an unknown kind: "; it is of pbrt-v4, but …" if the other version has the kind. Otherwise empty.
+std::string version_hint(const std::optional<VersionSign>& sign, std::string_view directive, std::string_view kind);
 
 /// State shared by all builders: the scene description, the names defined so far, and access to files.
 struct Context {

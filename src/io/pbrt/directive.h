@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <filesystem>
 #include <functional>
 #include <string>
 #include <string_view>
@@ -41,5 +42,27 @@ inline constexpr std::size_t deepest_nesting = 4096;
 
 /// Names of the pseudo-directives that the parser emits around the directives of an imported file.
 inline constexpr std::string_view import_begin = "Import", import_end = "end of Import";
+
+/// Writes directives as the text of a pbrt-v4 file. Numbers round-trip exactly.
+class Writer {
+ public:
+  /// Input file names are relative to `folder`, output file names to `target`. Both are canonical.
+  Writer(std::filesystem::path folder, std::filesystem::path target)
+      : folder_(std::move(folder)), target_(std::move(target)) {}
+
+  void write(const Directive& d);
+  std::string text() && { return std::move(text_); }
+
+ private:
+  void begin_line(std::size_t extra_indent);
+  void write_word(std::string_view word);
+  void write_numbers(const Directive& d, std::size_t count);
+  void write_parameter(const Directive& d, const Parameter& p);
+  std::string moved(const std::string& file) const;
+
+  std::filesystem::path folder_, target_;
+  std::string text_;
+  std::size_t indent_ = 0, line_start_ = 0;
+};
 
 }  // namespace lanthorn::pbrt

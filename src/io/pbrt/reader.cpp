@@ -5,9 +5,9 @@
 #include <utility>
 
 #include "io/pbrt/assembler.h"
+#include "io/pbrt/directive.h"
 #include "io/pbrt/parser.h"
 #include "io/pbrt/upgrade.h"
-#include "io/pbrt/writer.h"
 
 namespace lanthorn::pbrt {
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include "io/pbrt/version.h"
+#include "io/pbrt/context.h"
 
 #include <algorithm>
 #include <array>

@@ -6,18 +6,9 @@
 #include <utility>
 
 #include "render/looks.h"
+#include "render/state.h"
 
 namespace lanthorn {
-
-namespace {
-
-std::uint64_t count_of(const std::vector<PassRange>& passes) {
-  std::uint64_t count = 0;
-  for (const PassRange& range : passes) count += range.end - range.begin;
-  return count;
-}
-
-}  // namespace
 
 Deal::Deal(const StopRule& stop, const Team& team, std::vector<PassRange> done)
     : stop_(stop),
@@ -25,7 +16,7 @@ Deal::Deal(const StopRule& stop, const Team& team, std::vector<PassRange> done)
       preview_seconds_(team.preview_seconds),
       done_(std::move(done)),
       pass_(stop.passes.begin),
-      count_(count_of(done_)),
+      count_(pass_count(done_)),
       round_(team.rounds),
       settled_(team.rounds),
       preview_due_(preview_seconds_.value_or(0)) {

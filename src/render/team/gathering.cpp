@@ -13,7 +13,7 @@ namespace lanthorn {
 
 namespace {
 
-void add_packed(RenderState& sums, const PackedSums& more) { add_state(sums, read_state(more.bytes, more.name)); }
+void add_packed(RenderState& sums, const PackedSums& more) { merge_into(sums, read_state(more.bytes, more.name)); }
 
 }  // namespace
 

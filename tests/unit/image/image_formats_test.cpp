@@ -17,8 +17,8 @@
 #include <vector>
 
 #include "film/display.h"
-#include "image/image_encoder.h"
 #include "image/image_file.h"
+#include "image/own_formats.h"
 #include "lanthorn/error.h"
 #include "lanthorn/file.h"
 #include "lanthorn/image_file.h"

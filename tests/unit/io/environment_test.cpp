@@ -7,7 +7,7 @@
 #include <string>
 #include <variant>
 
-#include "io/own_environments.h"
+#include "io/environments.h"
 #include "lanthorn/error.h"
 #include "lanthorn/ibl.h"
 #include "lanthorn/image_file.h"

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "io/obj/polygon.h"
+#include "io/obj/faces.h"
 #include "io/obj/reader.h"
 #include "lanthorn/image_file.h"
 #include "lanthorn/scene.h"

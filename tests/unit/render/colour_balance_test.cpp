@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include "render/colour_balance.h"
+#include "render/picture.h"
 
 #include <gtest/gtest.h>
 

@@ -14,7 +14,7 @@
 #include "base/parallel.h"
 #include "film/film_pass.h"
 #include "lanthorn/threads.h"
-#include "render/render.h"
+#include "render/plan.h"
 #include "support/render_scene.h"
 
 namespace lanthorn::pass_batch_test {

@@ -14,7 +14,7 @@
 #include "lanthorn/threads.h"
 #include "path/eye_pass.h"
 #include "render/picture.h"
-#include "render/render.h"
+#include "render/plan.h"
 #include "support/render_scene.h"
 
 namespace lanthorn::stand_in_test {

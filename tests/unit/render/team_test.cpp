@@ -408,7 +408,7 @@ TEST(Gathering, AddsTheSumsOfAllThatHaveSome) {
     session.render({.passes = {i, i + 1}});
     states.push_back(session.state());
     if (i == 0) all = session.state();
-    if (i > 0) add_state(all, session.state());
+    if (i > 0) merge_into(all, session.state());
   }
   const auto without_times = [](const RenderState& state) { return encode_state(state, {.times = false}); };
   for (const bool own_first : {true, false})
@@ -421,8 +421,8 @@ TEST(Gathering, AddsTheSumsOfAllThatHaveSome) {
         gathering.add_child(5, {has_second ? encode_state(states[2]) : Bytes(), "the sums of process 2"});
         if (!own_first) add_own();
         RenderState expected = states[1];
-        if (has_own) add_state(expected, states[0]);
-        if (has_second) add_state(expected, states[2]);
+        if (has_own) merge_into(expected, states[0]);
+        if (has_second) merge_into(expected, states[2]);
         auto complete = gathering.take_complete();
         ASSERT_TRUE(complete);
         auto bytes = *complete;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Reflection of a white environment by GGX with Schlick's Fresnel term, as ibl/brdf_table.cpp: scale of F0 and bias.
+// Reflection of a white environment by GGX with Schlick's Fresnel term, as ibl/split_sum.cpp: scale of F0 and bias.
 #include "constants.glsl"
 #include "layouts.glsl"
 #include "splitsum_constants.glsl"

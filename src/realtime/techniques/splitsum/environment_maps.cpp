@@ -6,7 +6,7 @@
 
 #include "gl/buffer.h"
 #include "ibl/bake_plan.h"
-#include "ibl/brdf_table.h"
+#include "ibl/split_sum.h"
 #include "ibl/prefilter.h"
 #include "realtime/scene/layouts.h"
 

@@ -1,11 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Writes image files without the libraries that read them, which take longer to load than small pictures to render.
+// Writes image files, and reads Radiance pictures (.hdr), the most common environments, without the libraries that read
+// all other kinds, which take longer to load than such a picture, or than a small picture takes to render.
 #pragma once
 
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "image/image_codec.h"
@@ -24,5 +26,9 @@ struct PngText {
 /// A PNG file of `width` columns of 8-bit sRGB colours, rows from the top.
 std::vector<unsigned char> encode_png_colors(int width, std::span<const std::uint8_t> colors,
                                              const std::vector<PngText>& texts);
+
+/// Reads the header of a Radiance picture; `OpenImage::read` provides only float32. `bytes` must outlive the result.
+/// Throws std::runtime_error that states the reason, here or when pixels are read.
+OpenImage open_radiance_picture(std::string_view bytes);
 
 }  // namespace lanthorn

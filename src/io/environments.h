@@ -1,15 +1,28 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Built-in environments, whose radiance is given by formulas instead of files.
+// Environments by formulas instead of files, and `replace_environment` (lanthorn/scene.h), implemented so that several
+// scenes can share a picture.
 #pragma once
 
+#include <cstdint>
+#include <memory>
 #include <optional>
 #include <string_view>
 
 #include "lanthorn/image.h"
+#include "lanthorn/scene_description.h"
 #include "math/vec.h"
 
 namespace lanthorn {
+
+struct EnvironmentPicture {
+  std::shared_ptr<const description::SphericalTexels> texels;
+  std::optional<description::File> file;  ///< source of the picture, if it is a file
+};
+/// Throws Error if the file cannot be read, or has an unsupported shape or too many pixels.
+EnvironmentPicture read_environment_picture(const EnvironmentChoice& choice, std::uint64_t max_pixels);
+/// `choice` has a source, and `picture` was read from it.
+void replace_environment(SceneDescription& scene, const EnvironmentChoice& choice, const EnvironmentPicture& picture);
 
 /// Radiance of three soft lights (key, fill and rim light) in a grey room. x points towards the camera, y to the right
 /// of the picture, z up. A white wall that faces the camera has about radiance 1.

@@ -1,10 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include "render/pass_undo.h"
+#include "render/abandoned_pass.h"
 
+#include <algorithm>
 #include <chrono>
 #include <limits>
 #include <new>
+#include <system_error>
 #include <utility>
 
 #include "base/memory.h"
@@ -27,6 +29,33 @@ void clear(Film& film) {
 }
 
 }  // namespace
+
+Deadline::Deadline(const std::atomic<bool>* drop, std::optional<Clock::time_point> time) : drop_(drop) {
+  if (!time) return;
+  try {
+    thread_ = std::thread([this, at = *time] { watch(at); });
+  } catch (const std::system_error&) {  // the limit of threads: see `flag`
+  }
+}
+
+Deadline::~Deadline() {
+  if (!thread_.joinable()) return;
+  {
+    const std::lock_guard lock(mutex_);
+    ends_ = true;
+  }
+  ending_.notify_all();
+  thread_.join();
+}
+
+// A signal handler may set `drop_`, so this thread must look at it now and then.
+void Deadline::watch(Clock::time_point time) {
+  constexpr std::chrono::milliseconds interval{10};
+  std::unique_lock lock(mutex_);
+  while (!ends_ && !(drop_ && drop_->load()) && Clock::now() < time)
+    ending_.wait_until(lock, drop_ ? std::min(time, Clock::now() + interval) : time);
+  is_set_ = !ends_;
+}
 
 bool PassUndo::begin(const RenderState& state, std::optional<double> pass_seconds) {
   // Before the first pass no copy is needed: an empty film can be made again.

@@ -1,17 +1,36 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The KTX File Format Specification, version 2.0 [K2], and the Khronos Data Format Specification, version 1.3 [DF].
+// KTX2: the KTX File Format Specification, version 2.0 [K2], and the Khronos Data Format Specification, version 1.3
+// [DF]. DDS: Microsoft's "Programming Guide for DDS" with the header extension of DirectX 10.
 #include <cassert>
 #include <cstdint>
 #include <string>
 #include <vector>
 
-#include "io/texels.h"
+#include "base/bytes.h"
 #include "lanthorn/ibl.h"
+#include "lanthorn/image.h"
+#include "math/packed_float.h"
 
 namespace lanthorn {
 
 namespace {
+
+// Appends the texels of a rectangle with channels R, G, B; half floats get an alpha of 1.
+void append_texels(std::string& out, const Image& image, int left, int width, TexelFormat format) {
+  for (int y = 0; y < image.height; ++y)
+    for (int x = left; x < left + width; ++x) {
+      const float* const p = image.pixels.data() + image.index(x, y);
+      if (format == TexelFormat::rgb9e5) {
+        append_number(out, encode_rgb9e5(p[0], p[1], p[2]));
+        continue;
+      }
+      for (int c = 0; c < 3; ++c) append_number(out, encode_finite_half(p[c]));
+      append_number(out, encode_finite_half(1));
+    }
+}
+
+std::uint32_t bytes_per_texel(TexelFormat format) { return format == TexelFormat::half ? 8 : 4; }
 
 constexpr std::string_view identifier = "\xABKTX 20\xBB\r\n\x1A\n";
 constexpr std::uint32_t vk_r16g16b16a16_sfloat = 97, vk_e5b9g9r9_ufloat_pack32 = 123;
@@ -90,6 +109,14 @@ std::string encode_level(const Texture& texture, const Image& level) {
   return out;
 }
 
+constexpr std::uint32_t flags_caps = 0x1, flags_height = 0x2, flags_width = 0x4, flags_pitch = 0x8,
+                        flags_pixel_format = 0x1000, flags_mip_count = 0x20000;
+constexpr std::uint32_t caps_complex = 0x8, caps_texture = 0x1000, caps_mip = 0x400000;
+constexpr std::uint32_t caps2_cube_with_all_faces = 0xFE00;
+constexpr std::uint32_t pixel_format_four_cc = 0x4, four_cc_dx10 = 0x30315844;
+constexpr std::uint32_t dxgi_r16g16b16a16_float = 10, dxgi_r9g9b9e5_sharedexp = 67;
+constexpr std::uint32_t dimension_texture_2d = 3, misc_cube = 4;
+
 }  // namespace
 
 std::string encode_ktx2(const Texture& texture, const std::map<std::string, std::string>& key_values) {
@@ -122,6 +149,34 @@ std::string encode_ktx2(const Texture& texture, const std::map<std::string, std:
   for (std::size_t i = 0; i < level_count; ++i)
     for (const std::uint64_t field : {offsets[i], sizes[i], sizes[i]}) append_number(header, field);
   return data.replace(0, header_size, header);
+}
+
+std::string encode_dds(const Texture& texture) {
+  assert(!texture.levels.empty());
+  const auto height = static_cast<std::uint32_t>(texture.levels.front()->height);
+  const std::uint32_t faces = texture.cube ? 6 : 1;
+  const std::uint32_t width = static_cast<std::uint32_t>(texture.levels.front()->width) / faces;
+  const auto levels = static_cast<std::uint32_t>(texture.levels.size());
+  const bool mips = levels > 1, half = texture.format == TexelFormat::half;
+  std::string out = "DDS ";
+  const auto append = [&](std::initializer_list<std::uint32_t> fields) {
+    for (const std::uint32_t field : fields) append_number(out, field);
+  };
+  append({124,
+          flags_caps | flags_height | flags_width | flags_pitch | flags_pixel_format | (mips ? flags_mip_count : 0),
+          height, width, width * bytes_per_texel(texture.format), 0, levels});
+  for (int i = 0; i < 11; ++i) append({0});  // reserved
+  append({32, pixel_format_four_cc, four_cc_dx10, 0, 0, 0, 0, 0});
+  append({caps_texture | (mips ? caps_mip : 0) | (mips || texture.cube ? caps_complex : 0),
+          texture.cube ? caps2_cube_with_all_faces : 0, 0, 0, 0});
+  append({half ? dxgi_r16g16b16a16_float : dxgi_r9g9b9e5_sharedexp, dimension_texture_2d, texture.cube ? misc_cube : 0,
+          1, 0});
+  for (std::uint32_t face = 0; face < faces; ++face)
+    for (const Image* level : texture.levels) {
+      const int size = level->width / static_cast<int>(faces);
+      append_texels(out, *level, static_cast<int>(face) * size, size, texture.format);
+    }
+  return out;
 }
 
 }  // namespace lanthorn

@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Computes smooth normals for faces without normals.
+// The geometry of faces: triangles, and smooth normals for faces without normals.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -10,6 +11,7 @@
 #include <vector>
 
 #include "lanthorn/vec.h"
+#include "math/vec.h"
 
 namespace lanthorn::obj {
 
@@ -40,5 +42,14 @@ struct BareFace {
 /// Facets").
 void add_smooth_normals(const std::vector<Point>& positions, std::span<const BareFace> faces,
                         std::vector<Corner>& corners, std::vector<Normal>& normals);
+
+/// Newell's area vector of a polygon: its length is the area in m²; seen from its tip, the corners run
+/// counter-clockwise.
+glm::dvec3 area_vector(const std::vector<Point>& corners);
+
+/// Triangulates a simple polygon by ear clipping (Meisters 1975) in the plane of its area vector, preserving its
+/// winding; returns indices into `corners`. Polygons that intersect themselves or have more than 1000 corners become
+/// triangle fans, and so do polygons that would exceed `tests_left`, which is reduced by the number of corners tested.
+std::vector<std::array<std::uint32_t, 3>> triangulate(const std::vector<Point>& corners, std::uint64_t& tests_left);
 
 }  // namespace lanthorn::obj
