@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <string_view>
 #include <vector>
 
 namespace lanthorn {
@@ -56,6 +57,20 @@ std::size_t append_first(std::string& result, std::string_view text) {
   const std::size_t bytes = c.bytes > 0 ? c.bytes : 1;
   for (const char byte : text.substr(0, bytes)) result += fmt::format("\\x{:02x}", static_cast<unsigned char>(byte));
   return bytes;
+}
+
+// $'...' with everything except printable ASCII as octal escapes.
+std::string escaped_word(const std::string& text) {
+  std::string word = "$'";
+  for (const char c : text) {
+    if (c == '\'' || c == '\\')
+      word += {'\\', c};
+    else if (c >= ' ' && c <= '~')
+      word += c;
+    else
+      word += fmt::format("\\{:03o}", static_cast<unsigned char>(c));
+  }
+  return word + "'";
 }
 
 }  // namespace
@@ -163,6 +178,15 @@ std::string did_you_mean(std::string_view word, std::span<const std::string> kno
 std::string short_number(double number) {
   const double size = std::fabs(number);
   return size >= 99.5 && size < 1e6 ? fmt::format("{:.0f}", number) : fmt::format("{:.2g}", number);
+}
+
+std::string shell_word(const std::string& text) {
+  constexpr std::string_view plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._-+=,:/@%";
+  if (!text.empty() && text.find_first_not_of(plain) == std::string::npos) return text;
+  if (printable(text) != text) return escaped_word(text);
+  std::string word = "'";
+  for (const char c : text) word += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return word + "'";
 }
 
 }  // namespace lanthorn

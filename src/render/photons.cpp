@@ -26,7 +26,6 @@
 #include "render/plan.h"
 #include "scene/medium_around.h"
 #include "scene/scene.h"
-#include "scene/scene.h"
 #include "spectrum/curve.h"
 
 namespace lanthorn {

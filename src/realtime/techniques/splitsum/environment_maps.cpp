@@ -6,8 +6,8 @@
 
 #include "gl/buffer.h"
 #include "ibl/bake_plan.h"
-#include "ibl/split_sum.h"
 #include "ibl/prefilter.h"
+#include "ibl/split_sum.h"
 #include "realtime/scene/layouts.h"
 
 namespace lanthorn {
