@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-
 #include <memory>
 #include <string>
 

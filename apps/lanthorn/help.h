@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// How --help presents a command: its options in groups, the common ones first, in lines of 80 columns. Man pages and
-// bash completion follow from the same options, which the option tables (options.h) have registered with CLI11.
+// How --help presents a command: its options in groups, the common ones first, in lines of 80 columns. Also makes
+// man pages and bash completion of these options, which the option tables (options.h) have registered with CLI11.
 #pragma once
 
 #include <string>

@@ -126,6 +126,7 @@ nlohmann::json machine_json(const MachineInfo& m) {
           {"libraries", libraries}};
 }
 
+// Prints the machine's hardware and the resources that this process may use, for `info --machine`.
 void show_machine(bool as_json) {
   const MachineInfo machine = machine_info();
   if (as_json)

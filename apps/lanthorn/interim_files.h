@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Files that a render writes while it runs: previews of the pictures, and checkpoints, which are states, in case the
-// machine stops.
+// Files that a render writes while it runs: previews of its pictures, and checkpoints: states from which it goes on if
+// the machine stops.
 #pragma once
 
 #include <filesystem>

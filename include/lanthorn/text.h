@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 // Text in messages: suggestions for misspelt names, durations, numbers, quotations from files. Whatever bytes a file
-// holds, a message stays on one line, has no effect on a terminal, and shows at most one token of the file.
+// holds, a message stays on one line, has no effect on a terminal, and shows at most one token of the file. Also quotes
+// words for a shell.
 #pragma once
 
 #include <optional>

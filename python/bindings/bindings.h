@@ -20,7 +20,7 @@ namespace lanthorn::python {
 
 namespace py = pybind11;
 
-/// What `work` returns, done without the GIL.
+/// Calls `work` without the GIL and returns its result.
 template <class Work>
 auto without_gil(const Work& work) {
   const py::gil_scoped_release release;
@@ -39,8 +39,8 @@ struct Picture {
   std::optional<ErrorEstimate> error{};
   bool measures_exposure = false, display_emission = false;
 };
-/// The picture of light alone, without its noise.
-Picture denoised(const Picture& picture);
+/// The picture with its layers of light denoised, and without the layers that denoising needs.
+Picture denoised(Picture picture);
 Picture picture_of_state(const RenderState& state, bool with_noise_layers);
 
 /// The options of a render from keyword arguments: members of RenderOptions by their names; all other keywords are

@@ -23,12 +23,11 @@ Picture picture_of_state(const RenderState& state, bool with_noise_layers) {
   return picture;
 }
 
-Picture denoised(const Picture& picture) {
-  DenoisedPicture clean = denoise(picture.image);
-  Picture result = picture;
-  result.image = with_denoised_light(clean.picture);
-  result.error = clean.error;
-  return result;
+Picture denoised(Picture picture) {
+  const DenoisedPicture clean = denoise(picture.image);
+  picture.image = with_denoised_light(clean.picture);
+  picture.error = clean.error;
+  return picture;
 }
 
 namespace {

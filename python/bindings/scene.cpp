@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Scenes: loading from files and Python data, as plain data, and editing.
+// Scenes: loading from files and Python data, conversion to plain data, and editing.
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 

@@ -7,7 +7,7 @@
 #include "base/threads.h"
 #include "image/image_codec.h"
 #include "lanthorn/version.h"
-#include "scene/embree.h"
+#include "scene/scene.h"
 
 namespace lanthorn {
 
@@ -17,7 +17,7 @@ MachineInfo machine_info() {
   machine.default_threads = usable_threads();
   machine.memory_available = available_memory();
   machine.libraries = {{"Lanthorn", version},
-                       {"Embree", embree::version()},
+                       {"Embree", version_of_embree()},
                        {"oneTBB", version_of_tbb()},
                        {"OpenImageIO", image_codec().version()}};
   return machine;

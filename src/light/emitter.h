@@ -140,8 +140,9 @@ struct DiskEmitter {
   bool is_whole() const { return inner_radius == 0 && phi_max > 2 * pi * (1 - 1e-6f); }
 };
 
-/// Requirements on a light's shape. To add a shape: declare it above, and add its name to `EmitterShape`. It may
-/// also have `sample_towards` and `pdf_towards` like the functions below; otherwise points are sampled by area.
+/// Requirements on a light's shape. To add a shape: declare it above, define it in the source of its family, and
+/// add its name to `EmitterShape`. It may also have `sample_towards` and `pdf_towards` like the functions below;
+/// otherwise points are sampled by area.
 template <class Shape>
 concept Emitter = requires(const Shape& shape, const Vec2& u) {
   { shape.area } -> std::convertible_to<float>;  // world space, m²

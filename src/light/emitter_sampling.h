@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Common parts of the emitters' samplers.
+// Common parts of the emitters: surfaces under affine maps, and samplers.
 #pragma once
 
 #include <algorithm>

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "light/emitter.h"
 #include "light/emitter_sampling.h"

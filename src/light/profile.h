@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 // Profiles: how the light of a point or of a far light depends on its direction. A light is a place (`PointLight`,
-// `FarLight`) with a profile; to add one, write the profile's file and name the light in light.h.
+// `FarLight`) with a profile; to add one, write the profile here, or in a file if it has data of its own, and
+// name the light in light.h. Also maps of directions.
 #pragma once
 
 #include <cmath>

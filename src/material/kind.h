@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Included only by the files of the material kinds. For each kind they define
+// Included only by the files of materials, which define for each kind X
 //
 //   static ClosureAt closure_of(const description::XMaterial& m, MaterialCompiler& c) { ... }
 //   template ClosureAt compile(const description::XMaterial& m, MaterialCompiler& c);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 // A material in a scene: its parameters give a closure at each point of a surface. Each family of materials has a file
-// in this folder; for each kind, it compiles the parameters of description::XMaterial.
+// in this folder, with one function for each kind X, which compiles the parameters of description::XMaterial.
 #pragma once
 
 #include <functional>
@@ -21,7 +21,7 @@ using ClosureAt = std::function<Bsdf(const TexturePoint& at, const Wavelengths& 
 
 /// Compiles the parameters of a material, records its traits in the compiler, and returns its closure, which keeps
 /// pointers to the scene's textures. Throws Error for invalid parameters. The file of a family instantiates this
-/// function for each of its kinds (see kind.h); a kind without it is a linker error.
+/// function for each of its kinds (see kind.h); a kind for which none does is a linker error.
 template <class Parameters>
 ClosureAt compile(const Parameters& parameters, MaterialCompiler& compiler);
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Warps from [0,1)^2 to the sampled domains, each with its pdf.
+// Warps from [0,1)^2 to the sampled domains, each with its pdf, and the power heuristic.
 #pragma once
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 // Direct light by two techniques, next-event estimation and the walk's own hits of emitters, combined by multiple
-// importance sampling (Veach 1997, chapter 9).
+// importance sampling (Veach 1997, chapter 9). `RayLight` adds samples along rays in media.
 #pragma once
 
 #include <cstdint>
@@ -128,7 +128,7 @@ Spectrum hit_lights(const PathContext& path, const Vertex& vertex) {
   return sum;
 }
 
-/// Direct light of point-like lights along the rays that eye paths send through media. Next-event estimation from the
+/// Light of point-like lights that scatters once, on the rays that eye paths send through media. Next-event estimation from the
 /// points where a walk scatters rarely finds a narrow beam in thin fog, and hardly ever the light close to a source.
 /// The light of point-like lights is therefore also sampled along the whole ray, as if each point of it scattered
 /// (`RayLights`). The balance heuristic combines both techniques, in the measure of light and distance.

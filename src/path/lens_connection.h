@@ -3,6 +3,8 @@
 // Connections of light vertices to the camera's lens, and the light that light paths add to the film.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <optional>
 
 #include "camera/view.h"

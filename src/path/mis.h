@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 // The algebra of multiple importance sampling weights (Veach 1997, chapter 9): plain numbers in, a weight out. All of
-// it is here; other files supply the densities.
+// it but the power heuristic is here; other files supply the densities.
 //
 // - Two techniques, a light sample and the walk's hit: `power_heuristic` (math/sampling.h).
 // - Several sets of samples that are summed, whichever set a sample is from: `over_balanced`.

@@ -12,7 +12,7 @@
 
 namespace lanthorn {
 
-/// A sum to which several threads add.
+/// Ray counts to which several threads add.
 class SharedRayCounts {
  public:
   void add(const RayCounts& counts) {

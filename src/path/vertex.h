@@ -21,7 +21,8 @@ namespace lanthorn {
 class DirectionGuide;
 
 /// Path guiding at a vertex: the walk draws its next direction from the guide with probability `share`, otherwise from
-/// the closure. This is defensive sampling: the closure's part of the mixture covers directions that the guide misses.
+/// the closure. This is defensive sampling: the closure's part of the mixture covers directions that the guide misses
+/// (direction_guide.cpp).
 struct Guidance {
   const DirectionGuide* guide = nullptr;  ///< null if share is 0
   float share = 0;                        ///< in [0,1)

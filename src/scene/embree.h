@@ -9,21 +9,10 @@
 #include <cstddef>
 #include <cstring>
 #include <limits>
-#include <string>
 
-#include "lanthorn/error.h"
 #include "math/vec.h"
 
 namespace lanthorn::embree {
-
-/// Version of the loaded Embree, such as "3.13.5". Throws Error if it cannot be started.
-inline std::string version() {
-  const RTCDevice device = rtcNewDevice(nullptr);
-  if (device == nullptr) throw Error("Embree cannot be started on this machine");
-  const auto number = rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_VERSION);
-  rtcReleaseDevice(device);
-  return std::to_string(number / 10000) + '.' + std::to_string(number / 100 % 100) + '.' + std::to_string(number % 100);
-}
 
 inline void intersect(RTCScene scene, RTCRayHit& hit) {
   RTCIntersectContext context;

@@ -564,4 +564,12 @@ const std::vector<std::vector<std::unique_ptr<ShapeStore>>>& Geometry::groups() 
 const Bounds& Geometry::group_bounds(std::uint32_t group) const { return shapes_->group_bounds[group]; }
 const PlacedGroup& Geometry::placed_group(std::size_t placement) const { return top_level_->placed[placement]; }
 
+std::string version_of_embree() {
+  const RTCDevice device = rtcNewDevice(nullptr);
+  if (device == nullptr) throw Error("Embree cannot be started on this machine");
+  const auto number = rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_VERSION);
+  rtcReleaseDevice(device);
+  return std::to_string(number / 10000) + '.' + std::to_string(number / 100 % 100) + '.' + std::to_string(number % 100);
+}
+
 }  // namespace lanthorn

@@ -53,15 +53,14 @@ struct EmittingShape {
   std::uint32_t first_light = 0;  ///< its lights have consecutive indices
 };
 
-/// The number of the shape's lights.
+/// The number of the shape's lights (area_lights.cpp).
 std::size_t light_count(const ShapeStore& shape);
 
 /// The lights of the shape: one per triangle, patch or quadric, in the order of its primitives (the two halves of a
 /// patch share one). `radiance`: the light's radiance, compiled in `textures`, with its images loaded. All of them
 /// together emit the power `light.power`, if given, whatever the number of primitives; textures and alpha are taken
 /// into account as sampled at some points. An alpha of 0 everywhere makes lights that no ray can hit. If textures are
-/// involved
-/// (`varies`), `emitter.shape` must outlive the lights.
+/// involved (`varies`), `emitter.shape` must outlive the lights (area_lights.cpp).
 std::vector<Light> make_area_lights(const EmittingShape& emitter, const description::AreaLight& light,
                                     const TextureGraph& textures, const SpectrumInput& radiance, LightStore& store);
 

@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
+// Turns described media into Medium values.
+#include "scene/scene_data.h"
 
 #include <fmt/format.h>
 
@@ -10,7 +12,6 @@
 #include <utility>
 
 #include "light/brightness.h"
-#include "scene/scene_data.h"
 
 namespace lanthorn {
 
@@ -166,6 +167,12 @@ struct Maker {
   }
 };
 
+int scatterings_until_dark(float albedo) {
+  constexpr double least = 64, most = 4096, rest = 1e-3;
+  const auto a = static_cast<double>(albedo);
+  return static_cast<int>(std::clamp(a < 1 ? std::ceil(std::log(rest) / std::log(a)) : most, least, most));
+}
+
 }  // namespace
 
 std::vector<Medium> make_media(const SceneDescription& description, SpectrumStore& spectra) {
@@ -175,6 +182,19 @@ std::vector<Medium> make_media(const SceneDescription& description, SpectrumStor
   for (const description::Medium& m : description.media)
     media.push_back(std::visit(Maker{m, description.access, spectra, description.color_space}, m.density));
   return media;
+}
+
+void find_media_under_surfaces(SceneData& data) {
+  float albedo = 0;
+  for (const description::Material& material : std::as_const(data.description).materials) {
+    if (!material.interior) continue;
+    if (*material.interior >= data.media->all.size())
+      throw Error(material.location, "the medium inside the material does not exist");
+    data.is_under_surface.resize(data.media->all.size());
+    data.is_under_surface[*material.interior] = true;
+    albedo = std::max(albedo, largest_albedo(data.media->all[*material.interior]));
+  }
+  data.most_under_surface = data.is_under_surface.empty() ? 0 : scatterings_until_dark(albedo);
 }
 
 }  // namespace lanthorn

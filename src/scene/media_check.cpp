@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
+#include "scene/medium_around.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +8,6 @@
 #include <utility>
 
 #include "math/hash.h"
-#include "scene/medium_around.h"
 
 namespace lanthorn {
 

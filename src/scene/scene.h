@@ -6,10 +6,10 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
-#include "lanthorn/rays.h"
 #include "lanthorn/scene_description.h"
 #include "light/light.h"
 #include "light/light_sampler.h"
@@ -40,6 +40,7 @@ struct Obstacle {
 };
 
 struct SceneData;
+struct SceneRay;
 
 /// An immutable scene: geometry in Embree, materials, textures, media, lights. Safe to share between threads. The
 /// camera is in a View.
@@ -127,7 +128,7 @@ class Scene {
 /// `index`, unless all its numbers are finite and its direction is not 0.
 Ray ray_in_scene(const Scene& scene, const SceneRay& ray, std::size_t index);
 
-/// True if the medium is the interior of a material, such as skin or wax: subsurface scattering.
+/// True if the medium is the interior of a material, such as skin or wax (subsurface scattering).
 bool is_under_surface(const Scene& scene, MediumId medium);
 
 /// Largest number of vertices under surfaces that a walk may have; 0 if no medium is under a surface.
@@ -136,5 +137,8 @@ int most_under_surface(const Scene& scene);
 /// Number of scatterings after which a thousandth of the light is left in a medium of this albedo. At least 64; at most
 /// 4096, for media that absorb nothing.
 int scatterings_until_dark(float albedo);
+
+/// Version of the loaded Embree, such as "3.13.5" (geometry.cpp). Throws Error if it cannot be started.
+std::string version_of_embree();
 
 }  // namespace lanthorn

@@ -94,7 +94,7 @@ struct SceneData {
   std::shared_ptr<const LightPart> lights;
   BoundingSphere sphere;
   bool has_measured_spectra = false, has_dispersion = false, has_emissive = false;
-  std::vector<bool> is_under_surface;  ///< by medium; empty if none is (`is_under_surface`)
+  std::vector<bool> is_under_surface;  ///< by medium; empty if none is (`find_media_under_surfaces`)
   int most_under_surface = 0;
   SceneStatistics statistics;
 };
@@ -121,7 +121,7 @@ void check_power(const Light& light, const SourceLocation& location);
 void check_radiance(float radiance, const SourceLocation& location);
 /// All media of the scene, in the description's order (media.cpp). Throws Error if there are more media than ids.
 std::vector<Medium> make_media(const SceneDescription& description, SpectrumStore& spectra);
-/// Sets the parts of `data` that say which media are under surfaces. Needs its media.
+/// Sets the parts of `data` that say which media are under surfaces (media.cpp). Needs its media.
 void find_media_under_surfaces(SceneData& data);
 /// See `Scene::obstacles` (obstacles.cpp). Interfaces of media are not obstacles, nor are matte shapes that emit: they
 /// do not block their own light.

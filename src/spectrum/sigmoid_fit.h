@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
+// Smooth spectra of RGB colours: their fit, and the table of fits that is made at build time.
 #pragma once
 
 #include <array>
@@ -41,7 +42,7 @@ class SigmoidFit {
 /// The same curve as a quadratic in the wavelength in nm.
 std::array<float, 3> in_nanometres(const UnitSigmoid& a);
 
-/// Nodes per axis. Odd, so that a largest component of 1/2 (every light, every unbounded colour) is a node itself.
+/// Nodes of the table along each axis. Odd, so that a largest component of 1/2 (every light, every unbounded colour) is a node itself.
 inline constexpr std::size_t sigmoid_nodes = 33;
 
 using SigmoidNode = std::array<float, 3>;

@@ -13,6 +13,7 @@
 
 namespace lanthorn {
 
+/// Names of the layers of light in a picture, in the order of `Accumulation`'s.
 inline constexpr std::array light_layer_names{"emission", "direct", "indirect", "caustic"};
 
 /// Settings of a picture for a screen.

@@ -14,7 +14,7 @@ LookAt look_of(const CameraPose& camera, const DVec3& origin) {
   return {origin + DVec3(eye_of(camera)), origin + DVec3(pivot_of(camera)), camera_up_of(camera)};
 }
 
-using Parameters = std::map<std::string, std::string>;
+using ParameterTexts = std::map<std::string, std::string>;
 
 // A value in the form that `render` takes, without insignificant digits.
 std::string text_of(const TechniqueParameter& parameter, const std::string& value) {
@@ -26,8 +26,8 @@ std::string text_of(const TechniqueParameter& parameter, const std::string& valu
 }
 
 // The parameters that differ from the technique's defaults in `render`.
-Parameters technique_parameters(const TechniqueDescription& technique, const RealtimeSettings& settings) {
-  Parameters set;
+ParameterTexts technique_parameters(const TechniqueDescription& technique, const RealtimeSettings& settings) {
+  ParameterTexts set;
   for (const TechniqueParameter& p : all_parameters(technique)) {
     const auto found = settings.values.find(p.info.name);
     const std::string value = text_of(p, found == settings.values.end() ? p.default_in_viewer() : found->second);

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Frames of a camera at rest: each with its own random numbers, so that their mean gets smoother.
+// Frames by OpenGL, and their times. Those of a camera at rest each have their own random numbers, so that their mean
+// gets smoother.
 #pragma once
 
 #include <chrono>
@@ -70,6 +71,7 @@ class MovingResolution {
   double share_ = 1;
 };
 
+/// For times of frames and of pauses.
 using ViewerClock = std::chrono::steady_clock;
 
 inline double seconds_since(ViewerClock::time_point start) {

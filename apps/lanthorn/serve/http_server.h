@@ -93,6 +93,8 @@ class Reception {
   std::jthread thread_;
 };
 
+// The server, which answers them.
+
 /// True if the client has disconnected or the server stops: a handler that waits should return.
 using IsGone = std::function<bool()>;
 /// Answers a request; many threads may call it at a time. An exception becomes an answer with status 500, or 503 if

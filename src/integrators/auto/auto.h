@@ -14,11 +14,10 @@ struct EffortChoice {
   Effort effort;
   EffortReport report;
 };
-/// The effort with the least product of variance and work: a function of the job alone.
+/// The effort with the least product of variance and work, as measured: a function of the job alone (choice.cpp).
 EffortChoice choose_effort(const RenderJob& job, const EffortMeasurement& measured);
 
-/// The effort with the least product of variance and work, which a pilot finds (see `EffortPlanner`): a function of the
-/// job alone.
+/// Lets a pilot measure (`EffortPlanner`), and puts the effort that `choose_effort` then chooses into `prepared`.
 void plan_effort(const RenderJob& job, const VcmSettings& settings, VcmPreparation& prepared);
 
 }  // namespace lanthorn

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -18,7 +19,7 @@
 
 namespace lanthorn {
 
-/// The random numbers of a path's two subpaths.
+/// The random numbers of a path's two subpaths (path_samples.cpp).
 struct PathSamples {
   PrimarySamples eye, light;
 
@@ -31,7 +32,7 @@ struct PathSamples {
 };
 
 /// Distribution of the number of scatterings, at least 1, of independently drawn paths of fixed length. In most scenes,
-/// most light scatters a few times only. The probabilities affect noise alone.
+/// most light scatters a few times only. The probabilities affect noise alone (path_samples.cpp).
 class PathLengths {
  public:
   PathLengths() = default;

@@ -23,10 +23,8 @@ GatherCacheSettings gather_cache_settings(const Parameters& parameters);
 /// records are added in pixel order. The records do not depend on the number of threads.
 void fill_gather_caches(const RenderJob& job, const TwoPassSettings& settings, std::uint32_t pass, TwoPassMaps& maps);
 
-// A record of the caches: the point where a pixel's eye path looks up irradiance, and the gather rays from there
-// (gather_record.cpp).
-
-/// State shared by all pixels of a pass.
+/// What all pixels of a pass share when they make records: a record is the point where a pixel's eye path looks up
+/// irradiance, and what the gather rays from there have found (gather_record.cpp).
 struct GatherFill {
   const RenderJob& job;
   const TwoPassSettings& settings;

@@ -47,6 +47,24 @@ InfluencePhotons InfluencePhotons::of(const PhotonMap<BucketKdTree>& map, std::s
 
 namespace {
 
+float nearest_radius(const PhotonMap<BucketKdTree>& map, const Point& p, const EstimateSettings& settings) {
+  // One more, because the query finds the photon itself.
+  std::array<Neighbour, EstimateSettings::most_nearest + 1> memory;
+  const std::size_t wanted = std::min(settings.nearest, EstimateSettings::most_nearest) + 1;
+  const std::span<const Neighbour> found = map.nearest(p, settings.radius, std::span(memory).first(wanted));
+  return found.size() == wanted ? std::sqrt(found.front().dist2) : settings.radius;
+}
+
+// Radius from a leaf. For n photons distributed evenly on a square of diagonal d, a disc with k of them has
+// π r² = k/n · d²/2. The bounding box of n points is smaller than the square: of n+1 gaps along each side it spans
+// n-1.
+float leaf_radius(const Bounds& bounds, std::size_t count, const EstimateSettings& settings) {
+  if (count < 2) return settings.radius;
+  const auto n = static_cast<float>(count);
+  const float diagonal2 = length_squared(bounds.extent()) * sqr((n + 1) / (n - 1));
+  return std::sqrt(static_cast<float>(settings.nearest) / n * diagonal2 / 2 * inv_pi);
+}
+
 const Point& position_of(const DiffuseReversePhoton& r) { return r.position; }
 const Point& position_of(const ReversePhoton& r) { return r.at.position; }
 
@@ -187,6 +205,30 @@ void distribute_to_others(const InfluencePhotons& photons, const Kernel& kernel,
 }
 
 }  // namespace
+
+std::vector<float> photon_radii(const PhotonMap<BucketKdTree>& map, const EstimateSettings& settings, RadiusRule rule) {
+  std::vector<float> radii(map.size(), settings.kernel.support(settings.radius));
+  if (settings.nearest == 0) return radii;
+  // A lower bound for coincident photons, whose radius would be 0.
+  const auto bounded = [&](float r) { return std::clamp(r, 1e-3f * settings.radius, settings.radius); };
+  const BucketKdTree& tree = map.index();
+  if (rule == RadiusRule::leaf) {
+    tree.for_each_leaf([&](SlotRange range) {
+      Bounds bounds;
+      for (std::uint32_t slot = range.begin; slot < range.end; ++slot) bounds.extend(tree.position(slot));
+      const float radius = leaf_radius(bounds, range.end - range.begin, settings);
+      std::fill(radii.begin() + range.begin, radii.begin() + range.end, bounded(radius));
+    });
+    return radii;
+  }
+  constexpr std::size_t chunk = 1024;
+  parallel_chunks(radii.size(), chunk, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t slot = begin; slot < end; ++slot)
+      radii[slot] =
+          bounded(nearest_radius(map, tree.position(static_cast<std::uint32_t>(slot)), settings));
+  });
+  return radii;
+}
 
 void distribute(const InfluencePhotons& photons, const Kernel& kernel, const Wavelengths& w,
                 std::span<ReversePhotons> pixels) {

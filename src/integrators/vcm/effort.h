@@ -47,7 +47,8 @@ class Effort {
     };
     const Vec2 at = raster - window_.corner();
     const int row = index(at.y, window_.height(), rows_), column = index(at.x, window_.width(), columns_);
-    return static_cast<std::size_t>(row * columns_ + column);
+    const int block = row * columns_ + column;
+    return static_cast<std::size_t>(block);
   }
 
  private:

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Parameters of pbrt-v3's directives during their translation to pbrt-v4, and what the translators emit.
+// What the translators of pbrt-v3's directives to pbrt-v4 take and emit: parameters, and directives.
 #pragma once
 
 #include <map>

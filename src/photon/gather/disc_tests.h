@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Tests of the discs in which photons are gathered: whether the photons are evenly distributed, and the surface flat.
+// Tests of the discs in which photons are gathered: whether their photons are evenly distributed, and whether
+// the surface is flat.
 #pragma once
 
 #include <array>
@@ -38,8 +39,8 @@ inline bool rejects_uniformity(const SectorCounts& counts, float total) {
 /// 2xy. These functions are orthogonal and have mean 0 over the disc. For independent photons under even light, each
 /// Σ w u_j / √(Var(u_j) Σ w²) has mean 0 and variance 1, so that their squares add up to about a χ² of 5 degrees of
 /// freedom (a score test: Cox & Hinkley 1974, "Theoretical Statistics", section 9.3). An edge of light moves the
-/// first two sums, a line or a spot of light the other three. Unlike counts in sectors, the test also sees
-/// photons of unequal power.
+/// first two sums, a line or a spot of light the other three. Unlike `rejects_uniformity`, the
+/// test also sees photons of unequal power.
 class DiscEvenness {
  public:
   /// With fewer photons of equal light, the test would miss an edge through the middle of the disc.

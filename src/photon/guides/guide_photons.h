@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
+// Guides of light paths: where they start, and directions at guide photons.
 #pragma once
 
 #include <cstddef>

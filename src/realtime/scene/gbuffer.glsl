@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The textures of a G-buffer (realtime/scene/gbuffer.h), seen from the eye.
+// The textures of a G-buffer (realtime/scene/gbuffer.h), seen from the eye, and the place of the eye.
 #include "bsdf.glsl"
 layout(binding = unit_g_position) uniform sampler2D g_position;  // world; a: depth along the axis, m; 0: nothing
 layout(binding = unit_g_surface) uniform usampler2D g_surface;  // shading normal, geometric normal, material, triangle

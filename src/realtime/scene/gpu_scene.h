@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// A scene as the GPU draws it: triangles, materials reduced to the closures of bsdf.glsl.
+// A scene as the GPU draws it: triangles, materials reduced to the closures of bsdf.glsl. Also tells
+// environments apart.
 #pragma once
 
 #include <cstdint>

@@ -17,8 +17,8 @@ using vec4 = glm::vec4;
 using uvec4 = glm::uvec4;
 using mat4 = glm::mat4;
 // NOLINTEND(readability-identifier-naming)
+// layouts.glsl uses numbers of constants.glsl.
 #include "realtime/scene/constants.glsl"
-// After the numbers that it uses.
 #include "realtime/scene/layouts.glsl"
 
 // GLSL's layout std430 lets a vector begin at multiples of 16 bytes. C++ would not leave a gap there.

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The view of a camera, or from a light, in the form that a rasteriser needs, and where it shows detail.
+// The view of a camera, or from a light, in the form that a rasteriser needs. Also finds where a view
+// shows detail.
 #pragma once
 
 #include "camera/view.h"

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The frame that techniques draw into.
+// The frame that techniques draw into, and the triangle with which they fill it.
 #pragma once
 
 #include <chrono>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// A toy material: everything that a material's file in src/material must provide.
+// A toy material: everything that src/material must provide for a kind of material.
 #include <gtest/gtest.h>
 
 #include "material/kind.h"

@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
+// The light of photons on the pixels near them: by drawn volumes, or by lists of photons for tiles of pixels (Mara,
+// Luebke & McGuire 2013, "Toward Practical Real-Time Photon Mapping", section 4.3).
 #pragma once
 
 #include <cstdint>
@@ -25,8 +27,7 @@ struct PhotonVolume {
   friend bool operator==(const PhotonVolume&, const PhotonVolume&) = default;
 };
 
-/// A picture in square tiles, row by row. Photons are sorted into the tiles of pixels that their volumes may cover
-/// (Mara, Luebke & McGuire 2013, section 4.3).
+/// A picture in square tiles, row by row. Photons are sorted into the tiles of pixels that their volumes may cover.
 struct TileGrid {
   static constexpr int side = gpu::tile_side;  ///< pixels
   int width = 0, height = 0;                   ///< of the picture, pixels

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The maps of an environment on the GPU, for split-sum shading.
+// The maps of an environment on the GPU, for split-sum shading, and their baker by compute shaders.
 #pragma once
 
 #include <vector>
