@@ -16,6 +16,7 @@
 #include <system_error>
 #include <utility>
 
+#include "camera/view.h"
 #include "film/display.h"
 #include "gl/context.h"
 #include "lanthorn/denoise.h"
@@ -25,7 +26,6 @@
 #include "lanthorn/shell.h"
 #include "lanthorn/text.h"
 #include "lanthorn/viewer.h"
-#include "render/plan.h"
 #include "scene/medium_around.h"
 #include "viewer/accumulation.h"
 #include "viewer/clock.h"
