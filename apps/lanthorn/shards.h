@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Ranges of passes: splits a render into parts for separate jobs, finds passes that are missing or double, prints ranges.
+// Ranges of passes: splits a render into parts for separate jobs, finds passes that are missing or double, prints
+// ranges.
 #pragma once
 
 #include <cstdint>

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 
@@ -104,6 +105,19 @@ View make_view(const ViewDescription& description, const ViewOptions& options) {
     throw Error(fmt::format("{} x {} pixels are more than {}, the limit of a picture; render parts with --crop",
                             view.window.width(), view.window.height(), most_pixels - 1));
   return view;
+}
+
+ViewOptions scaled(ViewOptions options, const description::Film& film, double share) {
+  const std::array<int, 2> full = options.resolution.value_or(std::array<int, 2>{film.width, film.height});
+  const auto scale = [share](int x) { return static_cast<int>(std::lround(share * x)); };
+  options.resolution = {std::max(1, scale(full[0])), std::max(1, scale(full[1]))};
+  if (options.crop) {
+    const auto& [x0, y0, x1, y1] = *options.crop;
+    const auto& [width, height] = *options.resolution;
+    const int left = std::min(scale(x0), width - 1), top = std::min(scale(y0), height - 1);
+    options.crop = {left, top, std::clamp(scale(x1), left + 1, width), std::clamp(scale(y1), top + 1, height)};
+  }
+  return options;
 }
 
 }  // namespace lanthorn

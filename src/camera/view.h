@@ -38,4 +38,7 @@ struct View {
 /// Throws Error if the camera or film is invalid, or the window is empty.
 View make_view(const ViewDescription& description, const ViewOptions& options = {});
 
+/// The options for a picture of the same part of the scene with `share` times the width and the height.
+ViewOptions scaled(ViewOptions options, const description::Film& film, double share);
+
 }  // namespace lanthorn

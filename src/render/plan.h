@@ -55,10 +55,7 @@ RenderPlan plan_render(const Scene& scene, const ViewDescription& view, const Re
 RenderRecord record_of(const Scene& scene, const ViewDescription& view, const RenderOptions& options,
                        const RenderPlan& plan);
 
-/// The options for a picture of the same part of the scene with `share` times the width and the height.
-ViewOptions scaled(ViewOptions options, const description::Film& film, double share);
-
-/// The options for a pass of such a picture. `photons`: light paths of a pass of the whole picture.
+/// The options for a pass of a `scaled` picture. `photons`: light paths of a pass of the whole picture.
 RenderOptions coarse_options(RenderOptions options, const description::Film& film, double share, double photons);
 
 /// Renders the passes of `stop.passes` that the plan's state has not done yet, in order, into that state. Prepares the

@@ -167,12 +167,6 @@ struct Maker {
   }
 };
 
-int scatterings_until_dark(float albedo) {
-  constexpr double least = 64, most = 4096, rest = 1e-3;
-  const auto a = static_cast<double>(albedo);
-  return static_cast<int>(std::clamp(a < 1 ? std::ceil(std::log(rest) / std::log(a)) : most, least, most));
-}
-
 }  // namespace
 
 std::vector<Medium> make_media(const SceneDescription& description, SpectrumStore& spectra) {

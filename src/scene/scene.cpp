@@ -12,6 +12,7 @@
 #include <variant>
 
 #include "lanthorn/error.h"
+#include "lanthorn/rays.h"
 #include "math/hash.h"
 #include "scene/scene_data.h"
 #include "scene/volume_lights.h"
@@ -182,5 +183,11 @@ bool is_under_surface(const Scene& scene, MediumId medium) {
 }
 
 int most_under_surface(const Scene& scene) { return scene.data()->most_under_surface; }
+
+int scatterings_until_dark(float albedo) {
+  constexpr double least = 64, most = 4096, rest = 1e-3;
+  const auto a = static_cast<double>(albedo);
+  return static_cast<int>(std::clamp(a < 1 ? std::ceil(std::log(rest) / std::log(a)) : most, least, most));
+}
 
 }  // namespace lanthorn

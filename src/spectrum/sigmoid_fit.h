@@ -42,7 +42,8 @@ class SigmoidFit {
 /// The same curve as a quadratic in the wavelength in nm.
 std::array<float, 3> in_nanometres(const UnitSigmoid& a);
 
-/// Nodes of the table along each axis. Odd, so that a largest component of 1/2 (every light, every unbounded colour) is a node itself.
+/// Nodes of the table along each axis. Odd, so that a largest component of 1/2 (every light, every unbounded colour) is
+/// a node itself.
 inline constexpr std::size_t sigmoid_nodes = 33;
 
 using SigmoidNode = std::array<float, 3>;

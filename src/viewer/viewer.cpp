@@ -15,6 +15,7 @@
 #include <system_error>
 #include <utility>
 
+#include "camera/view.h"
 #include "film/display.h"
 #include "gl/context.h"
 #include "lanthorn/denoise.h"
@@ -23,7 +24,6 @@
 #include "lanthorn/methods.h"
 #include "lanthorn/text.h"
 #include "lanthorn/viewer.h"
-#include "render/plan.h"
 #include "scene/medium_around.h"
 #include "viewer/accumulation.h"
 #include "viewer/edited_scene.h"

@@ -224,8 +224,7 @@ std::vector<float> photon_radii(const PhotonMap<BucketKdTree>& map, const Estima
   constexpr std::size_t chunk = 1024;
   parallel_chunks(radii.size(), chunk, [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t slot = begin; slot < end; ++slot)
-      radii[slot] =
-          bounded(nearest_radius(map, tree.position(static_cast<std::uint32_t>(slot)), settings));
+      radii[slot] = bounded(nearest_radius(map, tree.position(static_cast<std::uint32_t>(slot)), settings));
   });
   return radii;
 }

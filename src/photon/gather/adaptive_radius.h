@@ -121,8 +121,9 @@ class LeastErrorRadius {
   float squares_ = 0, laplacian_ = 0, laplacian_variance_ = 0;  // sums over gathers, the first per area
 };
 
-/// A radius that shrinks where the photons within it are not uniformly distributed (Lin et al. 2020, see `rejects_uniformity`).
-/// If the counts of photons reject a uniform density, the radius shrinks and the counts start again at zero.
+/// A radius that shrinks where the photons within it are not uniformly distributed (Lin et al. 2020, see
+/// `rejects_uniformity`). If the counts of photons reject a uniform density, the radius shrinks and the counts start
+/// again at zero.
 class ChiSquaredRadius {
  public:
   explicit ChiSquaredRadius(float first) : first_(first), radius_(first) {}
