@@ -3,6 +3,7 @@
 // Profiles given by images of all directions.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <optional>
 
@@ -102,6 +103,12 @@ struct ImageProfile : PlacedImage {
   std::optional<Vec2> invert(const Direction& d) const { return PlacedImage::invert(d); }
   float integral() const { return scale * PlacedImage::integral(); }
   float largest() const { return scale * largest_value(image->texels); }
+  float texels_across_right_angle() const {
+    const auto width = static_cast<float>(image->width);
+    // The octahedral square has the area of the sphere, which is about that of six squares that each span a right
+    // angle.
+    return image->layout == SphereLayout::equirectangular ? width / 4 : width / std::sqrt(6.0f);
+  }
 };
 
 /// Intensities of a luminaire: a spectrum times a grey image.

@@ -58,18 +58,14 @@ Spectrum emitted_infinite(const Light& light, const Point& from, const Direction
 }
 
 float texels_across_right_angle(const Light& light) {
-  const auto across = [](const ImageSky& sky) {
-    const SphericalImage& image = *sky.profile.image;
-    const auto width = static_cast<float>(image.width);
-    // The octahedral square has the area of the sphere, which is about that of six squares that each span a right
-    // angle.
-    return image.layout == SphereLayout::equirectangular ? width / 4 : width / std::sqrt(6.0f);
+  const auto across = [](const auto& l) {
+    if constexpr (requires { l.profile.texels_across_right_angle(); })
+      return l.profile.texels_across_right_angle();
+    else
+      return 0.0f;
   };
-  if (const auto* const image = std::get_if<ImageSky>(&light)) return across(*image);
-  if (const auto* const portal = std::get_if<PortalLight>(&light))
-    if (const auto* const image = std::get_if<ImageSky>(&portal->sky)) return across(*image);
-  if (const auto* const sun = std::get_if<SunLight>(&light)) return pi / sun->profile.half_angle();
-  return 0;
+  if (const auto* const portal = std::get_if<PortalLight>(&light)) return std::visit(across, portal->sky);
+  return std::visit(across, light);
 }
 
 std::optional<EmissionSample> sample_emission(const Light& light, const Vec2& u_position, const Vec2& u_direction,

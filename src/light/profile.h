@@ -103,8 +103,8 @@ class ConeProfile {
         one_minus_cos_(static_cast<float>(2 * sqr(std::sin(half_angle / 2)))),
         radiance_(irradiance.scaled(static_cast<float>(1 / (std::numbers::pi * sqr(std::sin(half_angle)))))) {}
 
-  /// Half of the cone's angle, radians.
-  float half_angle() const { return 2 * std::asin(std::sqrt(one_minus_cos_ / 2)); }
+  /// Of an image with four texels across the cone.
+  float texels_across_right_angle() const { return pi / (2 * std::asin(std::sqrt(one_minus_cos_ / 2))); }
 
   Spectrum value(const Direction& d, const Wavelengths& w) const {
     return contains(d) ? radiance_.evaluate(w) : Spectrum();
