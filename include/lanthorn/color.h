@@ -28,7 +28,7 @@ enum class ColorSpace : std::uint8_t { srgb, dci_p3, rec2020, aces2065_1 };
 
 /// The quantity that a path carries: RGB, or radiance at a few randomly sampled wavelengths.
 enum class ColorMode : std::uint8_t { rgb, spectral };
-/// Their names, in order, in options, plain data and files.
+/// The names of the modes, in the order of `ColorMode`, as in options, plain data and files.
 inline constexpr std::array<std::string_view, 2> color_mode_names{"rgb", "spectral"};
 
 inline constexpr float lambda_min = 360;  ///< nm

@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
+// Detects MPI launchers (mpi.cpp).
 #pragma once
 
 #include <functional>

@@ -112,9 +112,9 @@ void add_polygon(const Polygon& polygon, const Spectrum& excess, int face, const
   }
 }
 
-// Adds to each texel of the map the excess of each sun, times the fraction of the texel's solid angle that the sun
-// covers. This preserves the suns' flux, and no texel becomes brighter than the image texels that it shows. Does not
-// close the seams.
+// Adds to each texel of an unfiltered map the excess of each sun, times the fraction of the texel's solid angle that
+// the sun covers. This preserves the suns' flux, and no texel becomes brighter than the image texels that it shows.
+// Does not close the seams.
 void add_suns(const Environment& environment, CubeMap& map) {
   const std::vector<float> solid_angles = cube_solid_angles(map.size());
   constexpr float widest = 0.1f;  // widest part, rad

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The environment BRDF of split-sum shading (Karis 2013): the reflection of a white environment by GGX with Schlick's
-// Fresnel term, as F0 scale + bias.
+// Split-sum shading. Its table, `brdf_table`, is the environment BRDF (Karis 2013): the reflection of a white
+// environment by GGX with Schlick's Fresnel term, as F0 scale + bias.
 //
 // # The integral
 // A surface with normal n, seen from v, reflects of a white environment of radiance 1

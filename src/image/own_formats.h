@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 // Writes image files, and reads Radiance pictures (.hdr), the most common environments, without the libraries that read
-// all other kinds, which take longer to load than such a picture, or than a small picture takes to render.
+// all other image files: these take longer to load than a Radiance picture to read, or a small picture to render.
 #pragma once
 
 #include <cstdint>

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Environments by formulas instead of files, and `replace_environment` (lanthorn/scene.h), implemented so that several
-// scenes can share a picture.
+// Built-in environments, whose radiance is given by formulas, and the implementation of `replace_environment`
+// (lanthorn/scene.h), by which several scenes can share a picture.
 #pragma once
 
 #include <cstdint>

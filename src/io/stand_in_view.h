@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Chooses the position of the default camera for a model without camera. Recognises models that are rooms, and chooses
-// a view from inside them.
+// Chooses the position of the default camera for a model without camera: around it or, if the model is recognised as a
+// room, inside (view_inside.cpp).
 #pragma once
 
 #include <optional>

@@ -112,10 +112,10 @@ void insert(std::vector<T>& into, std::vector<std::pair<std::size_t, T>> taken) 
   into = std::move(all);
 }
 
-/// Removes grounds from a scene, so that a view can frame the objects on them. A ground is a mesh that is flat along a
-/// world axis along which the whole scene is also flat, and whose bounding box is at least four times as large as the
-/// box of all other meshes: in a view of everything, these would be small. All grounds of a scene are on the same side
-/// of the other meshes.
+/// Removes grounds (ground planes and backdrops) from a scene, so that a view can frame the objects on them. A ground
+/// is a mesh that is flat along a world axis along which the whole scene is also flat, and whose bounding box is at
+/// least four times as large as the box of all other meshes: in a view of everything, these would be small. All grounds
+/// of a scene are on the same side of the other meshes.
 class Grounds {
  public:
   explicit Grounds(SceneDescription& scene) {

@@ -36,8 +36,8 @@ struct ModelFile {
 /// studio; it does not affect the camera.
 ///
 /// The camera has a field of view of 40 degrees and +y up. It frames all triangle meshes except grounds from the best
-/// side, whatever the film's aspect ratio (see `Grounds` and `stand_in_view`). In a closed room it is inside, with 60
-/// degrees; an invisible lamp illuminates the room if there is no light.
+/// side, whatever the film's aspect ratio (see `Grounds` in stand_ins.cpp, and `stand_in_view`). In a closed room it is
+/// inside, with 60 degrees; an invisible lamp illuminates the room if there is no light.
 ///
 /// The light is a studio: an environment of three large soft lights and a grey gradient, oriented by the camera. A
 /// white wall there has about radiance 1, so that its pictures need no exposure; pictures in the scene's own light

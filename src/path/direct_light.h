@@ -131,8 +131,7 @@ Spectrum hit_lights(const PathContext& path, const Vertex& vertex) {
 /// Light of point-like lights that scatters once, on the rays that eye paths send through media. Next-event estimation
 /// from the points where a walk scatters rarely finds a narrow beam in thin fog, and hardly ever the light close to a
 /// source. The light of point-like lights is therefore also sampled along the whole ray, as if each point of it
-/// scattered
-/// (`RayLights`). The balance heuristic combines both techniques, in the measure of light and distance.
+/// scattered (`RayLights`). The balance heuristic combines both techniques, in the measure of light and distance.
 ///
 /// Only rays before the first non-specular scattering use the second technique; later rays are too many for its cost.
 class RayLight {

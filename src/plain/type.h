@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 // What the reader and the writer know about a C++ type. `members.cpp` lists the members of each struct; `describe.h`
-// makes the types of containers from those of their items.
+// makes the types of containers from those of their items. At the end: arrays of numbers (numbers.cpp).
 #pragma once
 
 #include <cstddef>

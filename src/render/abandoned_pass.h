@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// Passes that are abandoned: when, and how the film is restored.
+// Abandoned passes: the deadline that ends them, and the restoration of the film.
 #pragma once
 
 #include <atomic>

@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
+// Photons of a pass of the plan, and of light paths whose starts the caller chooses.
 #include "lanthorn/photons.h"
 
 #include <fmt/format.h>
@@ -10,7 +11,6 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <optional>
 #include <vector>
 
 #include "base/parallel.h"
@@ -84,9 +84,8 @@ Emission aim(const RenderPlan& plan, const RenderJob& job) {
   return choose_emission(emission_choice(parameters), PhotonUse::indirect, job, MediumRecords::points);
 }
 
-// Photons of light paths whose starts the caller chooses.
-
-// Records the photons of one light path: one at each vertex with a non-delta lobe.
+// For light paths whose starts the caller chooses: records the photons of one, one at each vertex with a non-delta
+// lobe.
 struct SentPhotonVisitor {
   Photons& photons;
   std::uint32_t start;  ///< number of the PhotonStart

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The picture of a state, and how far it is from the truth.
+// The picture of a state, its colour balance, and how far it is from the truth.
 #pragma once
 
 #include <span>

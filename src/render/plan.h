@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
 // Turns a scene and the user's options into something that `render` can run. The user's options come first, then the
-// scene file's settings, then defaults.
+// scene file's settings, then defaults. Also declares the pass loop (`render`, render.cpp) and the record of a plan
+// (identity.cpp).
 #pragma once
 
 #include <functional>

@@ -60,7 +60,7 @@ RenderState load_state(const std::filesystem::path& path);
 RenderState merge_states(const RenderState& a, const RenderState& b);
 
 class StateReader;
-/// As `SavedState::merge_into`.
+/// Merges a saved state without loading its film; see `SavedState::merge_into`.
 void merge_into(RenderState& sum, const StateReader& more);
 
 /// A state without passes of the same render.

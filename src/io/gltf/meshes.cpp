@@ -6,7 +6,9 @@
 #include <draco/compression/decode.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <span>
 #include <string>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// The geometry of faces: triangles, and smooth normals for faces without normals.
+// Divides faces into triangles, and computes smooth normals for faces without normals.
 #pragma once
 
 #include <array>

@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
+// What all builders share, and the version of a file (version.cpp).
 #pragma once
 
 #include <filesystem>

@@ -6,8 +6,6 @@
 #include <array>
 #include <charconv>
 #include <type_traits>
-#include <utility>
-#include <vector>
 
 #include "spectrum/curve.h"
 

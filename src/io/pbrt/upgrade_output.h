@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-// What the translators of pbrt-v3's directives to pbrt-v4 take and emit: parameters, and directives.
+// Shared by the translators of pbrt-v3's directives: access to the old parameters, and the pbrt-v4 output.
 #pragma once
 
 #include <map>

@@ -25,7 +25,7 @@ Vertex corner(Draw d, uint i) {
 }
 
 #ifndef NO_NORMAL_MAPS
-// The normal of a map, as scene/relief.cpp: x along dp/du, y along dp/dv, in the hemisphere of the geometric normal.
+// The normal of a map, as material/relief.cpp: x along dp/du, y along dp/dv, in the hemisphere of the geometric normal.
 vec3 mapped_normal(Draw d, Vertex a, Vertex b, Vertex c, vec3 smooth_normal, vec3 facing, vec3 local) {
   mat3 to_world = mat3(d.to_world);
   vec3 along_b = to_world * (b.position - a.position), along_c = to_world * (c.position - a.position);
