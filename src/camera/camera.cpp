@@ -257,22 +257,23 @@ std::optional<Camera::Sight> Camera::sight(const DVec3& local, const Vec2& u_len
 }
 
 std::optional<CameraConnection> Camera::connect(const Point& p, const Vec2& u_lens, float time) const {
+  std::optional<CameraConnection> result;
   std::optional<Affine> moved;
   const Affine& map = to_world_.at(time, moved);
   const std::optional<Sight> s = sight(map.inverse_point(DVec3(p)), u_lens);
-  if (!s || !sees(s->raster)) return {};
+  if (!s || !sees(s->raster)) return result;
   const DVec3 lens = map.point(s->lens);
   const DVec3 way = lens - DVec3(p);
   const double distance2 = glm::dot(way, way);
-  if (!(distance2 > 0)) return {};
-  CameraConnection c;
+  if (!(distance2 > 0)) return result;
+  CameraConnection& c = result.emplace();
   c.raster = s->raster;
   c.lens_point = Point(lens);
   c.distance = static_cast<float>(std::sqrt(distance2));
   c.towards = normalize(Vec3(way / std::sqrt(distance2)));
   const double pixels = static_cast<double>(width_) * height_;
   c.importance = static_cast<float>(pixels * s->density / (kind_ == Kind::orthographic ? film_area(map) : distance2));
-  return c;
+  return result;
 }
 
 std::optional<Point> Camera::lens_point_for(const Point& p, const Vec2& u_lens, float time) const {

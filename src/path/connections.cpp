@@ -215,34 +215,42 @@ TechniqueSum densities_of_hit(const PathContext& path, const Bidirectional& pass
 template <class Vertex>
 std::optional<Contribution> next_event(const PathContext& path, const Bidirectional& pass, const Vertex& v,
                                        const Subpath& subpath) {
+  std::optional<Contribution> result;
   path.sampler.seek(visitor_dimensions(v.state.depth));
   const std::optional<NextEvent> event = sample_next_event(path, v);
-  if (!event) return {};
-  return Contribution{event->radiance, event->dispersed, densities_of(path, pass, v, *event, subpath)};
+  if (!event) return result;
+  Contribution& found = result.emplace();
+  found.light = event->radiance;
+  found.dispersed = event->dispersed;
+  found.densities = densities_of(path, pass, v, *event, subpath);
+  return result;
 }
 
 template <class Vertex>
 std::optional<Contribution> connect(const PathContext& path, const Bidirectional& pass, const Vertex& v,
                                     const Subpath& subpath, const LightVertex& other) {
+  std::optional<Contribution> result;
   const Vec3 to_other = other.at.position - position_of(v);
   const float distance2 = length_squared(to_other);
-  if (!(distance2 > 0)) return {};
+  if (!(distance2 > 0)) return result;
   const float distance = std::sqrt(distance2);
   const Direction direction = to_other / distance;
   const End eye = eye_end(pass, v, direction, subpath.flight());
-  if (eye.f.is_black()) return {};
+  if (eye.f.is_black()) return result;
   const End light = light_end(pass, other, -direction);
-  if (light.f.is_black()) return {};
+  if (light.f.is_black()) return result;
   const Spectrum value = v.state.beta * eye.f * light.f * other.beta * (pass.techniques.light_paths / distance2);
   const SegmentEnd end = other.phase ? SegmentEnd{other.at.position} : end_at(other.at, position_of(v));
-  if (value.is_black() || !may_leave(path, v, direction, end)) return {};
+  if (value.is_black() || !may_leave(path, v, direction, end)) return result;
   const Passage way =
       passage(path, ray_to(v, direction, end), medium_towards(v, direction), visitor_dimensions(v.state.depth));
-  if (way.transmittance.is_black()) return {};
+  if (way.transmittance.is_black()) return result;
   const float passes = FlightDensity::passing(way.optical_depth);
-  return Contribution{value * way.transmittance,
-                      v.state.dispersed || other.dispersed || eye.dispersed || light.dispersed,
-                      densities_of(pass, v.state, subpath, eye, other, light, distance2, passes)};
+  Contribution& found = result.emplace();
+  found.light = value * way.transmittance;
+  found.dispersed = v.state.dispersed || other.dispersed || eye.dispersed || light.dispersed;
+  found.densities = densities_of(pass, v.state, subpath, eye, other, light, distance2, passes);
+  return result;
 }
 
 template <class Vertex>

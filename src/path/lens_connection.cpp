@@ -51,7 +51,8 @@ std::optional<CameraConnection> find_lens(const PathContext& path, const View& v
   path.sampler.seek(visitor_dimensions(v.state.depth));
   const Vec2 u_lens = path.sampler.next2();
   const std::optional<Point> from = leaving_point(view, v, u_lens);
-  return from ? view.camera.connect(*from, u_lens, time_of(v)) : std::nullopt;
+  if (!from) return {};
+  return view.camera.connect(*from, u_lens, time_of(v));
 }
 template std::optional<CameraConnection> find_lens(const PathContext&, const View&, const SurfaceVertex&);
 template std::optional<CameraConnection> find_lens(const PathContext&, const View&, const MediumVertex&);
@@ -59,15 +60,23 @@ template std::optional<CameraConnection> find_lens(const PathContext&, const Vie
 template <class Vertex>
 std::optional<LensLight> connect_to_lens(const PathContext& path, const View& view, const Vertex& v,
                                          const CameraConnection& lens) {
+  std::optional<LensLight> result;
   const Spectrum sent = sent_towards(v, lens.towards);
-  if (sent.is_black()) return {};
+  if (sent.is_black()) return result;
   const Ray ray = ray_to(v, lens);
   const Passage way = passage_to_lens(path, ray, medium_towards(v, lens.towards), visitor_dimensions(v.state.depth));
   const Spectrum light = sent * way.transmittance * (lens.importance * view.imaging_ratio);
-  if (light.is_black()) return {};
-  return LensLight{lens.raster,   light,
-                   disperses(v),  Ray{lens.lens_point, -lens.towards, infinity, ray.time},
-                   lens.distance, way.optical_depth};
+  if (light.is_black()) return result;
+  LensLight& seen = result.emplace();
+  seen.raster = lens.raster;
+  seen.light = light;
+  seen.dispersed = disperses(v);
+  seen.from_lens.origin = lens.lens_point;
+  seen.from_lens.direction = -lens.towards;
+  seen.from_lens.time = ray.time;
+  seen.distance = lens.distance;
+  seen.optical_depth = way.optical_depth;
+  return result;
 }
 template std::optional<LensLight> connect_to_lens(const PathContext&, const View&, const SurfaceVertex&,
                                                   const CameraConnection&);
