@@ -4,11 +4,11 @@
 
 #include <optional>
 
-#include "io/environments.h"
 #include "lanthorn/error.h"
 #include "lanthorn/scene.h"
 #include "math/hash.h"
 #include "render/method_of_file.h"
+#include "staging/environments.h"
 
 namespace lanthorn {
 

@@ -20,9 +20,9 @@
 #include "io/gltf/meshes.h"
 #include "io/gltf/nodes.h"
 #include "io/missing_files.h"
-#include "io/surfaces.h"
 #include "lanthorn/text.h"
 #include "math/vec.h"
+#include "staging/surfaces.h"
 
 namespace lanthorn::gltf {
 

@@ -8,8 +8,8 @@
 #include <string>
 #include <string_view>
 
-#include "io/stand_ins.h"
 #include "lanthorn/file.h"
+#include "staging/stand_ins.h"
 
 namespace lanthorn::gltf {
 

@@ -5,7 +5,7 @@
 //   and A.2 (luminance and chromaticity of the sky).
 //   Perez, Seals & Michalsky 1993, "All-weather model for sky luminance distribution".
 //   Moon & Spencer 1942, "Illumination from a non-uniform sky" (the CIE's overcast sky).
-#include "io/environments.h"
+#include "staging/environments.h"
 
 #include <algorithm>
 #include <array>

@@ -7,7 +7,6 @@
 #include <string>
 #include <variant>
 
-#include "io/environments.h"
 #include "lanthorn/error.h"
 #include "lanthorn/ibl.h"
 #include "lanthorn/image_file.h"
@@ -17,6 +16,7 @@
 #include "light/light.h"
 #include "math/octahedral.h"
 #include "scene/scene.h"
+#include "staging/environments.h"
 #include "support/gltf_writer.h"
 #include "support/temporary_dir.h"
 

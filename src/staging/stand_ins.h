@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "io/stand_in_view.h"
 #include "lanthorn/scene_description.h"
+#include "staging/stand_in_view.h"
 
 namespace lanthorn {
 

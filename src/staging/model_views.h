@@ -9,8 +9,8 @@
 #include <set>
 #include <vector>
 
-#include "io/surfaces.h"
 #include "lanthorn/scene_description.h"
+#include "staging/surfaces.h"
 
 namespace lanthorn {
 

@@ -8,8 +8,8 @@
 #include <span>
 #include <vector>
 
-#include "io/model_views.h"
 #include "lanthorn/scene_description.h"
+#include "staging/model_views.h"
 
 namespace lanthorn {
 

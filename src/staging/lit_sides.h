@@ -5,8 +5,8 @@
 
 #include <vector>
 
-#include "io/model_views.h"
 #include "lanthorn/scene_description.h"
+#include "staging/model_views.h"
 
 namespace lanthorn {
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include "io/stand_in_view.h"
+#include "staging/stand_in_view.h"
 
 #include <algorithm>
 #include <array>
@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
-#include "io/lit_sides.h"
-#include "io/surfaces.h"
 #include "math/vec.h"
+#include "staging/lit_sides.h"
+#include "staging/surfaces.h"
 
 namespace lanthorn {
 

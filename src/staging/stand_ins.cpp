@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include "io/stand_ins.h"
+#include "staging/stand_ins.h"
 
 #include <algorithm>
 #include <array>
@@ -14,12 +14,12 @@
 #include <variant>
 #include <vector>
 
-#include "io/environments.h"
-#include "io/lit_sides.h"
-#include "io/surfaces.h"
 #include "lanthorn/scene_description.h"
 #include "math/vec.h"
 #include "spectrum/spectrum.h"
+#include "staging/environments.h"
+#include "staging/lit_sides.h"
+#include "staging/surfaces.h"
 
 namespace lanthorn {
 

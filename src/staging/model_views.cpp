@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include "io/model_views.h"
+#include "staging/model_views.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include "io/stand_ins.h"
+#include "staging/stand_ins.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lanthorn authors
 // SPDX-License-Identifier: Apache-2.0
-#include "io/environments.h"
+#include "staging/environments.h"
 
 #include <fmt/format.h>
 
