@@ -28,7 +28,7 @@ endfunction()
 function(lanthorn_test_headers name)
   add_library(${name} OBJECT ${PROJECT_SOURCE_DIR}/tests/support/precompiled.cpp)
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
-  target_compile_options(${name} PRIVATE -fPIE $<$<CONFIG:Release>:-O1>)  # as programs with tests are compiled
+  target_compile_options(${name} PRIVATE -fPIE $<$<CONFIG:Release>:-O1>)  # as test programs are compiled
   set_target_properties(${name} PROPERTIES POSITION_INDEPENDENT_CODE OFF)
   target_link_libraries(${name} PRIVATE lanthorn_api GTest::gtest)
   target_precompile_headers(${name} PRIVATE <gtest/gtest.h> "${PROJECT_SOURCE_DIR}/tests/support/render_scene.h")

@@ -99,9 +99,11 @@ class LightVertices {
     const std::uint32_t begin = i == 0 ? 0 : c.ends[i - 1];
     return std::span(c.vertices).subspan(begin, c.ends[i] - begin);
   }
-  /// Fetches ahead where the vertices of `path(number)` lie.
+  /// Prefetches what `path(number)` reads to find the path's vertices.
   void prefetch_place(std::size_t number) const {
-    if (!chunks_.empty()) prefetch(chunks_[number / light_path_chunk].ends[number % light_path_chunk]);
+    if (chunks_.empty()) return;
+    const std::vector<std::uint32_t>& ends = chunks_[number / light_path_chunk].ends;
+    if (const std::size_t i = number % light_path_chunk; i < ends.size()) prefetch(ends[i]);
   }
   /// The vertices for which `is_wanted` returns true, path by path. Found in parallel.
   template <class Predicate>

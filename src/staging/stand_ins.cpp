@@ -129,7 +129,7 @@ class Grounds {
     instances_ = take(scene.instances.edit(), std::move(instances));
   }
 
-  /// The unit normal of the grounds, towards the objects; nullopt if there are no grounds.
+  /// The unit normal of the grounds, towards the objects. Empty if the scene has no ground.
   const std::optional<Vec3>& side() const { return side_; }
   /// Restores all grounds. The scene's shapes and instances must be those that the constructor left.
   void put_back(SceneDescription& scene) {

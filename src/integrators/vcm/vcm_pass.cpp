@@ -106,7 +106,7 @@ std::span<const LightVertex> VcmPass::light_path(std::size_t path) const {
 }
 
 PathDraw VcmPass::draw_of_eye_path(Sampler& sampler, const PixelPlace& place) const {
-  // Any light path may be the partner: its place would come from main memory just when its vertices are wanted.
+  // The partner is a random light path, so that the look-up of its vertices would wait for main memory.
   if (const std::size_t path = partner(sampler); connects() && is_of_block(path))
     vertices.prefetch_place(path - light_paths.first());
   PathDraw own = draw.of_eye_path(sampler, place.x, place.y);
