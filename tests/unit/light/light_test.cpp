@@ -811,5 +811,15 @@ TEST(LightBvh, SplitsByLightsOfAllParts) {
   EXPECT_GT(first_half, 0.6);  // 2048/2112 / (1 + 1/2); with mixed halves 1 / (1 + 4/2)
 }
 
+// Images of a light need texels as fine as its own image, or as a part of a sun.
+TEST(Lights, SayHowFineImagesOfThemMustBe) {
+  const SphericalImage panorama(SphereLayout::equirectangular, 8, 4, LightTexels(std::vector<Rgb>(32, Rgb{1, 1, 1})));
+  const SphericalImage square(SphereLayout::octahedral, 6, 6, LightTexels(std::vector<Rgb>(36, Rgb{1, 1, 1})));
+  EXPECT_EQ(texels_across_right_angle(ImageSky{{{&panorama, {}}, 1}, {}}), 2);
+  EXPECT_FLOAT_EQ(texels_across_right_angle(ImageSky{{{&square, {}}, 1}, {}}), std::sqrt(6.0f));
+  EXPECT_NEAR(texels_across_right_angle(SunLight{ConeProfile({0, 0, 1}, 0.01, test_colour()), {}}), pi / 0.01f, 0.1f);
+  EXPECT_EQ(texels_across_right_angle(EvenSky{{test_colour()}, {}}), 0);
+}
+
 }  // namespace
 }  // namespace lanthorn::test
